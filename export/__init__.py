@@ -1,0 +1,1 @@
+"""Rom to files and back."""

@@ -1,0 +1,45 @@
+"""Assets to voxels: loaders, the scene, the grid, colliders and the native voxelizer."""
+
+from pkgutil import extend_path
+
+__path__ = extend_path(__path__, __name__)
+
+from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.scene import (
+    DEFAULT_COLOUR,
+    EMPTY,
+    MATERIAL_LIMIT,
+    BoxCollider,
+    Collider,
+    HullCollider,
+    Material,
+    Mesh,
+    MeshCollider,
+    Scene,
+    SceneObject,
+    SphereCollider,
+)
+from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
+
+__all__ = [
+    "DEFAULT_COLOUR",
+    "EMPTY",
+    "MATERIAL_LIMIT",
+    "AssetError",
+    "BoxCollider",
+    "Collider",
+    "DoesNotFitError",
+    "Grid",
+    "HullCollider",
+    "Material",
+    "Mesh",
+    "MeshCollider",
+    "ObjectReport",
+    "Scene",
+    "SceneObject",
+    "SceneWarning",
+    "SphereCollider",
+    "Voxelization",
+    "Voxels",
+]

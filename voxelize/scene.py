@@ -1,0 +1,152 @@
+"""The scene: what every loader makes and the voxelizer takes.
+
+Scene frame: right-handed, metres, y up. A material's id is its index in :attr:`Scene.materials`; id 0 is empty space.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.errors import SceneWarning
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A named uniform material.
+
+    Attributes
+    ----------
+    name
+        The author's name for it, unique in its scene.
+    colour
+        sRGB, 8 bits a channel.
+    mirror
+        Reflects instead of showing its own shade, where the hardware has mirrors.
+    authored
+        False for the default material that stands in where the author gave none.
+    """
+
+    name: str
+    colour: tuple[int, int, int]
+    mirror: bool = False
+    authored: bool = True
+
+
+EMPTY = Material("empty", (0, 0, 0))
+"""Entry 0 of every material table: empty space; its colour is the background's."""
+
+DEFAULT_COLOUR = (200, 200, 200)
+"""The sRGB colour of the default material."""
+
+MATERIAL_LIMIT = 255
+"""How many materials a memory word can tell apart, empty space not counted."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Mesh:
+    """Triangles in their object's frame. Instances share one mesh.
+
+    Attributes
+    ----------
+    positions
+        float64, shape (V, 3), finite.
+    triangles
+        int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
+    materials
+        uint8, shape (T,): material ids, 1 … 255.
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    materials: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BoxCollider:
+    """A box in its object's frame, from `minimum` to `maximum` (float64, shape (3,)).
+
+    `pow2` says whether its sides are rounded up to powers of two voxels when the user asks for no rule of their own.
+    """
+
+    minimum: NDArray[np.float64]
+    maximum: NDArray[np.float64]
+    pow2: bool = True
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SphereCollider:
+    """A ball in its object's frame: `centre` (float64, shape (3,)), `radius`; an ellipsoid where the frame scales."""
+
+    centre: NDArray[np.float64]
+    radius: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class HullCollider:
+    """The convex hull of `positions` (float64, shape (V, 3)), in its object's frame."""
+
+    positions: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshCollider:
+    """Triangles that stand in for the rendered ones: `positions` (float64, (V, 3)), `triangles` (int32, (T, 3))."""
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+
+
+Collider: TypeAlias = BoxCollider | SphereCollider | HullCollider | MeshCollider
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SceneObject:
+    """One object of the scene, in authored order.
+
+    Attributes
+    ----------
+    name
+        The author's name, with the path in the file where names repeat.
+    mesh
+        Its triangles; instances of one mesh hold the same value.
+    transform
+        float64, shape (4, 4), affine, column vectors: object frame to scene frame. May mirror.
+    colliders
+        The authored stand-ins, filled with `collider_material`; empty where the author gave none.
+    collider_material
+        Material id 1 … 255 that colliders take.
+    """
+
+    name: str
+    mesh: Mesh
+    transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
+    colliders: tuple[Collider, ...] = ()
+    collider_material: int = 1
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """Everything an asset file said, in the scene frame.
+
+    Attributes
+    ----------
+    name
+        The asset's name without folder and suffix.
+    objects
+        In authored order: where they compete for a voxel, the first wins.
+    materials
+        Indexed by material id; entry 0 is :data:`EMPTY`; at most 256 entries.
+    warnings
+        What was said by the file and not honoured as it stands.
+    """
+
+    name: str
+    objects: tuple[SceneObject, ...]
+    materials: tuple[Material, ...]
+    warnings: tuple[SceneWarning, ...] = ()

@@ -1,0 +1,96 @@
+"""What the voxelizer makes and the octree is built from: sparse bricks and uniform octants in Morton order.
+
+Nothing here has the size of the volume: bricks stand only where the content is mixed, and a large interior is a few
+octants.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.errors import SceneWarning
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Voxels:
+    """The solid voxels of a grid.
+
+    Morton code: bit 3k is bit k of x, bit 3k+1 of y, bit 3k+2 of z, so the octant index is {z, y, x}. A brick holds
+    8x8x8 voxels, indexed 0 … 511 by the Morton code of their place in it. Grids of depth below 3 use the first
+    8**depth voxels of the single brick 0. Bricks and octants are disjoint; what neither holds is empty.
+
+    Attributes
+    ----------
+    depth
+        The grid's depth, 1 … 16.
+    brick_codes
+        uint64, shape (B,), strictly ascending: Morton code of the brick's corner divided by 8.
+    brick_masks
+        uint64, shape (B, 8): voxel i is solid when bit i % 64 of word i // 64 is set; never all zero.
+    brick_materials
+        uint8, shape (B,): the material of every solid voxel of the brick, or 0 where `brick_rows` tells.
+    brick_rows
+        int32, shape (B,): row of `cells` with the brick's materials, or -1 where the brick has one material.
+    cells
+        uint8, shape (C, 512): materials voxel by voxel, 0 where empty; consistent with the mask.
+    octant_codes
+        uint64, shape (U,): Morton code of the octant's corner divided by its side (2**level voxels), ascending by the
+        corner's Morton code; disjoint.
+    octant_levels
+        uint8, shape (U,): log2 of the side in voxels, 3 … depth.
+    octant_materials
+        uint8, shape (U,): 1 … 255.
+    """
+
+    depth: int
+    brick_codes: NDArray[np.uint64]
+    brick_masks: NDArray[np.uint64]
+    brick_materials: NDArray[np.uint8]
+    brick_rows: NDArray[np.int32]
+    cells: NDArray[np.uint8]
+    octant_codes: NDArray[np.uint64]
+    octant_levels: NDArray[np.uint8]
+    octant_materials: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectReport:
+    """How one object was voxelized.
+
+    Attributes
+    ----------
+    name
+        The object's name.
+    source
+        What was voxelized: ``"mesh"``, ``"box"``, ``"sphere"``, ``"hull"``.
+    mode
+        How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
+        ``"winding"`` (open or self-intersecting: generalized winding number).
+    voxels
+        Voxels that ended up belonging to it, first object first.
+    moved
+        Voxels by which rounding moved its lowest corner, an axis each (x, y, z).
+    grown
+        Voxels by which rounding grew it, an axis each.
+    """
+
+    name: str
+    source: str
+    mode: str
+    voxels: int
+    moved: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    grown: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Voxelization:
+    """Voxels, how each object got there (authored order), and what was not honoured as it stands."""
+
+    voxels: Voxels
+    objects: tuple[ObjectReport, ...]
+    warnings: tuple[SceneWarning, ...] = ()
