@@ -1,46 +1,43 @@
-"""Octree memories of small dense worlds, built the plain way: recursion, a dictionary, a queue."""
+"""Octree memories and the voxels they stand for, by plain recursion."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Hashable
 
-    from numpy.typing import NDArray
+def voxels_of(words, depth):
+    """Expand a memory (report dialect) into materials indexed [x, y, z]; depth gives the side."""
+    voxels = np.zeros((1 << depth,) * 3, np.uint8)
 
-TAG = 0xFFFFFF00
+    def fill(word, corner, side):
+        x, y, z = corner
+        if word >> 31:
+            voxels[x : x + side, y : y + side, z : z + side] = word & 0xFF
+            return
+        half = side // 2
+        for octant in range(8):
+            child = (x + half * (octant & 1), y + half * (octant >> 1 & 1), z + half * (octant >> 2))
+            fill(int(words[word + octant]), child, half)
+
+    fill(int(words[0]), (0, 0, 0), 1 << depth)
+    return voxels
 
 
-def memory_of(voxels: NDArray[np.uint8], *, share: bool = True, split: bool = False) -> NDArray[np.uint32]:
-    """Give the report-dialect words of a dense world (S, S, S) indexed [x, y, z], S a power of two above 1.
-
-    `share` stores equal blocks once; `split` cuts uniform octants down to single voxels all the same.
-    """
+def words_of(voxels):
+    """Build a memory of a cube of materials, blocks in the order they are met, equal blocks kept apart."""
     words = [0]
-    stored: dict[Hashable, int] = {}
 
-    def shape_of(part: NDArray[np.uint8]) -> Hashable:
-        if len(part) == 1 or (not split and np.all(part == part[0, 0, 0])):
-            return int(part[0, 0, 0])
-        return tuple(shape_of(octant) for octant in octants(part))
+    def build(cube):
+        first = int(cube.flat[0])
+        if (cube == first).all():
+            return 0xFFFFFF00 | first
+        half = len(cube) // 2
+        block = len(words)
+        words.extend([0] * 8)
+        for octant in range(8):
+            x, y, z = (slice(half * bit, half * bit + half) for bit in (octant & 1, octant >> 1 & 1, octant >> 2))
+            words[block + octant] = build(cube[x, y, z])
+        return block
 
-    def octants(part: NDArray[np.uint8]) -> list[NDArray[np.uint8]]:
-        half = len(part) // 2
-        cuts = (slice(0, half), slice(half, None))
-        return [part[cuts[i & 1], cuts[i >> 1 & 1], cuts[i >> 2]] for i in range(8)]
-
-    queue: list[tuple[int, Hashable]] = [(0, shape_of(voxels))]
-    for address, shape in queue:
-        if isinstance(shape, int):
-            words[address] = TAG | shape
-        elif share and shape in stored:
-            words[address] = stored[shape]
-        else:
-            block = len(words)
-            stored[shape] = words[address] = block
-            words.extend([0] * 8)
-            queue.extend((block + i, octant) for i, octant in enumerate(shape))
-    return np.array(words, dtype=np.uint32)
+    words[0] = build(np.asarray(voxels))
+    return np.array(words, np.uint32)
