@@ -104,17 +104,18 @@ def look_at(
 
 
 def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
-    """Make the camera that sees all solid voxels of a memory, as :func:`frame_box` does; the whole world where none are.
+    """Make the camera that sees all solid voxels of a memory, or the whole world where there are none.
 
     Parameters
     ----------
     rom
-        What is to be seen.
+        What is to be seen, as :func:`frame_box` sees a box.
     size
         Columns and rows of the frame.
     """
     side = 1 << rom.octree.depth
-    return frame_box(*(solid_bounds(rom.octree) or ((0, 0, 0), (side, side, side))), size)
+    minimum, maximum = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, side))
+    return frame_box(minimum, maximum, size)
 
 
 def frame_box(minimum: ArrayLike, maximum: ArrayLike, size: tuple[int, int]) -> Camera:
