@@ -7,8 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.sim.bounds import solid_bounds
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from voxrt.octree import Rom
 
 Triple = tuple[int, int, int]
 
@@ -21,7 +25,7 @@ DIRECTION_LIMIT = 1 << 20
 _REGISTER_LIMIT = 1 << 15
 _FIELD_OF_VIEW = 35.0
 _THREE_QUARTER = (0.62, 0.55, 1.0)  # from the scene to the eye: front right, from above
-_MARGIN = 0.04  # of the frame's side, left free on each side by frame_scene
+_MARGIN = 0.04  # of the frame's side, left free on each side by frame_box
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,7 @@ def camera_from_registers(position: ArrayLike, look: ArrayLike, right: ArrayLike
     """
     place = np.asarray(position, dtype=np.float64)
     if place.shape != (3,) or not np.all(np.abs(place) < 2**31 / POSITION_UNITS - 1):
-        raise ValueError(f"camera position {position} is not three numbers of voxels in signed 32 bits of 1/16 voxel")
+        raise ValueError(f"camera position {place.tolist()} is not three numbers that fit signed 32 bits of 1/16 voxel")
     return Camera(
         position=_triple(np.rint(place * POSITION_UNITS)),
         look=_register("look", look),
@@ -99,14 +103,28 @@ def look_at(
     return _scaled(np.asarray(eye, dtype=np.float64), axes, _focal_length(size, field_of_view), size)
 
 
-def frame_scene(minimum: ArrayLike, maximum: ArrayLike, size: tuple[int, int]) -> Camera:
+def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
+    """Make the camera that sees all solid voxels of a memory, or the whole world where there are none.
+
+    Parameters
+    ----------
+    rom
+        What is to be seen, as :func:`frame_box` sees a box.
+    size
+        Columns and rows of the frame.
+    """
+    side = 1 << rom.octree.depth
+    minimum, maximum = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, side))
+    return frame_box(minimum, maximum, size)
+
+
+def frame_box(minimum: ArrayLike, maximum: ArrayLike, size: tuple[int, int]) -> Camera:
     """Make the camera that sees a whole box of voxels, tightly, from the front right and above.
 
     Parameters
     ----------
     minimum, maximum
-        float, shape (3,), voxels, grid frame: the lowest and highest corner of what is to be seen, as
-        :func:`~voxrt.sim.bounds.solid_bounds` gives them.
+        float, shape (3,), voxels, grid frame: the lowest and the highest corner.
     size
         Columns and rows of the frame.
     """
@@ -131,7 +149,8 @@ def pixel_directions(camera: Camera, size: tuple[int, int]) -> NDArray[np.int64]
     look, right, up = (np.array(triple, dtype=np.int64) for triple in (camera.look, camera.right, camera.up))
     columns = np.arange(width, dtype=np.int64) - width // 2
     rows = height // 2 - np.arange(height, dtype=np.int64)
-    return look + right * columns[None, :, None] + up * rows[:, None, None]
+    directions: NDArray[np.int64] = look + right * columns[None, :, None] + up * rows[:, None, None]
+    return directions
 
 
 def _axes(look: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -142,7 +161,8 @@ def _axes(look: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.floa
     if not np.any(right):
         raise ValueError("the camera's eye and target coincide; move one of them")
     rows = np.array([look, right, np.cross(right, look)])
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    normalized: NDArray[np.float64] = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    return normalized
 
 
 def _focal_length(size: tuple[int, int], field_of_view: float) -> float:
@@ -161,15 +181,13 @@ def _scaled(eye: NDArray[np.float64], axes: NDArray[np.float64], focal: float, s
     reach = np.abs(look) + np.abs(right) * (width // 2) + np.abs(up) * (height // 2)
     largest_register = max(float(np.max(np.abs(triple))) for triple in (look, right, up))
     scale = min((_REGISTER_LIMIT - 1) / largest_register, (DIRECTION_LIMIT - 1 - rounding) / float(np.max(reach)))
-    return camera_from_registers(
-        eye / 1.0, *(np.rint(triple * scale).astype(np.int64) for triple in (look, right, up))
-    )
+    return camera_from_registers(eye, *(np.rint(triple * scale).astype(np.int64) for triple in (look, right, up)))
 
 
 def _register(name: str, values: ArrayLike) -> Triple:
     array = np.asarray(values)
     if array.shape != (3,) or not np.all(array == np.rint(array)) or not np.all(np.abs(array) < _REGISTER_LIMIT):
-        raise ValueError(f"camera {name} {values} is not three whole numbers of signed 16 bits")
+        raise ValueError(f"camera {name} {array.tolist()} is not three whole numbers of signed 16 bits")
     return _triple(array)
 
 

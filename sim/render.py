@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -92,9 +93,7 @@ def render(
     return _render_rtl(rom, camera, size, config, started)
 
 
-def check(
-    rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, config: str = "tiny"
-) -> EngineCheck:
+def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, config: str = "tiny") -> EngineCheck:
     """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
     rtl = render(rom, camera, size, engine="rtl", config=config)
     model = render(rom, camera, size, engine="model", threads=threads)
@@ -116,7 +115,7 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int,
 
 def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, started: float) -> Frame:
     try:
-        from voxrt.sim import _rtl  # noqa: PLC0415 - not built on every platform
+        _rtl = import_module("voxrt.sim._rtl")
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "

@@ -1,4 +1,4 @@
-// voxrt.sim._model: the exact model for Python. The stub sim/_model.pyi says what each function takes.
+// voxrt.sim._model: the exact model for Python.
 #include "frame.h"
 #include "ray.h"
 
@@ -114,8 +114,16 @@ nb::dict trace_rays(const Words& words, int depth, const Triples& origins, const
 } // namespace
 
 NB_MODULE(_model, m) {
-    m.def("render", &render_frame, nb::arg("words"), nb::arg("depth"), nb::arg("materials"), nb::arg("camera"),
-          nb::arg("width"), nb::arg("height"), nb::arg("threads") = 0);
+    m.def(
+        "render", &render_frame, nb::arg("words"), nb::arg("depth"), nb::arg("materials"), nb::arg("camera"),
+        nb::arg("width"), nb::arg("height"), nb::arg("threads") = 0,
+        "Render a frame of a memory (uint32, report dialect): materials (256, 3) uint8 sRGB, entry 0 the background;\n"
+        "camera (4, 3) int32 position, look, right, up; threads 0 takes every core. Gives colour (H, W, 3), material\n"
+        "(H, W), face (H, W), uint8, and words_read. ValueError: a malformed memory, a frame above 16384 x 16384,\n"
+        "pixel directions not below 2**20.");
     m.def("trace", &trace_rays, nb::arg("words"), nb::arg("depth"), nb::arg("origins"), nb::arg("directions"),
-          nb::arg("threads") = 0);
+          nb::arg("threads") = 0,
+          "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20. Gives\n"
+          "material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read. ValueError: a malformed\n"
+          "memory, a direction out of range.");
 }

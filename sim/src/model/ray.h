@@ -55,9 +55,7 @@ template <class Key> Hit trace(const Memory& memory, const int32_t origin[3], co
             if (other != axis && direction[other] != 0)
                 weight[axis] *= direction[other] < 0 ? -direction[other] : direction[other];
     }
-    const auto crossing = [&](int axis, int32_t plane) {
-        return (Key{16} * plane - start[axis]) * weight[axis];
-    };
+    const auto crossing = [&](int axis, int32_t plane) { return (Key{16} * plane - start[axis]) * weight[axis]; };
 
     // The entry, as one bound an axis: planes of axis a with T < passed[a] are behind the ray. Rays that start outside
     // enter with the last of the near sides; the others start with T = 0, planes through the origin behind them.
