@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import struct
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from solids import Part, Solid
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from solids import Part, Solid
 
 Palette = dict[str, tuple[int, int, int]]
 
@@ -27,7 +30,9 @@ def write_glb(path: Path, parts: list[Part], palette: Palette) -> None:
         accessors.append({"bufferView": len(views), **position})
         views.append({"buffer": 0, "byteOffset": len(buffer), "byteLength": 12 * len(points), "target": 34962})
         buffer += b"".join(struct.pack("<3f", *point) for point in points)
-        accessors.append({"bufferView": len(views), "componentType": 5125, "type": "SCALAR", "count": 3 * len(triangles)})
+        accessors.append(
+            {"bufferView": len(views), "componentType": 5125, "type": "SCALAR", "count": 3 * len(triangles)}
+        )
         views.append({"buffer": 0, "byteOffset": len(buffer), "byteLength": 12 * len(triangles), "target": 34963})
         buffer += b"".join(struct.pack("<3I", *triangle) for triangle in triangles)
         surface = {
@@ -82,7 +87,9 @@ def write_obj(path: Path, parts: list[Part], palette: Palette) -> None:
     library.write_text("\n".join(lines) + "\n")
 
 
-def write_usda(path: Path, boxes: list[tuple[str, str, tuple[float, ...], tuple[float, ...]]], palette: Palette) -> None:
+def write_usda(
+    path: Path, boxes: list[tuple[str, str, tuple[float, ...], tuple[float, ...]]], palette: Palette
+) -> None:
     """Write USD text, centimetres and z up: cubes (name, material, centre, size) that are physics box colliders."""
     lines = [
         "#usda 1.0",
@@ -138,7 +145,7 @@ def _flatten(solids: tuple[Solid, ...]) -> tuple[list[tuple[float, float, float]
     for solid in solids:
         for face in solid.faces:
             first, *rest = (corner + len(points) for corner in face)
-            triangles += [(first, a, b) for a, b in zip(rest, rest[1:], strict=False)]
+            triangles += [(first, a, b) for a, b in itertools.pairwise(rest)]
         points += solid.points
     return points, triangles
 

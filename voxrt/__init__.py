@@ -5,7 +5,7 @@ The front door. Each name is imported when it is first used, so that ``import vo
     import voxrt
 
     result = voxrt.build("courtyard.glb", "out", depth=7, preview="out/courtyard.png")
-    rom = voxrt.read_rom("out/courtyard.mem")
+    rom, warnings = voxrt.read_rom("out/courtyard.mem")
     frame = voxrt.render(rom, size=(640, 480), engine="model")
 
 The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`voxrt.octree`, :mod:`voxrt.export`,
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Octree, Rom, RomError
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError
+    from voxrt.sim import Camera, Frame, SimulatorError, check
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -49,6 +49,7 @@ __all__ = [
     "ViewpointError",
     "aim_camera",
     "build",
+    "check",
     "fit_grid",
     "load",
     "read_rom",
@@ -61,7 +62,7 @@ _HOMES = {
     "voxrt.octree": ("Octree", "Rom", "RomError"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError"),
+    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -9,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt import export, octree, sim, voxelize
-from voxrt.outputs import check_folder, staged
+from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.viewpoint import aim_camera
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Callable, Iterator
 
     from voxrt.octree import Rom
@@ -44,8 +44,6 @@ class BuildResult:
     ----------
     rom
         The octree memory with its materials and its place in the scene.
-    voxels
-        How many voxels are solid.
     objects
         How each object was voxelized, in authored order.
     warnings
@@ -59,12 +57,16 @@ class BuildResult:
     """
 
     rom: Rom
-    voxels: int
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
     preview: Picture | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def solid_voxels(self) -> int:
+        """How many voxels are not empty."""
+        return octree.census(self.rom.octree).solid_voxels
 
 
 def build(
@@ -138,9 +140,10 @@ def build(
         yield
         seconds[name] = time.perf_counter() - start
 
-    for folder in (output, None if preview is None else Path(preview).parent):
-        if folder is not None:
-            check_folder(Path(folder))
+    if output is not None:
+        check_folder(Path(output))
+    if preview is not None:
+        check_folder(Path(preview).parent)
     with stage("load"):
         scene = voxelize.load(asset, up=up, unit=unit)
     with stage("fit"):
@@ -150,27 +153,37 @@ def build(
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
-        rom = octree.Rom(scene.name, octree.build(voxelization.voxels), scene.materials, grid)
+        rom = octree.Rom(_name(asset), octree.build(voxelization.voxels), scene.materials, grid)
     warnings = scene.warnings + voxelization.warnings
-    voxels = sum(report.voxels for report in voxelization.objects)
     outputs: dict[str, Path] = {}
     if output is not None:
-        with stage("write"):
-            # The file keeps the asset's name byte for byte, even where that is no text.
-            mem, manifest = (Path(output) / f"{asset.stem}{suffix}" for suffix in (".mem", ".json"))
-            with staged((mem, manifest)) as (new_mem, new_manifest):
-                export.write_mem(new_mem, rom.octree, dialect=dialect)
-                export.write_manifest(new_manifest, rom, dialect=dialect, voxels=voxels, warnings=warnings)
-            outputs |= {"mem": mem, "manifest": manifest}
+        settings = {"fill": fill, "geometry": geometry, "pow2": pow2, "up": up, "unit": unit}
+        with stage("write"), writing(Path(output)), uninterrupted():
+            files = export.write_rom(
+                Path(output),
+                rom,
+                dialect=dialect,
+                objects=voxelization.objects,
+                warnings=warnings,
+                seconds=seconds,
+                source=export.Source(asset.name, settings),
+            )
+        outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
     if preview is not None:
         with stage("preview"):
-            camera = aim_camera(rom.octree, size)
+            camera = aim_camera(rom, size)
             frame = render(rom, camera, size=size, engine=engine, threads=threads)
             picture = Picture(frame, camera, engine)
             save_picture(frame, Path(preview))
             outputs["preview"] = Path(preview)
-    return BuildResult(rom, voxels, voxelization.objects, warnings, outputs, picture, seconds)
+    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
+
+
+def _name(asset: Path) -> str:
+    """Give the asset's name as text that can name files: what is no text, or a backslash, becomes ``_``."""
+    name = os.fsencode(asset.stem).decode("utf-8", "replace")
+    return name.translate({0xFFFD: "_", ord("\\"): "_"})
 
 
 def render(
@@ -202,7 +215,7 @@ def render(
     SimulatorError
         The engine is not in this installation, or cannot hold the memory or the camera.
     """
-    return sim.render(rom, camera or aim_camera(rom.octree, size), size, engine=engine, threads=threads)
+    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, threads=threads)
 
 
 def save_picture(frame: Frame, path: Path) -> None:
@@ -213,5 +226,9 @@ def save_picture(frame: Frame, path: Path) -> None:
     OutputError
         The file cannot be written.
     """
-    with staged((path,)) as (new,):
-        sim.write_png(new, frame.colour)
+    check_folder(path.parent)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        sim.write_png(path, frame.colour)

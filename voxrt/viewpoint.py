@@ -16,7 +16,7 @@ from voxrt.sim import Camera, frame_scene, solid_bounds
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.octree import Octree
+    from voxrt.octree import Rom
     from voxrt.sim.camera import Triple
 
     Vector = NDArray[np.float64]
@@ -41,7 +41,7 @@ class ViewpointError(ValueError):
 
 
 def aim_camera(
-    octree: Octree,
+    rom: Rom,
     size: tuple[int, int],
     *,
     position: Triple | None = None,
@@ -53,7 +53,7 @@ def aim_camera(
 
     Parameters
     ----------
-    octree
+    rom
         The scene.
     size
         Width and height of the picture, pixels.
@@ -69,13 +69,13 @@ def aim_camera(
     ViewpointError
         A register is zero where a direction is needed, or the registers lie in a plane and no position is given.
     """
-    lowest, highest = solid_bounds(octree) or ((0, 0, 0), (1 << octree.depth,) * 3)
     if position is None and (look, right, up) == (None, None, None):
-        return frame_scene(lowest, highest, size)
+        return frame_scene(rom, size)
+    lowest, highest = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, 1 << rom.octree.depth))
     if look is None or right is None or up is None:
         sight = _THREE_QUARTER
         if position is not None:
-            towards = (np.array(lowest) + highest) / 2 - np.array(position) / 16
+            towards = (lowest + highest) / 2 - np.array(position) / 16
             sight = towards if towards.any() else sight
         look, right, up = _complete(_sight(sight, look, right, up), size, look, right, up)
     if position is None:

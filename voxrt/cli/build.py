@@ -111,7 +111,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     stages = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in result.seconds.items() if seconds >= 0.005)
     return [
         ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
-        ("solid", f"{result.voxels:,} voxels"),
+        ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{words:,} words, {words * 4 / 1024:,.1f} KiB"),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Reporting, pixels, place, png, register, whole
-from voxrt.cli.messages import picture_cost, summarize
+from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
 Triple = tuple[int, int, int]
@@ -69,11 +69,12 @@ def render(
         How to tell what was done.
     """
     file = png(Path(f"{rom.stem}.png") if output is None else output)
-    memory = voxrt.read_rom(rom, depth=depth, dialect=dialect)
-    camera = voxrt.aim_camera(memory.octree, size, position=position, look=look, right=right, up=up)
+    memory, warnings = voxrt.read_rom(rom, depth=depth, dialect=dialect)
+    warn(warnings)
+    camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
     wrong_pixels = None
     if check:
-        checked = voxrt.sim.check(memory, camera, size)
+        checked = voxrt.check(memory, camera, size)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
         frame = voxrt.render(memory, camera, size=size, engine=engine)

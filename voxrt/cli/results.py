@@ -100,7 +100,7 @@ def build_report(result: BuildResult) -> BuildReport:
         depth=rom.octree.depth,
         words=len(rom.octree.words),
         blocks=rom.octree.blocks,
-        voxels=result.voxels,
+        voxels=result.solid_voxels,
         materials=[
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
