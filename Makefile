@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PIP := $(BIN)/pip --quiet --disable-pip-version-check
 # What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
@@ -37,12 +38,14 @@ clean:
 	rm -rf $(VENV) build demo
 
 $(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
-	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps .
-	$(BIN)/pip install --quiet --disable-pip-version-check .
+	rm -rf build/wheel
+	$(PIP) wheel --no-deps --wheel-dir build/wheel .
+	$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
+	$(PIP) install build/wheel/*.whl
 	@touch $@
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
-	$(BIN)/pip install --quiet --disable-pip-version-check --group dev
+	$(PIP) install --group dev
 	@touch $@
 
 $(VENV)/.ready:
@@ -53,5 +56,5 @@ $(VENV)/.ready:
 	@echo 'int main() { return [](auto x) requires true { return x; }(0); }' | $${CXX:-c++} -std=c++20 -x c++ -fsyntax-only - 2>/dev/null || { echo "voxrt needs a C++20 compiler (gcc 11, clang 14 or newer): apt install g++" >&2; exit 1; }
 	@echo "setting up $(VENV): a minute or two, once"
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	@$(PIP) install --upgrade 'pip>=25.1'
 	@touch $@
