@@ -106,10 +106,8 @@ def _parse(path: Path, data: bytes) -> tuple[NDArray[np.uint32], NDArray[np.int6
                 continue
             digits = token.replace(b"_", b"")
             if not _WORD.fullmatch(token) or not 1 <= len(digits) <= 8:
-                shown = token[:20].decode("ascii", "backslashreplace")
-                raise RomError(
-                    f"{path}: line {number}: {shown!r} is not a word of up to 8 hex digits; name is a .mem file"
-                )
+                shown = repr(token[:20])[1:]
+                raise RomError(f"{path}: line {number}: {shown} is not a word of up to 8 hex digits; name a .mem file")
             words.append(int(digits, 16))
             lines.append(number)
     return np.array(words, dtype=np.uint32), np.array(lines, dtype=np.int64)
@@ -117,8 +115,8 @@ def _parse(path: Path, data: bytes) -> tuple[NDArray[np.uint32], NDArray[np.int6
 
 def _check_address(path: Path, line: int, token: bytes, expected: int) -> None:
     if re.fullmatch(rb"@[0-9A-Fa-f]{1,8}", token) is None or int(token[1:], 16) != expected:
-        shown = token[:20].decode("ascii", "backslashreplace")
+        shown = repr(token[:20])[1:]
         raise RomError(
-            f"{path}: line {line}: address {shown!r} does not name the next word (@{expected:X}); "
+            f"{path}: line {line}: address {shown} does not name the next word (@{expected:X}); "
             "write the words one after another"
         )

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from assets import seed_memory
+from assets import asset
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.worlds import dense_cubes
@@ -183,7 +183,7 @@ def test_random_memories_are_an_octree_or_an_error(words, depth):
     ],
 )
 def test_the_published_memories(name, blocks, levels, bounds):
-    words = memory(*[int(line, 16) for line in seed_memory(f"{name}.mem").read_text().split()])
+    words = memory(*[int(line, 16) for line in asset(f"../seed-memories/{name}.mem").read_text().split()])
     assert octree.detect_dialect(words) == "seed-rtl"
     tree = octree.decode(words, "seed-rtl", 10)
     pointers = words < 0x80000000

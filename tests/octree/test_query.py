@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from oracles.worlds import dense_cubes
 from oracles.octree import unshared_words, walk
+from oracles.worlds import dense_cubes
 
 from voxrt import octree
 from voxrt.voxelize import DoesNotFitError
@@ -12,7 +12,7 @@ corners = st.tuples(*[st.integers(-3, 40)] * 3)
 
 
 def doubled(depth):
-    """A world of 8**depth voxels in as many blocks as levels: octant 7 solid, the seven others the same, half as large."""
+    """A world of 8**depth voxels in as many blocks as levels: octant 7 solid, the seven others alike."""
     words = np.full(1 + 8 * depth, 0xFFFFFF01, np.uint32)
     for level in range(depth):
         words[1 + 8 * level : 8 + 8 * level] = 1 + 8 * (level + 1) if level < depth - 1 else 0xFFFFFF00

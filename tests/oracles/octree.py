@@ -70,26 +70,28 @@ def morton(x, y, z, bits=16):
     return sum((x >> k & 1) << 3 * k | (y >> k & 1) << 3 * k + 1 | (z >> k & 1) << 3 * k + 2 for k in range(bits))
 
 
-def cut_up(dense, corner, level, choose, bricks, octants):
+def cut_up(dense, corner, level, choose):
+    """Yield the octants and bricks that make up an octant of `dense`, in Morton order: (level, code, voxels)."""
     side = 1 << level
     cube = dense[tuple(slice(c, c + side) for c in corner)]
     if not cube.any():
         return
     if level >= 3 and (cube == cube.flat[0]).all() and not choose():
-        octants.append((morton(*corner) >> 3 * level, level, cube.flat[0]))
+        yield level, morton(*corner) >> 3 * level, cube
     elif level <= 3:
-        bricks.append((morton(*corner) >> 9, cube))
+        yield 0, morton(*corner) >> 9, cube
     else:
         for i in range(8):
             child = tuple(c + (i >> axis & 1) * side // 2 for axis, c in enumerate(corner))
-            cut_up(dense, child, level - 1, choose, bricks, octants)
+            yield from cut_up(dense, child, level - 1, choose)
 
 
 def voxels_from_dense(dense, choose=lambda: False):
     """Voxels of a dense cube; `choose()` says, each time it matters, whether to take the less obvious form."""
     depth = len(dense).bit_length() - 1
-    bricks, octants = [], []
-    cut_up(np.asarray(dense), (0, 0, 0), depth, choose, bricks, octants)
+    parts = list(cut_up(np.asarray(dense), (0, 0, 0), depth, choose))
+    bricks = [(code, cube) for level, code, cube in parts if level == 0]
+    octants = [(code, level, cube.flat[0]) for level, code, cube in parts if level > 0]
     masks = np.zeros((len(bricks), 8), np.uint64)
     materials = np.zeros(len(bricks), np.uint8)
     rows = np.full(len(bricks), -1, np.int32)
