@@ -11,6 +11,25 @@ from PIL import Image
 
 REAL = [
     "gltf/bevy/CornellBox/CornellBox.glb",
+    "gltf/bevy/AlienCake/alien.glb",
+    "gltf/bevy/AlienCake/cakeBirthday.glb",
+    "gltf/bevy/animated/Fox.glb",
+    "gltf/trimesh/CesiumMilkTruck.glb",
+    "gltf/trimesh/no_indices_3storybuilding.glb",
+    "gltf/manifold/mengerSponge3.glb",
+    "obj/tinyobjloader/cornell_box.obj",
+    "obj/assimp/spider.obj",
+    "obj/kaolin/amsterdam.obj",
+    "obj/odedstein-meshes/spot/spot_control_mesh.obj",
+    "obj/trimesh/quadknot.obj",
+    "obj/trimesh/rabbit.obj",
+    "usd/OpenUSD/usd/usdPhysics/examples/usdPhysicsSpheresWithMaterial.usda",
+    "usd/PhysX/boxes_falling_on_groundplane.usda",
+    "usd/kaolin/tests/samples/io/pizza.usdz",
+    "usd/newton/examples/assets/bear.usd",
+    "usd/tinyusdz/texturedcube.usdc",
+    "usd/usd-wg-assets/full_assets/Teapot/Teapot.usd",
+    "usd/usd-wg-assets/full_assets/Vehicles/USD_Mini_Car_Kit/assets/vehicles/vehicleVariants.usda",
 ]
 
 
