@@ -4,6 +4,8 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+INSTRUCTION_SETS: tuple[str, ...]
+
 class RenderedPixels(TypedDict):
     colour: NDArray[np.uint8]
     material: NDArray[np.uint8]
@@ -24,6 +26,7 @@ def render(
     width: int,
     height: int,
     threads: int = 0,
+    instructions: str = "",
 ) -> RenderedPixels: ...
 def trace(
     words: NDArray[np.uint32],

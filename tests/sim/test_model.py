@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import ray
-from oracles.adversary import adversarial_rays
+from oracles.adversary import adversarial_cameras, adversarial_rays
 from oracles.cuts import memory_of
 from oracles.ray_batch import trace_batch
 from oracles.worlds import WORLDS
 
-from voxrt.sim import _model
+from voxrt.sim import Camera, _model, pixel_directions
 
 RAYS_A_WORLD = 13_000
 
@@ -90,14 +90,15 @@ CAMERAS = {
     "inside": ([250, 250, 250], [7, 7, 40], [2, 0, 0], [0, 2, 0]),
     "on a plane, along an axis": ([256, 256, 0], [0, 0, 30], [1, 0, 0], [0, 1, 0]),
     "no direction at all": ([256, 256, 256], [0, 0, 0], [1, 0, 0], [0, 1, 0]),
-    "all directions zero": ([40, 40, 40], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
+    "all directions zero, in a solid": ([0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
 }
 
 
 @pytest.mark.parametrize("camera", CAMERAS.values(), ids=CAMERAS)
 @pytest.mark.parametrize("size", [(24, 17), (1, 1), (2, 31)])
 def test_a_frame_is_the_oracles_pixel_by_pixel(camera, size):
-    voxels = WORLDS["sparse noise"]
+    voxels = WORLDS["sparse noise"].copy()
+    voxels[0, 0, 0] = 77
     palette = np.random.default_rng(7).integers(0, 256, (256, 3), dtype=np.uint8)
     registers = np.array(camera, np.int32)
     frame = _model.render(memory_of(voxels), 5, palette, registers, *size)
@@ -105,6 +106,39 @@ def test_a_frame_is_the_oracles_pixel_by_pixel(camera, size):
     np.testing.assert_array_equal(frame["material"], material)
     np.testing.assert_array_equal(frame["face"], face)
     np.testing.assert_array_equal(frame["colour"], colour)
+
+
+@pytest.mark.parametrize("instructions", _model.INSTRUCTION_SETS)
+@pytest.mark.parametrize("name", WORLDS)
+def test_frames_are_what_the_walk_meets_with_every_instruction_set(name, instructions):
+    voxels = WORLDS[name]
+    depth = len(voxels).bit_length() - 1
+    words = memory_of(voxels)
+    palette = np.random.default_rng(12).integers(0, 256, (256, 3), dtype=np.uint8)
+    for registers in adversarial_cameras(len(voxels), 12, seed=depth):
+        size = (45, 29)
+        frame = _model.render(words, depth, palette, registers, *size, 1, instructions)
+        camera = Camera(*(tuple(triple) for triple in registers.tolist()))
+        directions = pixel_directions(camera, size).reshape(-1, 3)
+        material, face, _ = trace_batch(voxels, np.broadcast_to(registers[0], directions.shape), directions)
+        np.testing.assert_array_equal(frame["material"].reshape(-1), material)
+        np.testing.assert_array_equal(frame["face"].reshape(-1), face)
+        np.testing.assert_array_equal(frame["colour"].reshape(-1, 3), shades(palette[material], directions, face))
+
+
+def shades(colours, directions, face):
+    """Round c d_a² / |d|² half up, in whole numbers; without a face, c."""
+    square = directions**2
+    across = np.take_along_axis(square, np.minimum(face, 2)[:, None].astype(np.int64), axis=1)
+    length = np.maximum(square.sum(axis=1, keepdims=True), 1)
+    lit = (2 * colours.astype(np.int64) * across + length) // (2 * length)
+    return np.where(face[:, None] == 3, colours, lit)
+
+
+def test_an_instruction_set_that_is_not_there_is_refused():
+    with pytest.raises(ValueError, match="no instruction set 'mmx'"):
+        _model.render(np.array([0xFFFFFF00], np.uint32), 1, np.zeros((256, 3), np.uint8), np.ones((4, 3), np.int32),
+                      4, 4, 1, "mmx")  # fmt: skip
 
 
 @settings(max_examples=300, deadline=None)

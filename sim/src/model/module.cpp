@@ -1,9 +1,11 @@
 // voxrt.sim._model: the exact model for Python.
 #include "frame.h"
+#include "frame_tile.h"
 #include "ray.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 
 #include <memory>
 #include <stdexcept>
@@ -48,10 +50,15 @@ bool signal_waits() {
 }
 
 nb::dict render_frame(const Words& words, int depth, const Palette& materials, const Registers& registers, int width,
-                      int height, int threads) {
+                      int height, int threads, const std::string& instructions) {
     if (width < 1 || height < 1 || width > kSizeLimit || height > kSizeLimit)
         throw std::invalid_argument("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
                                     " pixels is not 1x1 ... 16384x16384");
+    const auto& engines = tile_engines();
+    auto engine = engines.begin();
+    while (!instructions.empty() && instructions != engine->instructions)
+        if (++engine == engines.end())
+            throw std::invalid_argument("this processor has no instruction set '" + instructions + "'");
     Camera camera;
     for (int axis = 0; axis < 3; ++axis) {
         camera.position[axis] = registers(0, axis);
@@ -69,7 +76,7 @@ nb::dict render_frame(const Words& words, int depth, const Palette& materials, c
         const Memory memory = verified(words, depth, threads);
         words_read = render(memory, materials.data(), camera,
                             {width, height, colour.data.get(), material.data.get(), face.data.get()}, threads,
-                            [&] { return stopped = signal_waits(); });
+                            engine->render_tile, [&] { return stopped = signal_waits(); });
     }
     if (stopped)
         throw nb::python_error();
@@ -114,11 +121,16 @@ nb::dict trace_rays(const Words& words, int depth, const Triples& origins, const
 } // namespace
 
 NB_MODULE(_model, m) {
+    nb::list instruction_sets;
+    for (const TileEngine& engine : tile_engines())
+        instruction_sets.append(engine.instructions);
+    m.attr("INSTRUCTION_SETS") = nb::tuple(instruction_sets);
     m.def(
         "render", &render_frame, nb::arg("words"), nb::arg("depth"), nb::arg("materials"), nb::arg("camera"),
-        nb::arg("width"), nb::arg("height"), nb::arg("threads") = 0,
+        nb::arg("width"), nb::arg("height"), nb::arg("threads") = 0, nb::arg("instructions") = "",
         "Render a frame of a memory (uint32, report dialect): materials (256, 3) uint8 sRGB, entry 0 the background;\n"
-        "camera (4, 3) int32 position, look, right, up; threads 0 takes every core. Gives colour (H, W, 3), material\n"
+        "camera (4, 3) int32 position, look, right, up; threads 0 takes every core; instructions one of\n"
+        "INSTRUCTION_SETS, empty for the first, which is the fastest. Gives colour (H, W, 3), material\n"
         "(H, W), face (H, W), uint8, and words_read. ValueError: a malformed memory, a frame above 16384 x 16384,\n"
         "pixel directions not below 2**20.");
     m.def("trace", &trace_rays, nb::arg("words"), nb::arg("depth"), nb::arg("origins"), nb::arg("directions"),
