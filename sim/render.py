@@ -102,8 +102,8 @@ def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, 
 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
-    pixels = _model.render(
-        rom.octree.words, rom.octree.depth, _palette(rom), _registers(camera), size[0], size[1], threads
+    pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
+        _palette(rom), _registers(camera), size[0], size[1], threads
     )
     return Frame(
         colour=pixels["colour"],
