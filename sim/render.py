@@ -102,8 +102,8 @@ def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, 
 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
-    pixels = _model.render(
-        rom.octree.words, rom.octree.depth, _palette(rom), _registers(camera), size[0], size[1], threads
+    pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
+        _palette(rom), _registers(camera), size[0], size[1], threads
     )
     return Frame(
         colour=pixels["colour"],
@@ -119,20 +119,20 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, st
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "use the exact model (--engine model)"
+            "use the engine 'model'"
         ) from error
     if config not in _rtl.CONFIGS:
         raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
     if max(abs(value) for value in camera.position) >= RTL_POSITION_LIMIT:
         raise SimulatorError(
             f"the camera at {tuple(value / 16 for value in camera.position)} voxels is outside the ray tracer's "
-            f"range of ±{RTL_POSITION_LIMIT // 16}; move it closer or use the exact model (--engine model)"
+            f"range of ±{RTL_POSITION_LIMIT // 16}; move it closer or use the engine 'model'"
         )
     tracer = _rtl.Tracer(config)
     if len(rom.octree.words) > tracer.memory_words:
         raise SimulatorError(
             f"{rom.name} has {len(rom.octree.words)} words and does not fit the {tracer.memory_words} of "
-            f"configuration {config!r}; build it with a smaller depth or use the exact model (--engine model)"
+            f"configuration {config!r}; build it with a smaller depth or use the engine 'model'"
         )
     tracer.load(rom.octree.words)
     pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, _palette(rom))
@@ -146,12 +146,11 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, st
 
 def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
     # Directions are linear in the pixel: the largest stand in the corners.
-    columns, rows = ((-(pixels // 2), pixels - 1 - pixels // 2) for pixels in size)
     largest = max(
-        abs(look + right * column - up * row)
+        abs(look + right * column + up * row)
         for look, right, up in zip(camera.look, camera.right, camera.up, strict=True)
-        for column in columns
-        for row in rows
+        for column in (-(size[0] // 2), size[0] - 1 - size[0] // 2)
+        for row in (size[1] // 2, size[1] // 2 + 1 - size[1])
     )
     if largest >= DIRECTION_LIMIT:
         raise SimulatorError(
