@@ -74,9 +74,7 @@ def box_corners(box: BoxCollider) -> NDArray[np.float64]:
     return box.minimum + _CORNERS * (box.maximum - box.minimum)
 
 
-def box_in_voxels(
-    item: SceneObject, box: BoxCollider, grid: Grid
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def box_in_voxels(item: SceneObject, box: BoxCollider, grid: Grid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The lowest and the highest corner of an object's box, in voxels (float64, shape (3,))."""
     corners = box_corners(box) @ item.transform[:3, :3].T + item.transform[:3, 3]
     corners = (corners - np.array(grid.origin)) / grid.voxel_size

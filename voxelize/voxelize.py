@@ -227,9 +227,7 @@ def _add_collider(parts: _Parts, item: SceneObject, collider: Collider, material
         return "sphere", _ZERO, _ZERO
     if isinstance(collider, HullCollider):
         triangles = _native.convex_hull(np.ascontiguousarray(collider.positions), parts.to_grid(item.transform))
-        parts.add_mesh(
-            collider, collider.positions, triangles, np.empty(0, np.uint8), item.transform, material
-        )
+        parts.add_mesh(collider, collider.positions, triangles, np.empty(0, np.uint8), item.transform, material)
         return "hull", _ZERO, _ZERO
     none = np.empty(0, np.uint8)
     parts.add_mesh(collider, collider.positions, collider.triangles, none, item.transform, material)

@@ -56,7 +56,10 @@ def icosphere(level, centre=(0, 0, 0), radius=1.0, material=1):
 
 def scene_of(*items):
     objects = [item if isinstance(item, SceneObject) else SceneObject("o", item) for item in items]
-    named = tuple(SceneObject(f"{o.name}{i}", o.mesh, o.transform, o.colliders, o.collider_material) for i, o in enumerate(objects))
+    named = tuple(
+        SceneObject(f"{o.name}{i}", o.mesh, o.transform, o.colliders, o.collider_material)
+        for i, o in enumerate(objects)
+    )
     return Scene("test", named, MATERIALS)
 
 

@@ -75,9 +75,17 @@ Tally tally(const MeshView& mesh, const std::vector<Vertex>& vertices, size_t fr
     return sum;
 }
 
-void conclude(SurveyedMesh& mesh, const Tally& sum) {
+/// Draws the conclusions; an open part to be filled is looked at closely.
+void conclude(SurveyedMesh& mesh, const MeshView& view, const std::vector<Vertex>& vertices, const Tally& sum,
+              bool fill) {
     mesh.closed = sum.boundary == 0;
     mesh.inverted = mesh.closed && sum.volume6 < 0;
+    for (int i = 0; i < 3; ++i) {
+        mesh.box.low[i] = voxel_floor(sum.bounds.min[i]);
+        mesh.box.high[i] = voxel_below(sum.bounds.max[i]);
+    }
+    if (fill && !mesh.closed)
+        mesh.open = std::make_unique<OpenSurface>(open_surface(view, vertices));
 }
 
 void list_triangles(std::vector<TiledItem>& out, const MeshView& mesh, const std::vector<Vertex>& vertices,
@@ -96,6 +104,22 @@ void list_whole(std::vector<TiledItem>& out, const TileRange& range, uint32_t pa
     for (int y = range.y0; y <= range.y1; ++y)
         for (int x = range.x0; x <= range.x1; ++x)
             out.push_back({uint32_t(y * tiles_a_side + x), {part, kWhole}});
+}
+
+/// The caps of an open part, and a visit to every tile that it may enclose.
+void list_caps(std::vector<TiledItem>& out, const SurveyedMesh& mesh, size_t triangle_count, const TileRange& range,
+               uint32_t part, int side, int tiles_a_side) {
+    auto number = uint32_t(triangle_count);
+    for (const auto& [a, b, c] : mesh.open->caps) {
+        const TileRange tiles = tiles_of(triangle_bounds(a, b, c), side);
+        for (int y = tiles.y0; y <= tiles.y1; ++y)
+            for (int x = tiles.x0; x <= tiles.x1; ++x)
+                out.push_back({uint32_t(y * tiles_a_side + x), {part, number}});
+        ++number;
+    }
+    for (int y = range.y0; y <= range.y1; ++y)
+        for (int x = range.x0; x <= range.x1; ++x)
+            out.push_back({uint32_t(y * tiles_a_side + x), {part, number}});
 }
 
 bool stays_whole(const TileRange& range, size_t triangles) {
@@ -126,7 +150,7 @@ TileRange solid_tiles(const PartView& part, int side) {
 }
 
 /// Parts with many triangles are shared out among the threads, a chunk a job.
-void survey_large(SurveyedMesh& mesh, const PartView& part, uint32_t index, int side, int tiles_a_side,
+void survey_large(SurveyedMesh& mesh, const PartView& part, uint32_t index, int side, int tiles_a_side, bool fill,
                   std::vector<std::vector<TiledItem>>& lists, Workers& workers) {
     const size_t vertex_count = part.mesh->vertex_count(), triangle_count = part.mesh->triangle_count();
     mesh.vertices.resize(vertex_count);
@@ -149,7 +173,7 @@ void survey_large(SurveyedMesh& mesh, const PartView& part, uint32_t index, int 
         sum.volume6 += t.volume6;
         sum.bounds.add(t.bounds);
     }
-    conclude(mesh, sum);
+    conclude(mesh, *part.mesh, mesh.vertices, sum, fill);
     const TileRange range = tiles_of(sum.bounds, side);
     if (stays_whole(range, triangle_count)) {
         mesh.vertices = {};
@@ -158,9 +182,11 @@ void survey_large(SurveyedMesh& mesh, const PartView& part, uint32_t index, int 
     }
     for (auto& list : chunk_lists)
         lists.push_back(std::move(list));
+    if (mesh.open)
+        list_caps(lists.emplace_back(), mesh, triangle_count, range, index, side, tiles_a_side);
 }
 
-void survey_small(SurveyedMesh& mesh, const PartView& part, uint32_t index, int side, int tiles_a_side,
+void survey_small(SurveyedMesh& mesh, const PartView& part, uint32_t index, int side, int tiles_a_side, bool fill,
                   std::vector<TiledItem>& list) {
     const size_t triangle_count = part.mesh->triangle_count();
     if (triangle_count == 0)
@@ -169,19 +195,21 @@ void survey_small(SurveyedMesh& mesh, const PartView& part, uint32_t index, int 
     for (size_t v = 0; v < vertices.size(); ++v)
         vertices[v] = snap_vertex(part, v);
     const Tally sum = tally(*part.mesh, vertices, 0, triangle_count);
-    conclude(mesh, sum);
+    conclude(mesh, *part.mesh, vertices, sum, fill);
     const TileRange range = tiles_of(sum.bounds, side);
     if (stays_whole(range, triangle_count)) {
         list_whole(list, range, index, tiles_a_side);
     } else {
         list_triangles(list, *part.mesh, vertices, index, side, tiles_a_side, 0, triangle_count);
+        if (mesh.open)
+            list_caps(list, mesh, triangle_count, range, index, side, tiles_a_side);
         mesh.vertices = std::move(vertices);
     }
 }
 
 } // namespace
 
-Survey survey_parts(const std::vector<PartView>& parts, int side, Workers& workers) {
+Survey survey_parts(const std::vector<PartView>& parts, int side, bool fill, Workers& workers) {
     Survey survey;
     survey.tiles_a_side = (side + kTileSide - 1) / kTileSide;
     survey.meshes.resize(parts.size());
@@ -190,7 +218,7 @@ Survey survey_parts(const std::vector<PartView>& parts, int side, Workers& worke
     for (size_t begin = 0; begin < parts.size();) {
         const PartView& first = parts[begin];
         if (first.kind == PartKind::mesh && first.mesh->triangle_count() > kChunk) {
-            survey_large(survey.meshes[begin], first, uint32_t(begin), side, survey.tiles_a_side, lists, workers);
+            survey_large(survey.meshes[begin], first, uint32_t(begin), side, survey.tiles_a_side, fill, lists, workers);
             ++begin;
             continue;
         }
@@ -205,7 +233,7 @@ Survey survey_parts(const std::vector<PartView>& parts, int side, Workers& worke
             for (size_t p = begin + job * group; p < std::min(end, begin + (job + 1) * group); ++p) {
                 std::vector<TiledItem>& list = lists[offset + job];
                 if (parts[p].kind == PartKind::mesh)
-                    survey_small(survey.meshes[p], parts[p], uint32_t(p), side, survey.tiles_a_side, list);
+                    survey_small(survey.meshes[p], parts[p], uint32_t(p), side, survey.tiles_a_side, fill, list);
                 else
                     list_whole(list, solid_tiles(parts[p], side), uint32_t(p), survey.tiles_a_side);
             }

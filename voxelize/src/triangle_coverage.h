@@ -328,4 +328,27 @@ void cover_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Win
         coverage::cover<int128, Cross>(a, b, c, w, inverted, sink);
 }
 
+/// Reports the columns whose rays cross triangle abc, which covers nothing: it only closes a hole.
+///
+/// sink.cross(x, y, z, enters): z is the first voxel whose sample point, 1/8192 voxel beside its centre, lies above.
+template <class Sink>
+void cross_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Sink& sink) {
+    const coverage::Local<int128> t(a, b, c);
+    const int128 turn = t.normal_z() < 0 ? -1 : 1;
+    const int128 nx = turn * t.normal_x(), ny = turn * t.normal_y(), nz = turn * t.normal_z();
+    if (nz == 0)
+        return;
+    const int128 offset = 2 * (nx * t.x[0] + ny * t.y[0] + nz * t.z[0]) - (kUnit + 1) * nz;
+    for (int y = std::max(w.y0 - t.by, 0); y <= std::min(w.y1 - t.by, t.y1); ++y) {
+        int first, last;
+        coverage::crossed_columns<int128>(t.x, t.y, y, first, last);
+        for (int x = std::max(first, w.x0 - t.bx); x <= std::min(last, w.x1 - t.bx); ++x) {
+            const int128 above = offset - nx * (2 * kUnit * x + kUnit + 1) - ny * (2 * kUnit * y + kUnit + 1);
+            const int z = static_cast<int>(floor_div<int128>(above, 2 * kUnit * nz)) + 1 + t.bz;
+            if (z <= w.top)
+                sink.cross(x + t.bx, y + t.by, std::max(z, 0), turn < 0);
+        }
+    }
+}
+
 } // namespace voxrt

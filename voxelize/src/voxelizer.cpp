@@ -79,10 +79,13 @@ private:
             cover<true>(part, surveyed, *vertices, items, window, s.layer);
         else
             cover<false>(part, surveyed, *vertices, items, window, s.layer);
-        if (s.layer.empty())
+        if (s.layer.empty() && !surveyed.open)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = fill_ ? s.fill.claim_solid(s.tile, s.layer, interior) : s.fill.claim_shell(s.tile, s.layer);
+        const Claim claim = !fill_          ? s.fill.claim_shell(s.tile, s.layer)
+                            : surveyed.open ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes,
+                                                                      surveyed.box, window)
+                                            : s.fill.claim_solid(s.tile, s.layer, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.complex[index] |= !claim.simple;
     }
@@ -92,18 +95,31 @@ private:
                std::span<const Item> items, const Window& window, ObjectLayer& layer) const {
         const MeshView& mesh = *part.mesh;
         layer.set_material(part.material);
+        const OpenSurface* open = surveyed.open.get();
+        auto close = [&](size_t cap) {
+            const auto& [a, b, c] = open->caps[cap];
+            cross_triangle(a, b, c, window, layer);
+        };
         auto add = [&](size_t t) {
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
-            cover_triangle<Cross>(a, b, c, window, surveyed.inverted, layer);
+            if (open != nullptr && !open->sheet.empty() && open->sheet[t] != 0)
+                cover_triangle<false>(a, b, c, window, false, layer);
+            else
+                cover_triangle<Cross>(a, b, c, window, surveyed.inverted, layer);
         };
         if (items[0].triangle != kWhole) {
             for (const Item& item : items)
-                add(item.triangle);
+                if (item.triangle < mesh.triangle_count())
+                    add(item.triangle);
+                else if (item.triangle - mesh.triangle_count() < open->caps.size())
+                    close(item.triangle - mesh.triangle_count());
             return;
         }
+        for (size_t cap = 0; open != nullptr && cap < open->caps.size(); ++cap)
+            close(cap);
         const int64_t x0 = window.x0 * kUnit, x1 = (window.x1 + 1) * kUnit;
         const int64_t y0 = window.y0 * kUnit, y1 = (window.y1 + 1) * kUnit;
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -201,7 +217,7 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, Workers& workers)
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, Workers& workers) {
     const int side = 1 << depth;
-    const Survey survey = survey_parts(parts, side, workers);
+    const Survey survey = survey_parts(parts, side, fill, workers);
 
     std::vector<uint32_t> occupied;
     for (uint32_t t = 0; t + 1 < survey.starts.size(); ++t)
