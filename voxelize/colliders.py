@@ -70,12 +70,12 @@ BOX_TRIANGLES = np.array(
 
 
 def box_corners(box: BoxCollider) -> NDArray[np.float64]:
-    """The eight corners of a box, numbered {z, y, x} (float64, shape (8, 3), object frame)."""
+    """Give the eight corners of a box, numbered {z, y, x} (float64, shape (8, 3), object frame)."""
     return box.minimum + _CORNERS * (box.maximum - box.minimum)
 
 
 def box_in_voxels(item: SceneObject, box: BoxCollider, grid: Grid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The lowest and the highest corner of an object's box, in voxels (float64, shape (3,))."""
+    """Give the lowest and the highest corner of an object's box, in voxels (float64, shape (3,))."""
     corners = box_corners(box) @ item.transform[:3, :3].T + item.transform[:3, 3]
     corners = (corners - np.array(grid.origin)) / grid.voxel_size
     return corners.min(axis=0), corners.max(axis=0)

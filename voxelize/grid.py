@@ -19,6 +19,8 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.scene import BoxCollider
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from voxrt.voxelize.colliders import Geometry, Pow2
@@ -120,22 +122,7 @@ def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64],
         Nothing to voxelize, or coordinates that are no numbers.
     """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    instances: dict[int, tuple[object, NDArray[np.float64], list[NDArray[np.float64]]]] = {}
-    for item in scene.objects:
-        colliders = stand_ins(item, geometry)
-        clouds = (
-            [(item.mesh, item.mesh.positions, item.mesh.triangles)]
-            if colliders is None
-            else [(c, corner_points(c), None) for c in colliders]
-        )
-        for key, points, triangles in clouds:
-            if id(key) not in instances:
-                used = points if triangles is None else points[np.unique(triangles)]
-                instances[id(key)] = (key, used, [])  # an id is unique only while its object lives
-            instances[id(key)][2].append(item.transform)
-    for _, points, transforms in instances.values():
-        if len(points) == 0:
-            continue
+    for points, transforms in _instances(scene, geometry):
         step = max(1, 1_000_000 // len(points))
         for first in range(0, len(transforms), step):
             stack = np.stack(transforms[first : first + step])
@@ -152,6 +139,25 @@ def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64],
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         raise AssetError(scene.name, "a coordinate is infinite", fix="repair the mesh or its transform")
     return low, high
+
+
+def _instances(scene: Scene, geometry: Geometry) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]:
+    """Give the point clouds of a scene (float64, shape (V, 3), V > 0), each with the transforms that place it."""
+    clouds: dict[int, tuple[object, NDArray[np.float64], list[NDArray[np.float64]]]] = {}
+
+    def place(key: object, points: Callable[[], NDArray[np.float64]], transform: NDArray[np.float64]) -> None:
+        if id(key) not in clouds:
+            clouds[id(key)] = (key, points(), [])  # an id is unique only while its object lives
+        clouds[id(key)][2].append(transform)
+
+    for item in scene.objects:
+        colliders = stand_ins(item, geometry)
+        if colliders is None:
+            mesh = item.mesh
+            place(mesh, lambda mesh=mesh: mesh.positions[np.unique(mesh.triangles)], item.transform)  # type: ignore[misc]
+        for collider in colliders or ():
+            place(collider, lambda collider=collider: corner_points(collider), item.transform)  # type: ignore[misc]
+    return [(points, transforms) for _, points, transforms in clouds.values() if len(points) > 0]
 
 
 def _rounding_leaves(scene: Scene, grid: Grid, geometry: Geometry) -> bool:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MODES = ("surface", "exact", "winding")
 _ZERO = (0.0, 0.0, 0.0)
+_ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 
 
 def voxelize(
@@ -80,14 +81,14 @@ def voxelize(
     parts = _Parts(grid)
     reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
     try:
-        *arrays, voxels, modes = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
-    except _native.OutOfReach as error:
+        result = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
+    except _native.OutOfReachError as error:
         raise _unreachable(scene, int(error.args[0])) from None
     objects = tuple(
         ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
-        for item, (source, moved, grown), mode, count in zip(scene.objects, reports, modes, voxels, strict=True)
+        for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
     )
-    return Voxelization(Voxels(grid.depth, *arrays), objects, tuple(parts.warnings()))
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()))
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -145,28 +146,26 @@ class _Parts:
     def add_mesh(
         self,
         key: object,
-        positions: NDArray[np.float64],
-        triangles: NDArray[np.int32],
-        materials: NDArray[np.uint8],
+        mesh: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
-        material: int = 0,
+        material: int,
     ) -> None:
-        """Add a mesh part; parts whose `key` is one and the same object share their arrays."""
-        if len(triangles) == 0:
+        """Add a mesh part: positions, triangles, materials. Parts whose `key` is one and the same object share them."""
+        if len(mesh[1]) == 0:
             return
         if id(key) not in self._mesh_index:
             self._keys.append(key)  # an id is unique only while its object lives
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
                 (
-                    np.ascontiguousarray(positions, dtype=np.float64),
-                    np.ascontiguousarray(triangles, dtype=np.int32),
-                    np.ascontiguousarray(materials, dtype=np.uint8),
+                    np.ascontiguousarray(mesh[0], dtype=np.float64),
+                    np.ascontiguousarray(mesh[1], dtype=np.int32),
+                    np.ascontiguousarray(mesh[2], dtype=np.uint8),
                 )
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: bool, threads: int, objects: int) -> tuple[NDArray[np.generic], ...]:
+    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Arrays:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,
@@ -193,7 +192,7 @@ def _add_object(parts: _Parts, item: SceneObject, geometry: Geometry, pow2: Pow2
     if colliders is None:
         materials = np.unique(mesh.materials)
         only = int(materials[0]) if len(materials) == 1 else 0
-        parts.add_mesh(mesh, mesh.positions, mesh.triangles, mesh.materials, item.transform, only)
+        parts.add_mesh(mesh, (mesh.positions, mesh.triangles, mesh.materials), item.transform, only)
         return "mesh", _ZERO, _ZERO
     material = item.collider_material
     if not item.colliders and colliders:
@@ -227,10 +226,9 @@ def _add_collider(parts: _Parts, item: SceneObject, collider: Collider, material
         return "sphere", _ZERO, _ZERO
     if isinstance(collider, HullCollider):
         triangles = _native.convex_hull(np.ascontiguousarray(collider.positions), parts.to_grid(item.transform))
-        parts.add_mesh(collider, collider.positions, triangles, np.empty(0, np.uint8), item.transform, material)
+        parts.add_mesh(collider, (collider.positions, triangles, _ONE_MATERIAL), item.transform, material)
         return "hull", _ZERO, _ZERO
-    none = np.empty(0, np.uint8)
-    parts.add_mesh(collider, collider.positions, collider.triangles, none, item.transform, material)
+    parts.add_mesh(collider, (collider.positions, collider.triangles, _ONE_MATERIAL), item.transform, material)
     return "mesh", _ZERO, _ZERO
 
 
@@ -239,8 +237,7 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
     if not keeps_axes(item.transform):
         if wants_rounding:
             parts.warn("oriented-box", "boxes turned against the grid's axes were not rounded to powers of two")
-        none = np.empty(0, np.uint8)
-        parts.add_mesh(box, box_corners(box), BOX_TRIANGLES, none, item.transform, material)
+        parts.add_mesh(box, (box_corners(box), BOX_TRIANGLES, _ONE_MATERIAL), item.transform, material)
         return "box", _ZERO, _ZERO
     low, high = box_in_voxels(item, box, parts.grid)
     moved, grown = _ZERO, _ZERO

@@ -75,7 +75,7 @@ QUAD = np.array([[1.0, 1, 0], [5, 1, 0], [5, 5, 0], [1, 5, 0]])
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize(("plane", "up", "layer"), [(3, True, 2), (3, False, 3), (0, True, 0), (8, False, 7)])
 def test_sheet_on_a_plane_belongs_to_the_voxels_behind(fill, axis, plane, up, layer):
-    corners = np.roll(QUAD + [0, 0, plane], axis + 1, axis=1)
+    corners = np.roll(QUAD + np.array([0, 0, plane]), axis + 1, axis=1)
     triangles = np.array([[0, 1, 2], [0, 2, 3]] if up else [[0, 2, 1], [0, 3, 2]], np.int32)
     sheet = Mesh(corners, triangles, np.full(2, 1, np.uint8))
     filled = dense(voxelize(one_object(sheet), UNIT_GRID[3], fill=fill).voxels)
@@ -85,7 +85,7 @@ def test_sheet_on_a_plane_belongs_to_the_voxels_behind(fill, axis, plane, up, la
 
 @pytest.mark.parametrize("fill", ["solid", "surface"])
 def test_open_sheet_has_no_inside(fill):
-    sheet = Mesh(QUAD + [0, 0, 3.3], np.array([[0, 1, 2], [0, 2, 3]], np.int32), np.full(2, 1, np.uint8))
+    sheet = Mesh(QUAD + np.array([0, 0, 3.3]), np.array([[0, 1, 2], [0, 2, 3]], np.int32), np.full(2, 1, np.uint8))
     assert dense(voxelize(one_object(sheet), UNIT_GRID[3], fill=fill).voxels).sum() == 16
 
 

@@ -1,4 +1,4 @@
-// voxrt.voxelize._native: the voxelizer for Python. `_native.pyi` is its manual; every array is checked here.
+// voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
 #include "convex_hull.h"
 #include "voxelizer.h"
 
@@ -123,11 +123,64 @@ nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<doubl
     return give(out);
 }
 
+constexpr auto kVoxelizeManual = R"(Voxelize P parts; where they compete, the first keeps the voxel.
+
+Parameters
+----------
+depth
+    The grid's depth, 1 … 16.
+meshes
+    Positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their objects' frames; shared by parts.
+kinds
+    Shape (P,): 0 mesh, 1 axis-aligned box, 2 ball, 3 ellipsoid.
+mesh_of
+    Shape (P,): index into `meshes`, for kind 0.
+frames
+    Shape (P, 12), in 1/4096 voxel. Kinds 0 and 3: rows of the 3x4 affine map to grid space (of the mesh, of the
+    unit ball). Kind 1: minimum and maximum. Kind 2: centre and radius.
+materials
+    Shape (P,): 1 … 255, or 0 where each triangle has its own.
+objects_of
+    Shape (P,): ascending, below `objects`.
+fill
+    Claim what parts enclose, not their shells alone.
+threads
+    0 takes as many as the machine has. The result does not depend on it.
+
+Returns
+-------
+The arrays of :class:`voxrt.voxelize.Voxels` in the order of its attributes, then int64 voxels and uint8 modes
+(0 surface, 1 exact, 2 winding) by object.
+
+Raises
+------
+OutOfReachError
+    See there.
+ValueError
+    An array of the wrong shape or with an index out of range.)";
+
+constexpr auto kHullManual = R"(Triangulate the convex hull of points as they lie in grid space, in exact arithmetic.
+
+Parameters
+----------
+positions
+    Shape (V, 3), in the object's frame.
+frame
+    Shape (3, 4): rows of the affine map to grid space, in 1/4096 voxel.
+
+Returns
+-------
+int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside. Points in one plane give their
+polygon twice, facing both ways; points on one line give nothing.)";
+
 } // namespace
 
 NB_MODULE(_native, m) {
-    static PyObject* out_of_reach = PyErr_NewException("voxrt.voxelize._native.OutOfReach", PyExc_ValueError, nullptr);
-    m.attr("OutOfReach") = nb::handle(out_of_reach);
+    static PyObject* out_of_reach = PyErr_NewExceptionWithDoc(
+        "voxrt.voxelize._native.OutOfReachError",
+        "A part reaches beyond 2**18 voxels from the grid's corner, or is not a number; the argument is its object.",
+        PyExc_ValueError, nullptr);
+    m.attr("OutOfReachError") = nb::handle(out_of_reach);
     nb::register_exception_translator(
         [](const std::exception_ptr& failure, void*) {
             try {
@@ -139,6 +192,6 @@ NB_MODULE(_native, m) {
         nullptr);
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
-          nb::arg("threads"));
-    m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"));
+          nb::arg("threads"), kVoxelizeManual);
+    m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);
 }
