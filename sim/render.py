@@ -119,20 +119,20 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, st
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "use the engine 'model'"
+            "use the exact model (--engine model)"
         ) from error
     if config not in _rtl.CONFIGS:
         raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
     if max(abs(value) for value in camera.position) >= RTL_POSITION_LIMIT:
         raise SimulatorError(
             f"the camera at {tuple(value / 16 for value in camera.position)} voxels is outside the ray tracer's "
-            f"range of ±{RTL_POSITION_LIMIT // 16}; move it closer or use the engine 'model'"
+            f"range of ±{RTL_POSITION_LIMIT // 16}; move it closer or use the exact model (--engine model)"
         )
     tracer = _rtl.Tracer(config)
     if len(rom.octree.words) > tracer.memory_words:
         raise SimulatorError(
             f"{rom.name} has {len(rom.octree.words)} words and does not fit the {tracer.memory_words} of "
-            f"configuration {config!r}; build it with a smaller depth or use the engine 'model'"
+            f"configuration {config!r}; build it with a smaller depth or use the exact model (--engine model)"
         )
     tracer.load(rom.octree.words)
     pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, _palette(rom))
