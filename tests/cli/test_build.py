@@ -182,3 +182,12 @@ def test_a_target_that_is_a_folder(voxrt, folder):
     finished = voxrt("build", "house.obj", "--depth", "3")
     assert finished.code == 2
     assert "cannot be written" in finished.error
+
+
+def test_strict_makes_warnings_errors(voxrt, folder):
+    before = sorted(folder.iterdir())
+    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--strict")
+    assert finished.code == 3
+    assert finished.error.startswith("voxrt: error: dog.usda: ")
+    assert sorted(folder.iterdir()) == before
+    assert voxrt("build", "dog.usda", "--depth", "5", "--strict").code == 0
