@@ -4,7 +4,6 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.sim.bounds import solid_bounds
 from voxrt.sim.camera import Camera, camera_from_registers, frame_box, frame_scene, look_at, pixel_directions
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
@@ -26,6 +25,5 @@ __all__ = [
     "look_at",
     "pixel_directions",
     "render",
-    "solid_bounds",
     "write_png",
 ]
