@@ -100,7 +100,7 @@ def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
-        _palette(rom), _registers(camera), size[0], size[1], threads
+        palette_of(rom), _registers(camera), size[0], size[1], threads
     )
     return Frame(
         colour=pixels["colour"],
@@ -136,7 +136,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, st
                 f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
             )
     tracer.load(rom.octree.words)
-    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, _palette(rom))
+    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom))
     if pixels["errors"]:
         raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
     return Frame(
@@ -166,7 +166,8 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
     return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
 
 
-def _palette(rom: Rom) -> NDArray[np.uint8]:
+def palette_of(rom: Rom) -> NDArray[np.uint8]:
+    """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
     palette = np.zeros((256, 3), dtype=np.uint8)
     palette[: len(rom.materials)] = [material.colour for material in rom.materials]
     return palette
