@@ -5,9 +5,10 @@ import sysconfig
 from pathlib import Path
 
 import hypothesis
+
 import voxrt
 
-# One fixed sequence of examples, so that a failure seen once is seen again; no deadlines, so that a slow machine passes.
+# One fixed sequence of examples, so that a failure seen once is seen again; no deadlines: slow machines pass too.
 hypothesis.settings.register_profile("voxrt", derandomize=True, deadline=None, database=None)
 hypothesis.settings.load_profile("voxrt")
 
