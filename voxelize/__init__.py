@@ -6,6 +6,7 @@ __path__ = extend_path(__path__, __name__)
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.load import load
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -42,4 +43,5 @@ __all__ = [
     "SphereCollider",
     "Voxelization",
     "Voxels",
+    "load",
 ]
