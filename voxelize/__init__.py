@@ -17,9 +17,11 @@ from voxrt.voxelize.scene import (
     Material,
     Mesh,
     MeshCollider,
+    PointLight,
     Scene,
     SceneObject,
     SphereCollider,
+    Viewpoint,
 )
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
@@ -37,10 +39,12 @@ __all__ = [
     "Mesh",
     "MeshCollider",
     "ObjectReport",
+    "PointLight",
     "Scene",
     "SceneObject",
     "SceneWarning",
     "SphereCollider",
+    "Viewpoint",
     "Voxelization",
     "Voxels",
     "load",

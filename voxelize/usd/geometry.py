@@ -10,7 +10,7 @@ from pxr import Usd, UsdGeom
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.usd import shapes
+from voxrt.voxelize import shapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
