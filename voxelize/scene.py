@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.errors import SceneWarning
+    from voxrt.voxelize.paint import Coat
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +60,15 @@ class Mesh:
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
-        uint8, shape (T,): material ids, 1 … 255.
+        uint8, shape (T,): material ids, 1 … 255. Painted triangles have the material nearest to their mean colour.
+    coat
+        The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
+    coat: Coat | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,4 +1,4 @@
-"""The way from a glTF file to a scene: place the nodes, read each mesh once, number the materials in use."""
+"""The way from a glTF file to a scene: place the nodes, read each mesh once a pose, dress it, number the materials."""
 
 from __future__ import annotations
 
@@ -8,37 +8,61 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.gltf.animation import posed
+from voxrt.voxelize.gltf.appearance import Look, dress, find_variant
 from voxrt.voxelize.gltf.colliders import collider_around
+from voxrt.voxelize.gltf.deform import Pose
 from voxrt.voxelize.gltf.document import Document
 from voxrt.voxelize.gltf.extensions import check_required
 from voxrt.voxelize.gltf.extras import NodeExtras, node_extras
-from voxrt.voxelize.gltf.materials import NO_MATERIAL, MaterialKey, make_materials, material_named
+from voxrt.voxelize.gltf.instances import read_instances
+from voxrt.voxelize.gltf.materials import material_named
 from voxrt.voxelize.gltf.meshes import Surface, read_surface
-from voxrt.voxelize.gltf.nodes import PlacedNode, place_nodes
+from voxrt.voxelize.gltf.nodes import place_nodes
+from voxrt.voxelize.gltf.skins import joint_matrices
+from voxrt.voxelize.gltf.table import finish_meshes
+from voxrt.voxelize.gltf.textures import Textures
 from voxrt.voxelize.scene import Mesh, Scene, SceneObject
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.gltf.nodes import Hierarchy
+
 
 @dataclass(frozen=True, slots=True)
-class _Look:
-    """How a node shows a mesh. Nodes with equal looks share one mesh value."""
+class _Bend:
+    """What tells the poses of a mesh apart: its morph weights, and the node whose skin carries it."""
 
     mesh: int
-    override: int | None
-    mirrored: bool
-
-    def key(self, material: int) -> MaterialKey:
-        """Return what a face of the file's `material` takes in this look."""
-        return MaterialKey(material if self.override is None else self.override, self.mirrored)
+    weights: tuple[float, ...]
+    skinned_by: int | None
 
 
-def load_gltf(path: Path) -> Scene:
+@dataclass(frozen=True, eq=False, slots=True)
+class _Shown:
+    """A node that shows a mesh: how, and with which transforms, one an instance."""
+
+    node: int
+    bend: _Bend
+    look: Look
+    authored: NodeExtras
+    transforms: NDArray[np.float64]
+
+
+def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...] = ()) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    time
+        The second of the file's first animation at which it is shown; None for the pose in which the file stands.
+    variants
+        The name of the material variant to show; none for the materials that its primitives name first.
 
     Raises
     ------
@@ -50,84 +74,97 @@ def load_gltf(path: Path) -> Scene:
     """
     document = Document(path)
     check_required(document)
-    surfaces: dict[int, Surface] = {}
-    shown: list[tuple[PlacedNode, _Look, NodeExtras]] = []
-    for placed in place_nodes(document):
-        authored = node_extras(document, placed.index)
-        look = _look(document, placed.index, authored)
-        if look is None:
+    document.gltf = posed(document, time)
+    hierarchy = place_nodes(document)
+    number = find_variant(document, variants)
+    surfaces: dict[_Bend, Surface] = {}
+    shown: list[_Shown] = []
+    for node in hierarchy.shown:
+        seen = _look_at(document, hierarchy, node, number)
+        if seen is None:
             continue
-        if look.mesh not in surfaces:
-            surfaces[look.mesh] = read_surface(document, look.mesh)
-        if len(surfaces[look.mesh].triangles):
-            shown.append((placed, look, authored))
-    if not shown:
+        if seen.bend not in surfaces:
+            pose = _pose(document, hierarchy, seen.bend)
+            surfaces[seen.bend] = read_surface(document, seen.bend.mesh, pose)
+        if len(surfaces[seen.bend].triangles):
+            shown.append(seen)
+    textures = Textures(document)
+    worn = dict.fromkeys((seen.bend, seen.look) for seen in shown)
+    dressed = [(surfaces[bend], dress(document, textures, surfaces[bend], look)) for bend, look in worn]
+    made, materials = finish_meshes(document, dressed)
+    meshes = dict(zip(worn, made, strict=True))
+    objects = _objects(document, shown, meshes)
+    if not objects:
         raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
-    looks = dict.fromkeys(look for _, look, _ in shown)
-    materials, ids = make_materials(document, _keys(looks, surfaces))
-    meshes = {look: _mesh(document, look, surfaces[look.mesh], ids) for look in looks}
-    names = _names(document, [placed.index for placed, _, _ in shown])
-    objects = tuple(
-        SceneObject(
-            name,
-            meshes[look],
-            _within_range(document, placed, surfaces[look.mesh]),
-            (collider_around(surfaces[look.mesh], authored.voxrt_collider),) if authored.voxrt_collider else (),
-            int(meshes[look].materials[0]),
-        )
-        for name, (placed, look, authored) in zip(names, shown, strict=True)
-    )
     return Scene(path.stem, objects, materials, document.warnings)
 
 
-def _look(document: Document, index: int, authored: NodeExtras) -> _Look | None:
+def _look_at(document: Document, hierarchy: Hierarchy, index: int, variant: int | None) -> _Shown | None:
     """Return how node `index` shows its mesh, or None where it has none."""
     node = document.gltf.nodes[index]
+    authored = node_extras(document, index)
     if node.mesh is None:
         if authored.voxrt_collider is not None:
             place = f"nodes[{index}].extras.voxrt_collider"
             raise document.error(place, "the node has no mesh", "put the property on the node with the mesh")
         return None
-    document.item(document.gltf.meshes, node.mesh, f"nodes[{index}].mesh", "mesh")
+    mesh = document.item(document.gltf.meshes, node.mesh, f"nodes[{index}].mesh", "mesh")
     override = None
     if authored.voxrt_material is not None:
         place = f"nodes[{index}].extras.voxrt_material"
         override = material_named(document, authored.voxrt_material, place)
-    return _Look(node.mesh, override, bool(authored.voxrt_reflect))
+    weights = tuple(node.weights or mesh.weights)
+    bend = _Bend(node.mesh, weights if any(weights) else (), index if node.skin is not None else None)
+    look = Look(node.mesh, override, bool(authored.voxrt_reflect), variant)
+    # A skin carries its mesh to the scene frame by itself.
+    frame = np.eye(4) if bend.skinned_by is not None else hierarchy.transforms[index]
+    instances = read_instances(document, index)
+    with np.errstate(over="ignore", invalid="ignore"):
+        transforms = frame[None] if instances is None else frame @ instances
+    return _Shown(index, bend, look, authored, transforms)
 
 
-def _keys(looks: Iterable[_Look], surfaces: dict[int, Surface]) -> set[MaterialKey]:
-    return {look.key(int(material)) for look in looks for material in np.unique(surfaces[look.mesh].materials)}
+def _pose(document: Document, hierarchy: Hierarchy, bend: _Bend) -> Pose:
+    if bend.skinned_by is None:
+        return Pose(bend.weights)
+    skin = document.gltf.nodes[bend.skinned_by].skin
+    assert skin is not None
+    return Pose(bend.weights, joint_matrices(document, skin, hierarchy.transforms, f"nodes[{bend.skinned_by}].skin"))
 
 
-def _mesh(document: Document, look: _Look, surface: Surface, ids: dict[MaterialKey, int]) -> Mesh:
-    """Return `surface` with material ids for the file's materials."""
-    document.charge(len(surface.triangles), f"meshes[{look.mesh}]")
-    materials = np.empty(len(surface.triangles), np.uint8)
-    for material in np.unique(surface.materials).tolist():
-        faces = surface.materials == material
-        materials[faces] = ids[look.key(material)]
-        if material == NO_MATERIAL and look.override is None:
-            count = int(np.count_nonzero(faces))
-            document.warn("default-material", "faces without material took the default material", count)
-    return Mesh(surface.positions, surface.triangles, materials)
+def _objects(
+    document: Document, shown: list[_Shown], meshes: dict[tuple[_Bend, Look], Mesh]
+) -> tuple[SceneObject, ...]:
+    """Return the objects of the scene, one an instance; those whose mesh is all air are left out."""
+    objects = []
+    names = _names(document, shown)
+    for name, seen in zip(names, shown, strict=True):
+        mesh = meshes[seen.bend, seen.look]
+        if not len(mesh.triangles):
+            continue
+        _check_range(document, seen, mesh)
+        kind = seen.authored.voxrt_collider
+        colliders = (collider_around(mesh, kind),) if kind else ()
+        for at, transform in enumerate(seen.transforms):
+            own = name if len(seen.transforms) == 1 else f"{name} [{at}]"
+            objects.append(SceneObject(own, mesh, transform, colliders, int(mesh.materials[0])))
+    return tuple(objects)
 
 
-def _names(document: Document, indices: list[int]) -> list[str]:
+def _names(document: Document, shown: list[_Shown]) -> list[str]:
     """Name objects after their nodes, else their meshes; where a name repeats, say which node is meant."""
     nodes, meshes = document.gltf.nodes, document.gltf.meshes
-    plain = [nodes[index].name or meshes[nodes[index].mesh or 0].name or f"nodes[{index}]" for index in indices]
+    plain = [nodes[seen.node].name or meshes[seen.look.mesh].name or f"nodes[{seen.node}]" for seen in shown]
     repeats = Counter(plain)
     return [
-        name if repeats[name] == 1 else f"{name} (nodes[{index}])" for name, index in zip(plain, indices, strict=True)
+        name if repeats[name] == 1 else f"{name} (nodes[{seen.node}])" for name, seen in zip(plain, shown, strict=True)
     ]
 
 
-def _within_range(document: Document, placed: PlacedNode, surface: Surface) -> NDArray[np.float64]:
-    """Return the node's transform, having made sure that it leaves the surface in the range of numbers."""
+def _check_range(document: Document, seen: _Shown, mesh: Mesh) -> None:
+    """Refuse transforms that take the mesh out of the range of numbers."""
     with np.errstate(over="ignore", invalid="ignore"):
-        reach = np.abs(placed.transform[:3, :3]) @ np.abs(surface.positions).max(axis=0)
-        reach += np.abs(placed.transform[:3, 3])
+        reach = np.abs(seen.transforms[:, :3, :3]) @ np.abs(mesh.positions).max(axis=0)
+        reach += np.abs(seen.transforms[:, :3, 3])
     if not np.isfinite(reach).all():
-        raise document.error(f"nodes[{placed.index}]", "the transform leaves the range of numbers")
-    return placed.transform
+        raise document.error(f"nodes[{seen.node}]", "the transform leaves the range of numbers")
