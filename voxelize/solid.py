@@ -66,6 +66,11 @@ class Solid:
         """Return the solid moved by `matrix` (float64, shape (4, 4), affine, column vectors)."""
         return Solid(self._manifold.transform(np.ascontiguousarray(matrix[:3])), self._materials)
 
+    @classmethod
+    def around(cls, solids: Sequence[Solid], material: str | None = None) -> Solid:
+        """Return the convex hull around `solids`."""
+        return _original(manifold3d.Manifold.batch_hull([one._manifold for one in solids]), material)  # noqa: SLF001 -- its own class's
+
     @property
     def volume(self) -> float:
         """Cubic metres."""
@@ -202,7 +207,7 @@ def extrude(outline: ArrayLike, height: float, *, axis: Axis = "y", material: st
 
 def hull(solids: Sequence[Solid], *, material: str | None = None) -> Solid:
     """Return the convex hull around `solids`."""
-    return _original(manifold3d.Manifold.batch_hull([one._manifold for one in solids]), material)
+    return Solid.around(solids, material)
 
 
 def closed(positions: NDArray[np.float64], triangles: NDArray[np.int32], material: str | None = None) -> Solid:

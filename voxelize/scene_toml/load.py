@@ -135,18 +135,12 @@ class _Builder:
             raise self._checked.error((*where, "scale"), str(error), "correct the scale") from None
 
     def _unplaced(self, node: Node, where: KeyPath) -> Solid:
+        """Return a node's shape in its own frame."""
+        made = _primitive(node)
+        if made is not None:
+            return made
         if node.box is not None:
             return self._box(node.box, (*where, "box"))
-        if node.sphere is not None:
-            return solids.sphere(node.sphere.radius, centre=node.sphere.centre)
-        if node.cylinder is not None:
-            one = node.cylinder
-            return solids.cylinder(one.radius, one.height, axis=one.axis, centre=one.centre)
-        if node.cone is not None:
-            tip = node.cone
-            return solids.cone(tip.radius, tip.height, axis=tip.axis, centre=tip.centre)
-        if node.extrude is not None:
-            return solids.extrude(node.extrude.outline, node.extrude.height, axis=node.extrude.axis)
         if node.asset is not None:
             return self._closed_asset(node.asset, (*where, "asset"))
         return self._combined(node, where)
@@ -204,6 +198,18 @@ class _Builder:
                     raise
                 raise self._checked.error((*where, "file"), f"asset {error}") from None
         return self._assets[key]
+
+
+def _primitive(node: Node) -> Solid | None:
+    if (ball := node.sphere) is not None:
+        return solids.sphere(ball.radius, centre=ball.centre)
+    if (tube := node.cylinder) is not None:
+        return solids.cylinder(tube.radius, tube.height, axis=tube.axis, centre=tube.centre)
+    if (tip := node.cone) is not None:
+        return solids.cone(tip.radius, tip.height, axis=tip.axis, centre=tip.centre)
+    if (prism := node.extrude) is not None:
+        return solids.extrude(prism.outline, prism.height, axis=prism.axis)
+    return None
 
 
 def _shape(node: Node) -> str:
