@@ -93,7 +93,7 @@ def test_sizes_out_of_range_are_refused(rom, size):
 
 @pytest.mark.skipif(importlib.util.find_spec("voxrt.sim._rtl") is not None, reason="this build has the ray tracer")
 def test_a_missing_ray_tracer_says_what_to_do(rom):
-    with pytest.raises(SimulatorError, match=r"no verilated ray tracer .* engine 'model'"):
+    with pytest.raises(SimulatorError, match=r"no verilated ray tracer .*--engine model"):
         render(rom, Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)), (4, 4), engine="rtl")
 
 
