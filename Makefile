@@ -1,11 +1,60 @@
-# The two commands of the README; `make help` lists the rest.
+# The two commands of the README, and the ones that contributors use: `make help` lists them.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PIP := $(BIN)/pip --quiet --disable-pip-version-check
+# What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
+PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' 2>/dev/null)
+CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint clean
+.PHONY: help demo test lint bench clean
+.DELETE_ON_ERROR:
 
 help:
-	@echo "make demo   set up .venv, build the example scene, ray-trace its preview"
-	@echo "make test   set up .venv, run the tests on the installed wheel"
-	@echo "make lint   ruff, mypy, clang-format, verilator --lint-only"
+	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
+	@echo "make test    set up $(VENV), run the tests on the installed wheel"
+	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
+	@echo "make bench   run the benchmarks"
+	@echo "make clean   remove what the others made"
+
+demo: $(VENV)/.installed
+	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview
+
+# From a folder of its own and without the repository's root on the path, so that the wheel is what is tested.
+test: $(VENV)/.installed $(VENV)/.tools
+	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
+
+lint: $(VENV)/.installed $(VENV)/.tools
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
+	$(BIN)/python rtl/lint.py
+
+bench: $(VENV)/.installed
+	$(BIN)/python bench/demo.py
+
+clean:
+	rm -rf $(VENV) build demo
+
+$(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
+	rm -rf build/wheel
+	$(PIP) wheel --no-deps --wheel-dir build/wheel .
+	$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
+	$(PIP) install build/wheel/*.whl
+	@touch $@
+
+$(VENV)/.tools: $(VENV)/.ready pyproject.toml
+	$(PIP) install --group dev
+	@touch $@
+
+$(VENV)/.ready:
+	@command -v $(PYTHON) >/dev/null || { echo "voxrt needs Python 3.11 or newer: apt install python3 python3-venv python3-dev" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "voxrt needs Python 3.11 or newer, and $(PYTHON) is $$($(PYTHON) -V): install one and say make PYTHON=/path/to/it" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "voxrt needs Python's venv module: apt install python3-venv" >&2; exit 1; }
+	@$(PYTHON) -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(os.path.join(sysconfig.get_paths()["include"], "Python.h")))' || { echo "voxrt needs Python's headers: apt install python3-dev" >&2; exit 1; }
+	@echo 'int main() { return [](auto x) requires true { return x; }(0); }' | $${CXX:-c++} -std=c++20 -x c++ -fsyntax-only - 2>/dev/null || { echo "voxrt needs a C++20 compiler (gcc 11, clang 14 or newer): apt install g++" >&2; exit 1; }
+	@echo "setting up $(VENV): a minute or two, once"
+	@$(PYTHON) -m venv $(VENV)
+	@$(PIP) install --upgrade 'pip>=25.1'
+	@touch $@

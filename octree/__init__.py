@@ -4,8 +4,37 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
+from voxrt.octree.build import build, from_dense
+from voxrt.octree.census import Census, census
+from voxrt.octree.decode import decode
+from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
+from voxrt.octree.diff import Difference, diff
 from voxrt.octree.errors import RomError
-from voxrt.octree.octree import Octree
+from voxrt.octree.leaves import Leaves, leaves
+from voxrt.octree.octree import MAX_DEPTH, Octree
+from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 
-__all__ = ["Octree", "Rom", "RomError"]
+__all__ = [
+    "DIALECTS",
+    "MAX_DEPTH",
+    "Census",
+    "Dialect",
+    "Difference",
+    "Leaves",
+    "Octree",
+    "Rom",
+    "RomError",
+    "build",
+    "census",
+    "count_in_box",
+    "decode",
+    "detect_dialect",
+    "diff",
+    "encode",
+    "from_dense",
+    "leaves",
+    "material_at",
+    "solid_bounds",
+    "to_dense",
+]

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+MAX_DEPTH = 16
+"""The most levels below the root: 65 536 voxels a side."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Octree:
     """A valid octree memory.
@@ -29,6 +33,11 @@ class Octree:
 
     depth: int
     words: NDArray[np.uint32]
+
+    @property
+    def size(self) -> int:
+        """Voxels a side."""
+        return 1 << self.depth
 
     @property
     def blocks(self) -> int:

@@ -6,6 +6,7 @@ __path__ = extend_path(__path__, __name__)
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid, fit_grid
+from voxrt.voxelize.load import load
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -44,5 +45,6 @@ __all__ = [
     "Voxelization",
     "Voxels",
     "fit_grid",
+    "load",
     "voxelize",
 ]

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.errors import SceneWarning
+    from voxrt.voxelize.paint import Coat
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +39,9 @@ class Material:
     authored: bool = True
 
 
-EMPTY = Material("empty", (0, 0, 0))
-"""Entry 0 of every material table: empty space; its colour is the background's."""
+EMPTY = Material("empty", (24, 28, 36))
+"""Entry 0 of every material table: empty space; its colour is the background's, dark for faces to stand out from it,
+and not black for shaded edges to stand out too."""
 
 DEFAULT_COLOUR = (200, 200, 200)
 """The sRGB colour of the default material."""
@@ -59,12 +61,15 @@ class Mesh:
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
-        uint8, shape (T,): material ids, 1 … 255.
+        uint8, shape (T,): material ids, 1 … 255. Painted triangles have the material nearest to their mean colour.
+    coat
+        The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
+    coat: Coat | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

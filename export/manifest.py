@@ -1,0 +1,210 @@
+"""The manifest: what a ``.mem`` file cannot say about itself, as JSON beside it.
+
+Every field is required and none other is allowed; a reader refuses a schema version that it does not know.
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path  # noqa: TC003 - msgspec resolves the annotations of this module
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from voxrt.export.atomic import write_atomically
+from voxrt.octree import Dialect, RomError, census
+from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from voxrt.octree import Rom
+
+SCHEMA_VERSION = 1
+
+
+class MaterialEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A row of the material table: :class:`~voxrt.voxelize.Material`, its id, and the voxels that have it."""
+
+    id: int
+    name: str
+    colour: tuple[int, int, int]
+    mirror: bool
+    authored: bool
+    voxels: int
+
+
+class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where the voxels stand: `matrix` (rows, column vectors) takes voxel coordinates to the scene frame, metres."""
+
+    origin: tuple[float, float, float]
+    voxel_size: float
+    matrix: tuple[
+        tuple[float, float, float, float],
+        tuple[float, float, float, float],
+        tuple[float, float, float, float],
+        tuple[float, float, float, float],
+    ]
+
+
+class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What the memory was built from: the file's name and the settings that differ from run to run."""
+
+    file: str
+    settings: dict[str, str | int | float | bool | None]
+
+
+class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What stands in ``NAME.json`` beside ``NAME.mem``.
+
+    Attributes
+    ----------
+    schema
+        :data:`SCHEMA_VERSION`.
+    name
+        The memory's name.
+    words, blocks
+        Sizes of the memory.
+    depth
+        Levels: the world is 2**depth voxels a side.
+    dialect
+        How the ``.mem`` marks its leaves.
+    crc32
+        CRC-32 of the bytes of the ``.mem``, 8 hex digits: ties the two files together.
+    voxels
+        Solid voxels.
+    materials
+        The material table by id; entry 0 is empty space with the background's colour.
+    world
+        Where the voxels stand; null where that is not known.
+    objects
+        How each object was voxelized, in authored order.
+    warnings
+        What the input said that was not honoured as it stands.
+    seconds
+        Wall seconds a stage.
+    source
+        What it was built from; null where that is not known.
+    """
+
+    schema: int
+    name: str
+    words: int
+    blocks: int
+    depth: int
+    dialect: Dialect
+    crc32: str
+    voxels: int
+    materials: tuple[MaterialEntry, ...]
+    world: World | None
+    objects: tuple[ObjectReport, ...]
+    warnings: tuple[SceneWarning, ...]
+    seconds: dict[str, float]
+    source: Source | None
+
+    @property
+    def material_table(self) -> tuple[Material, ...]:
+        """The materials as the rest of the project passes them, indexed by id."""
+        return tuple(Material(entry.name, entry.colour, entry.mirror, entry.authored) for entry in self.materials)
+
+    @property
+    def grid(self) -> Grid | None:
+        """Where the voxels stand in the scene; None where that is not known."""
+        return None if self.world is None else Grid(self.depth, self.world.origin, self.world.voxel_size)
+
+
+def make_manifest(
+    rom: Rom,
+    mem: bytes,
+    dialect: Dialect,
+    *,
+    objects: tuple[ObjectReport, ...] = (),
+    warnings: tuple[SceneWarning, ...] = (),
+    seconds: Mapping[str, float] | None = None,
+    source: Source | None = None,
+) -> Manifest:
+    """Describe `rom` and the bytes `mem` of its ``.mem`` file."""
+    voxels = census(rom.octree).voxels
+    return Manifest(
+        schema=SCHEMA_VERSION,
+        name=rom.name,
+        words=len(rom.octree.words),
+        blocks=rom.octree.blocks,
+        depth=rom.octree.depth,
+        dialect=dialect,
+        crc32=f"{zlib.crc32(mem):08X}",
+        voxels=sum(count for material, count in voxels.items() if material != 0),
+        materials=tuple(
+            MaterialEntry(i, entry.name, entry.colour, entry.mirror, entry.authored, voxels.get(i, 0))
+            for i, entry in enumerate(rom.materials)
+        ),
+        world=None if rom.grid is None else _world(rom.grid),
+        objects=objects,
+        warnings=warnings,
+        seconds=dict(seconds or {}),
+        source=source,
+    )
+
+
+def manifest_bytes(manifest: Manifest) -> bytes:
+    """Format a manifest as the bytes of a ``.json`` file."""
+    return msgspec.json.format(msgspec.json.encode(manifest), indent=2) + b"\n"
+
+
+def write_manifest(path: Path, manifest: Manifest) -> None:
+    """Write `manifest` to `path`, atomically."""
+    write_atomically(path, manifest_bytes(manifest))
+
+
+def read_manifest(path: Path) -> Manifest:
+    """Read a manifest.
+
+    Raises
+    ------
+    RomError
+        Where the file cannot be read, is not JSON, breaks the schema, or contradicts itself: names the field.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise RomError(f"{path}: cannot be read: {error.strerror}; name a manifest") from None
+    try:
+        version = msgspec.json.decode(data, type=_Version).schema
+        if version != SCHEMA_VERSION:
+            raise RomError(f"{path}: schema {version} is not known to this version ({SCHEMA_VERSION}); upgrade voxrt")
+        manifest = msgspec.json.decode(data, type=Manifest)
+    except msgspec.MsgspecError as error:
+        raise RomError(f"{path}: {error}; it is no manifest of a memory, or damaged: build it again") from None
+    except RecursionError:
+        raise RomError(f"{path}: nested too deeply to be a manifest; build it again") from None
+    _check(path, manifest)
+    return manifest
+
+
+class _Version(msgspec.Struct):
+    schema: int
+
+
+def _world(grid: Grid) -> World:
+    x, y, z = grid.origin
+    size = grid.voxel_size
+    return World(grid.origin, size, ((size, 0, 0, x), (0, size, 0, y), (0, 0, size, z), (0, 0, 0, 1)))
+
+
+def _check(path: Path, manifest: Manifest) -> None:
+    def refuse(field: str, problem: str) -> None:
+        raise RomError(f"{path}: $.{field}: {problem}; build it again")
+
+    if not 1 <= manifest.depth <= 16:
+        refuse("depth", f"{manifest.depth} is outside 1 ... 16")
+    if manifest.words != 1 + 8 * manifest.blocks:
+        refuse("words", f"{manifest.words} are not a root and {manifest.blocks} blocks of 8")
+    if not 1 <= len(manifest.materials) <= 256:
+        refuse("materials", f"{len(manifest.materials)} entries are not 1 ... 256")
+    for i, entry in enumerate(manifest.materials):
+        if entry.id != i:
+            refuse(f"materials[{i}].id", f"{entry.id} stands in row {i}")
+        if not all(0 <= channel <= 255 for channel in entry.colour):
+            refuse(f"materials[{i}].colour", f"{entry.colour} is outside 0 ... 255")
+    if manifest.world is not None and not manifest.world.voxel_size > 0:
+        refuse("world.voxel_size", f"{manifest.world.voxel_size} is not above 0")

@@ -1,0 +1,122 @@
+"""``.mem`` files: memory words as text for ``$readmemh``.
+
+Written: one word a line, eight upper-case hex digits, a newline after every word, the last included. Read: all that
+``$readmemh`` takes (IEEE 1800-2017, 21.4) and an octree memory can mean: any white space between words, ``//`` and
+``/* */`` comments, underscores, ``@`` addresses where they name the next word; the last word with or without newline.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.export.atomic import write_atomically
+from voxrt.octree import RomError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+_DIGITS = np.frombuffer(b"0123456789ABCDEF", dtype=np.uint8)
+_COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_WORD = re.compile(rb"[0-9A-Fa-f_]+")
+_LINE_LENGTH = 9
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MemFile:
+    """What a ``.mem`` file holds.
+
+    Attributes
+    ----------
+    words
+        uint32, shape (N,), as they stand in the file, whatever they mean.
+    lines
+        int64, shape (N,): the line of each word, counted from 1.
+    crc32
+        CRC-32 (ISO 3309, as zlib computes it) of the file's bytes.
+    """
+
+    words: NDArray[np.uint32]
+    lines: NDArray[np.int64]
+    crc32: int
+
+
+def mem_bytes(words: NDArray[np.uint32]) -> bytes:
+    """Format words (uint32, shape (N,)) as the bytes of a ``.mem`` file."""
+    text = np.empty((len(words), _LINE_LENGTH), dtype=np.uint8)
+    for digit in range(8):
+        text[:, digit] = _DIGITS[(words >> np.uint32(28 - 4 * digit)) & np.uint32(15)]
+    text[:, 8] = ord("\n")
+    return text.tobytes()
+
+
+def write_mem(path: Path, words: NDArray[np.uint32]) -> None:
+    """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
+    write_atomically(path, mem_bytes(words))
+
+
+def read_mem(path: Path) -> MemFile:
+    """Read a ``.mem`` file; what the words mean is for :func:`voxrt.octree.decode` to say.
+
+    Raises
+    ------
+    RomError
+        Where the file cannot be read or holds something that is no word: names the line.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise RomError(f"{path}: cannot be read: {error.strerror}; name a .mem file") from None
+    crc32 = zlib.crc32(data)
+    words = _parse_plain(data)
+    if words is not None:
+        return MemFile(words, np.arange(1, len(words) + 1), crc32)
+    return MemFile(*_parse(path, data), crc32)
+
+
+def _parse_plain(data: bytes) -> NDArray[np.uint32] | None:
+    """Read the layout that :func:`mem_bytes` writes; None where the file has any other."""
+    if len(data) % _LINE_LENGTH:
+        return None
+    text = np.frombuffer(data, dtype=np.uint8).reshape(-1, _LINE_LENGTH)
+    values = np.full(256, 255, dtype=np.uint8)
+    values[_DIGITS] = np.arange(16)
+    if (text[:, 8] != ord("\n")).any() or (values[text[:, :8]] == 255).any():
+        return None
+    words = np.zeros(len(text), dtype=np.uint32)
+    for digit in range(8):
+        words = words << np.uint32(4) | values[text[:, digit]]
+    return words
+
+
+def _parse(path: Path, data: bytes) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
+    words: list[int] = []
+    lines: list[int] = []
+    text = _COMMENT.sub(lambda comment: b"\n" * comment[0].count(b"\n") or b" ", data)
+    for number, line in enumerate(text.split(b"\n"), start=1):
+        for token in line.split():
+            if token.startswith(b"@"):
+                _check_address(path, number, token, len(words))
+                continue
+            digits = token.replace(b"_", b"")
+            if not _WORD.fullmatch(token) or not 1 <= len(digits) <= 8:
+                shown = repr(token[:20])[1:]
+                raise RomError(f"{path}: line {number}: {shown} is not a word of up to 8 hex digits; name a .mem file")
+            words.append(int(digits, 16))
+            lines.append(number)
+    return np.array(words, dtype=np.uint32), np.array(lines, dtype=np.int64)
+
+
+def _check_address(path: Path, line: int, token: bytes, expected: int) -> None:
+    if re.fullmatch(rb"@[0-9A-Fa-f]{1,8}", token) is None or int(token[1:], 16) != expected:
+        shown = repr(token[:20])[1:]
+        raise RomError(
+            f"{path}: line {line}: address {shown} does not name the next word (@{expected:X}); "
+            "write the words one after another"
+        )

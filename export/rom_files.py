@@ -1,0 +1,171 @@
+"""A ROM as the pair NAME.mem and NAME.json, and back.
+
+The pair changes at one moment, the renaming of the new ``.mem``: before it, the new manifest waits as NAME.json.next;
+after it, that file takes the name NAME.json. A reader takes whichever of the two manifests has the CRC-32 of the
+``.mem``, so an interruption at any point leaves the old pair or the new one, and a ``.mem`` that was exchanged alone is
+noticed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from voxrt.export.atomic import sync_folder, write_atomically
+from voxrt.export.manifest import Source, make_manifest, manifest_bytes, read_manifest
+from voxrt.export.mem import mem_bytes, read_mem
+from voxrt.export.palette import default_materials
+from voxrt.octree import Octree, Rom, RomError, census, decode, detect_dialect, encode
+from voxrt.octree.dialects import as_dialect
+from voxrt.voxelize import SceneWarning
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from voxrt.export.manifest import Manifest
+    from voxrt.export.mem import MemFile
+    from voxrt.voxelize import Material, ObjectReport
+
+
+@dataclass(frozen=True, slots=True)
+class RomFiles:
+    """Where a ROM was written: its ``.mem`` and its manifest."""
+
+    mem: Path
+    manifest: Path
+
+
+def write_rom(
+    folder: Path,
+    rom: Rom,
+    *,
+    dialect: str = "report",
+    objects: tuple[ObjectReport, ...] = (),
+    warnings: tuple[SceneWarning, ...] = (),
+    seconds: Mapping[str, float] | None = None,
+    source: Source | None = None,
+) -> RomFiles:
+    """Write ``folder/NAME.mem`` and ``folder/NAME.json``; an interruption leaves the old pair or the new.
+
+    Parameters
+    ----------
+    folder
+        Made where it is not there.
+    rom
+        What to write; its name names the files.
+    dialect
+        How the ``.mem`` marks its leaves, one of :data:`voxrt.octree.DIALECTS`.
+    objects, warnings, seconds, source
+        What the manifest says of the making.
+
+    Raises
+    ------
+    DoesNotFitError
+        Where the dialect cannot name a material in use.
+    OSError
+        Where the folder cannot be written to.
+    """
+    if rom.name in {"", ".", ".."} or any(c in rom.name for c in "/\\\0"):
+        raise ValueError(f"{rom.name!r} cannot name a file")
+    mem = mem_bytes(encode(rom.octree.words, dialect))
+    manifest = make_manifest(
+        rom, mem, as_dialect(dialect), objects=objects, warnings=warnings, seconds=seconds, source=source
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    files = RomFiles(folder / f"{rom.name}.mem", folder / f"{rom.name}.json")
+    waiting = _waiting(files.manifest)
+    write_atomically(waiting, manifest_bytes(manifest))
+    write_atomically(files.mem, mem)
+    waiting.replace(files.manifest)
+    sync_folder(folder)
+    return files
+
+
+def read_rom(
+    path: Path | str, depth: int | None = None, dialect: str | None = None
+) -> tuple[Rom, tuple[SceneWarning, ...]]:
+    """Read a ``.mem`` with the manifest beside it, or without.
+
+    Parameters
+    ----------
+    path
+        ``NAME.mem``; the manifest is looked for as ``NAME.json``.
+    depth, dialect
+        What no manifest says. Without them the depth is the least that the memory has, the dialect is told by the
+        leaves, the materials get the default palette, and a warning says so.
+
+    Returns
+    -------
+    tuple[Rom, tuple[SceneWarning, ...]]
+        The ROM, and what was assumed of it.
+
+    Raises
+    ------
+    RomError
+        Where the memory or the manifest is malformed, they do not belong together, or `depth` or `dialect` contradict
+        the manifest.
+    """
+    mem_path = Path(path)
+    mem = read_mem(mem_path)
+    manifest = _manifest_of(mem_path, mem)
+    if manifest is None:
+        return _without_manifest(mem_path, mem, depth, dialect)
+    for name, said, wanted in (("depth", manifest.depth, depth), ("dialect", manifest.dialect, dialect)):
+        if wanted is not None and wanted != said:
+            raise RomError(
+                f"{mem_path}: the manifest says {name} {said}, and {wanted} was asked for; leave --{name} out"
+            )
+    octree = decode(mem.words, manifest.dialect, manifest.depth, source=str(mem_path), lines=mem.lines)
+    highest = _highest_material(octree)
+    if highest >= len(manifest.materials):
+        raise RomError(
+            f"{mem_path}: material {highest} is missing from the manifest, which ends at "
+            f"{len(manifest.materials) - 1}; build it again"
+        )
+    return Rom(manifest.name, octree, manifest.material_table, manifest.grid), ()
+
+
+def _manifest_of(mem_path: Path, mem: MemFile) -> Manifest | None:
+    """Find the manifest that belongs to the bytes of the ``.mem``; None where there is no manifest at all."""
+    path = mem_path.with_suffix(".json")
+    candidates = [candidate for candidate in (path, _waiting(path)) if candidate.is_file()]
+    for candidate in candidates:
+        manifest = read_manifest(candidate)
+        if manifest.crc32 == f"{mem.crc32:08X}" and manifest.words == len(mem.words):
+            return manifest
+    if path in candidates:
+        raise RomError(
+            f"{path}: describes another {mem_path.name} (CRC-32 {mem.crc32:08X} is not the one it names); "
+            "build both again, or move the manifest away"
+        )
+    return None
+
+
+def _waiting(manifest: Path) -> Path:
+    return manifest.with_name(f"{manifest.name}.next")
+
+
+def _without_manifest(
+    path: Path, mem: MemFile, depth: int | None, dialect: str | None
+) -> tuple[Rom, tuple[SceneWarning, ...]]:
+    warnings: list[SceneWarning] = []
+    if dialect is None:
+        dialect = detect_dialect(mem.words, source=str(path), lines=mem.lines)
+        warnings.append(
+            SceneWarning("assumed-dialect", f"{path.name} has no manifest; its leaves are those of {dialect}")
+        )
+    octree = decode(mem.words, dialect, depth, source=str(path), lines=mem.lines)
+    if depth is None:
+        message = f"{path.name} has no manifest; depth {octree.depth} is the least that its words have"
+        warnings.append(SceneWarning("assumed-depth", message))
+    warnings.append(SceneWarning("assumed-palette", f"{path.name} has no manifest; its materials have default colours"))
+    return Rom(path.stem, octree, _palette(octree)), tuple(warnings)
+
+
+def _palette(octree: Octree) -> tuple[Material, ...]:
+    return default_materials(_highest_material(octree))
+
+
+def _highest_material(octree: Octree) -> int:
+    return max(census(octree).voxels)

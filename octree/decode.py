@@ -1,0 +1,93 @@
+"""The validating reader: words of any dialect to an octree, or one line that says which word is wrong.
+
+Time and memory grow with the number of words and with nothing that the words say.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.octree import _native
+from voxrt.octree.dialects import leaf_materials
+from voxrt.octree.errors import RomError, place
+from voxrt.octree.octree import MAX_DEPTH, Octree
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+_PROBLEMS = {
+    "misaligned": "pointer {word:08X} does not stand at the start of a block (1 + 8k)",
+    "range": "pointer {word:08X} leads behind the last of {count} words",
+    "cycle": "pointer {word:08X} leads back to a block that it lies in",
+    "too-deep": "pointer {word:08X} lies below depth {depth}; the memory has {least} levels",
+}
+_FIXES = {
+    "misaligned": "the file is damaged, or was written for another layout",
+    "range": "the file is cut short or damaged",
+    "cycle": "the file is damaged",
+    "too-deep": "name a depth of {least} or more",
+}
+
+
+def decode(
+    words: NDArray[np.uint32],
+    dialect: str,
+    depth: int | None,
+    *,
+    source: str = "",
+    lines: Sequence[int] | NDArray[np.int64] | None = None,
+) -> Octree:
+    """Read memory words, checking every one.
+
+    A memory that is valid without being canonical (blocks repeated, in another order, or reached from nowhere) keeps
+    its words where they are; only leaves change, to the report dialect.
+
+    Parameters
+    ----------
+    words
+        uint32, shape (N,).
+    dialect
+        One of :data:`voxrt.octree.DIALECTS`; :func:`detect_dialect` tells it where nobody does.
+    depth
+        Levels of the world, 1 … 16; None takes the least that the memory has.
+    source, lines
+        The file that the words come from and the line of each, for errors.
+
+    Returns
+    -------
+    Octree
+        With words of its own, read-only.
+
+    Raises
+    ------
+    RomError
+        Where a pointer is out of range, misaligned, part of a cycle or below `depth`, or a word is no word of the
+        dialect: names the address of the word.
+    """
+    if words.ndim != 1 or words.dtype != np.uint32:
+        raise ValueError(f"words must be uint32 of shape (N,), not {words.dtype} of shape {words.shape}")
+    if depth is not None and not 1 <= depth <= MAX_DEPTH:
+        raise RomError(
+            f"{source or 'memory'}: depth {depth} is outside 1 ... {MAX_DEPTH}; name the depth it was built with"
+        )
+    if len(words) == 0:
+        raise RomError(f"{source or 'memory'}: there is no word in it; an octree memory has at least its root")
+    report = leaf_materials(words, dialect, source=source, lines=lines)
+    limit = MAX_DEPTH if depth is None else depth
+    fault, address, least = _native.validate(report, limit)
+    if fault == "length":
+        raise RomError(
+            f"{source or 'memory'}: {len(words)} words are not a root and blocks of 8 (1 + 8k); the file is cut short, "
+            "or holds more than an octree memory"
+        )
+    if fault:
+        facts = {"word": int(report[address]), "count": len(words), "depth": limit, "least": least}
+        raise RomError(
+            f"{place(address, source, lines)}: {_PROBLEMS[fault].format(**facts)}; {_FIXES[fault].format(**facts)}"
+        )
+    report.flags.writeable = False
+    return Octree(max(1, least) if depth is None else depth, report)

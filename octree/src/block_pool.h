@@ -1,0 +1,119 @@
+// Blocks stored once: a flat hash table from the eight words of a block to its number.
+//
+// A node is a word whose pointers are block numbers instead of addresses: `breadth_first_words` turns one into the
+// other. Bounded by the cache: one probe (a line of slots) and one compare (half a line) a block that is already there.
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "words.h"
+
+namespace voxrt::octree {
+
+using Node = Word;
+
+class BlockPool {
+public:
+    explicit BlockPool(std::size_t expected_blocks = 512) {
+        std::size_t slots = 1024;
+        while (slots < 2 * expected_blocks)
+            slots *= 2;
+        slots_.assign(slots, Slot{0, kFree});
+        blocks_.reserve(expected_blocks);
+    }
+
+    /// The node for eight children: their leaf when all are the same leaf, else the block's number.
+    Node intern(const Block& children) {
+        if (is_leaf(children[0]) && all_equal(children))
+            return children[0];
+        const Word hash = hash_of(children);
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t i = hash & mask;
+        for (; slots_[i].number != kFree; i = (i + 1) & mask)
+            if (slots_[i].hash == hash && same(blocks_[slots_[i].number], children))
+                return slots_[i].number;
+        if (blocks_.size() >= kBlockLimit)
+            throw std::length_error("the octree has more blocks than 31-bit addresses can reach");
+        const Word number = static_cast<Word>(blocks_.size());
+        slots_[i] = {hash, number};
+        blocks_.push_back(children);
+        if (2 * blocks_.size() > slots_.size())
+            grow();
+        return number;
+    }
+
+    /// Interns the blocks of `other`, which were met children first; element i is the node here of its block i.
+    std::vector<Node> absorb(const BlockPool& other) {
+        std::vector<Node> here;
+        here.reserve(other.size());
+        for (Block children : other.blocks_) {
+            for (Node& child : children)
+                child = is_leaf(child) ? child : here[child];
+            here.push_back(intern(children));
+        }
+        return here;
+    }
+
+    const Block& operator[](Node number) const { return blocks_[number]; }
+    std::size_t size() const { return blocks_.size(); }
+
+private:
+    struct Slot {
+        Word hash;
+        Word number;
+    };
+    static constexpr Word kFree = 0xFFFFFFFFu;
+    static constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
+
+    // Blocks are compared and hashed two words at a time.
+    static std::uint64_t pair(const Block& block, unsigned i) {
+        std::uint64_t words;
+        std::memcpy(&words, &block[2 * i], sizeof words);
+        return words;
+    }
+
+    static bool all_equal(const Block& children) {
+        const std::uint64_t first = pair(children, 0);
+        return ((first ^ pair(children, 1)) | (first ^ pair(children, 2)) | (first ^ pair(children, 3)) |
+                (children[0] ^ children[1])) == 0;
+    }
+
+    static bool same(const Block& a, const Block& b) {
+        return ((pair(a, 0) ^ pair(b, 0)) | (pair(a, 1) ^ pair(b, 1)) | (pair(a, 2) ^ pair(b, 2)) |
+                (pair(a, 3) ^ pair(b, 3))) == 0;
+    }
+
+    // Multiply-fold mixing (Wang Yi, wyhash, 2019), in two chains that run side by side.
+    static Word hash_of(const Block& children) {
+        const std::uint64_t hash = fold(fold(pair(children, 0) ^ 0x9E3779B97F4A7C15u, pair(children, 1)) ^
+                                            fold(pair(children, 2) ^ 0xA0761D6478BD642Fu, pair(children, 3)),
+                                        0);
+        return static_cast<Word>(hash ^ hash >> 32);
+    }
+
+    static std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
+        const __uint128_t product = static_cast<__uint128_t>(a) * (b ^ 0xD6E8FEB86659FD93u);
+        return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
+    }
+
+    void grow() {
+        std::vector<Slot> old(2 * slots_.size(), Slot{0, kFree});
+        old.swap(slots_);
+        const std::size_t mask = slots_.size() - 1;
+        for (const Slot& slot : old) {
+            if (slot.number == kFree)
+                continue;
+            std::size_t i = slot.hash & mask;
+            while (slots_[i].number != kFree)
+                i = (i + 1) & mask;
+            slots_[i] = slot;
+        }
+    }
+
+    std::vector<Slot> slots_;
+    std::vector<Block> blocks_;
+};
+
+} // namespace voxrt::octree

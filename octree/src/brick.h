@@ -1,0 +1,42 @@
+// A brick of 8x8x8 voxels to a node, by bit operations.
+#pragma once
+
+#include <memory>
+
+#include "node_memo.h"
+
+namespace voxrt::octree {
+
+/// Turns bricks into nodes of a pool. Remembers the 2x2x2 and 4x4x4 patterns that it met, which is where nearly all the
+/// work of a smooth surface repeats; bounded by one probe of a table that fits the cache for each 4x4x4 part.
+class BrickBuilder {
+public:
+    explicit BrickBuilder(BlockPool& pool) : pool_(pool) {}
+
+    /// A brick of one material: bit i of the 512 (Morton order) says whether voxel i is solid.
+    Node from_mask(const std::uint64_t mask[8], std::uint8_t material);
+
+    /// A brick of 512 materials in Morton order.
+    Node from_cells(const std::uint8_t cells[512]);
+
+    /// 4x4x4 voxels of one material.
+    Node from_mask64(std::uint64_t mask, std::uint8_t material);
+
+    /// 2x2x2 voxels of one material.
+    Node from_mask8(std::uint8_t mask, std::uint8_t material);
+
+    /// 4x4x4 voxels in Morton order.
+    Node from_cells64(const std::uint8_t cells[64]);
+
+    /// 2x2x2 voxels in Morton order.
+    Node from_cells8(const std::uint8_t cells[8]);
+
+private:
+    using NodesByMask = std::array<Node, 256>;
+
+    BlockPool& pool_;
+    NodeMemo memo_;
+    std::array<std::unique_ptr<NodesByMask>, 256> nodes_by_mask_; // of 2x2x2 voxels, a table a material
+};
+
+} // namespace voxrt::octree

@@ -1,0 +1,219 @@
+#include "query.h"
+
+#include <algorithm>
+#include <cstring>
+#include <unordered_map>
+
+#include "interrupt.h"
+
+namespace voxrt::octree {
+namespace {
+
+// Octant `octant` of the octant at `corner`, whose children have the side `half`.
+std::array<std::int64_t, 3> child_corner(const std::array<std::int64_t, 3>& corner, unsigned octant,
+                                         std::int64_t half) {
+    return {corner[0] + (octant & 1) * half, corner[1] + (octant >> 1 & 1) * half, corner[2] + (octant >> 2) * half};
+}
+
+// Voxels by material in a box, each block once for each way in which the box cuts it.
+class BoxCounter {
+public:
+    BoxCounter(const Memory& memory, const Box& box) : memory_(memory), box_(box) {}
+
+    using Counts = std::array<std::uint64_t, 256>;
+
+    void add(Word word, unsigned level, const std::array<std::int64_t, 3>& corner, Counts& counts) {
+        const std::int64_t side = std::int64_t{1} << level;
+        std::uint64_t volume = 1;
+        unsigned cut = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const std::int64_t low = std::max(corner[axis], box_.low[axis]);
+            const std::int64_t high = std::min(corner[axis] + side, box_.high[axis]);
+            if (low >= high)
+                return;
+            volume *= static_cast<std::uint64_t>(high - low);
+            cut |= (low > corner[axis] ? 1u : 0u) << (2 * axis) | (high < corner[axis] + side ? 2u : 0u) << (2 * axis);
+        }
+        if (is_leaf(word)) {
+            counts[material(word)] += volume;
+            return;
+        }
+        interrupt_.poll();
+        // The box cuts octants of one level at the same place on each axis, so these three name the answer.
+        const std::uint64_t key = std::uint64_t{word} << 32 | level << 6 | cut;
+        auto [entry, missing] = memo_.try_emplace(key, results_.size());
+        if (missing) {
+            const std::size_t result = results_.size();
+            results_.emplace_back();
+            Counts below{};
+            for (unsigned octant = 0; octant < 8; ++octant)
+                add(memory_.child(word, octant, level), level - 1, child_corner(corner, octant, side / 2), below);
+            for (unsigned id = 0; id < 256; ++id)
+                if (below[id] != 0)
+                    results_[result].emplace_back(static_cast<std::uint8_t>(id), below[id]);
+            entry = memo_.find(key);
+        }
+        for (const auto& [id, voxels] : results_[entry->second])
+            counts[id] += voxels;
+    }
+
+private:
+    Memory memory_;
+    Box box_;
+    std::unordered_map<std::uint64_t, std::size_t> memo_;
+    std::vector<std::vector<std::pair<std::uint8_t, std::uint64_t>>> results_;
+    Interrupt interrupt_;
+};
+
+// Bounds of the solid voxels of a block relative to its corner, each block once a level.
+class BoundsFinder {
+public:
+    explicit BoundsFinder(const Memory& memory) : memory_(memory) {}
+
+    // Empty where high <= low.
+    Box of(Word word, unsigned level) {
+        const std::int64_t side = std::int64_t{1} << level;
+        if (is_leaf(word))
+            return material(word) != 0 ? Box{{0, 0, 0}, {side, side, side}} : Box{};
+        const std::uint64_t key = std::uint64_t{word} << 8 | level;
+        if (const auto known = memo_.find(key); known != memo_.end())
+            return known->second;
+        interrupt_.poll();
+        Box bounds{};
+        bool any = false;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            const Box child = of(memory_.child(word, octant, level), level - 1);
+            if (child.high[0] == 0)
+                continue;
+            const std::array<std::int64_t, 3> corner = child_corner({0, 0, 0}, octant, side / 2);
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                const std::int64_t low = corner[axis] + child.low[axis];
+                const std::int64_t high = corner[axis] + child.high[axis];
+                bounds.low[axis] = any ? std::min(bounds.low[axis], low) : low;
+                bounds.high[axis] = any ? std::max(bounds.high[axis], high) : high;
+            }
+            any = true;
+        }
+        memo_.emplace(key, bounds);
+        return bounds;
+    }
+
+private:
+    Memory memory_;
+    std::unordered_map<std::uint64_t, Box> memo_;
+    Interrupt interrupt_;
+};
+
+class RegionFiller {
+public:
+    RegionFiller(const Memory& memory, const Box& box, std::uint8_t* materials)
+        : memory_(memory), box_(box), materials_(materials), size_y_(box.high[1] - box.low[1]),
+          size_z_(box.high[2] - box.low[2]) {}
+
+    // Empty octants are skipped: the caller cleared the region.
+    void fill(Word word, unsigned level, const std::array<std::int64_t, 3>& corner) {
+        if (word == kEmpty)
+            return;
+        const std::int64_t side = std::int64_t{1} << level;
+        std::array<std::int64_t, 3> low;
+        std::array<std::int64_t, 3> high;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            low[axis] = std::max(corner[axis], box_.low[axis]) - box_.low[axis];
+            high[axis] = std::min(corner[axis] + side, box_.high[axis]) - box_.low[axis];
+            if (low[axis] >= high[axis])
+                return;
+        }
+        if (!is_leaf(word)) {
+            interrupt_.poll();
+            for (unsigned octant = 0; octant < 8; ++octant)
+                fill(memory_.child(word, octant, level), level - 1, child_corner(corner, octant, side / 2));
+            return;
+        }
+        for (std::int64_t x = low[0]; x < high[0]; ++x)
+            for (std::int64_t y = low[1]; y < high[1]; ++y)
+                std::memset(materials_ + (x * size_y_ + y) * size_z_ + low[2], material(word),
+                            static_cast<std::size_t>(high[2] - low[2]));
+    }
+
+private:
+    Memory memory_;
+    Box box_;
+    std::uint8_t* materials_;
+    std::int64_t size_y_;
+    std::int64_t size_z_;
+    Interrupt interrupt_;
+};
+
+} // namespace
+
+void materials_at(const Memory& memory, const std::int64_t* points, std::size_t count, std::uint8_t* materials) {
+    const std::uint64_t side = std::uint64_t{1} << memory.depth;
+    const Word root = memory.root();
+    Interrupt interrupt;
+    for (std::size_t i = 0; i < count; ++i, points += 3) {
+        interrupt.poll();
+        const std::uint64_t x = static_cast<std::uint64_t>(points[0]);
+        const std::uint64_t y = static_cast<std::uint64_t>(points[1]);
+        const std::uint64_t z = static_cast<std::uint64_t>(points[2]);
+        if (x >= side || y >= side || z >= side) {
+            materials[i] = 0;
+            continue;
+        }
+        Word word = root;
+        for (unsigned level = memory.depth; !is_leaf(word); --level) {
+            const unsigned bit = level - 1; // of the coordinates; `child` refuses a pointer at level 0
+            const unsigned octant =
+                level == 0 ? 0 : static_cast<unsigned>((x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2);
+            word = memory.child(word, octant, level);
+        }
+        materials[i] = material(word);
+    }
+}
+
+std::vector<std::uint64_t> leaf_counts(const Memory& memory) {
+    std::vector<std::uint64_t> counts(256 * (std::size_t{memory.depth} + 1), 0);
+    std::unordered_map<Word, std::uint64_t> blocks; // of one level: how many octants each block stands for
+    std::unordered_map<Word, std::uint64_t> below;
+    Interrupt interrupt;
+    const auto add = [&](Word word, unsigned level, std::uint64_t octants) {
+        if (is_leaf(word))
+            counts[256 * std::size_t{level} + material(word)] += octants;
+        else
+            below[word] += octants;
+    };
+    add(memory.root(), memory.depth, 1);
+    for (unsigned level = memory.depth; !below.empty(); --level) {
+        blocks.swap(below);
+        below.clear();
+        for (const auto& [word, octants] : blocks) {
+            interrupt.poll();
+            for (unsigned octant = 0; octant < 8; ++octant)
+                add(memory.child(word, octant, level), level - 1, octants);
+        }
+    }
+    return counts;
+}
+
+std::array<std::uint64_t, 256> count_in_box(const Memory& memory, const Box& box) {
+    std::array<std::uint64_t, 256> counts{};
+    BoxCounter(memory, box).add(memory.root(), memory.depth, {0, 0, 0}, counts);
+    return counts;
+}
+
+std::optional<Box> solid_bounds(const Memory& memory) {
+    const Box bounds = BoundsFinder(memory).of(memory.root(), memory.depth);
+    if (bounds.high[0] == 0)
+        return std::nullopt;
+    return bounds;
+}
+
+void fill_region(const Memory& memory, const Box& box, std::uint8_t* materials) {
+    std::size_t volume = 1;
+    for (unsigned axis = 0; axis < 3; ++axis)
+        volume *= static_cast<std::size_t>(std::max<std::int64_t>(0, box.high[axis] - box.low[axis]));
+    std::memset(materials, 0, volume);
+    if (volume != 0)
+        RegionFiller(memory, box, materials).fill(memory.root(), memory.depth, {0, 0, 0});
+}
+
+} // namespace voxrt::octree
