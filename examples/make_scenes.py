@@ -1,8 +1,8 @@
 """Make the example scenes: ``python examples/make_scenes.py [FOLDER]`` writes them to FOLDER, or beside itself.
 
 courtyard.glb
-    The demo: a house with a garden, 16 m a side, in metres and y up; edges lie on eighths of a metre, which are voxels at
-    depth 7.
+    The demo: a house with a garden, 16 m a side, in metres and y up; edges lie on eighths of a metre, which are voxels
+    at depth 7.
 house.obj
     A small house, several materials a file.
 dog.usda

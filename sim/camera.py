@@ -24,7 +24,7 @@ DIRECTION_LIMIT = 1 << 20
 
 _REGISTER_LIMIT = 1 << 15
 _FIELD_OF_VIEW = 35.0
-_THREE_QUARTER = (0.62, 0.55, 1.0)  # from the scene to the eye: front right, from above
+_THREE_QUARTER = (0.62, 0.68, 1.0)  # from the scene to the eye: front right, from above
 _MARGIN = 0.04  # of the frame's side, left free on each side by frame_box
 
 

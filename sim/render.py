@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, pixel_directions
+from voxrt.sim.camera import DIRECTION_LIMIT
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 
@@ -146,8 +146,12 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, st
 
 def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
     # Directions are linear in the pixel: the largest stand in the corners.
-    directions = pixel_directions(camera, size)[:: max(1, size[1] - 1), :: max(1, size[0] - 1)]
-    largest = int(np.max(np.abs(directions)))
+    largest = max(
+        abs(look + right * column + up * row)
+        for look, right, up in zip(camera.look, camera.right, camera.up, strict=True)
+        for column in (-(size[0] // 2), size[0] - 1 - size[0] // 2)
+        for row in (size[1] // 2, size[1] // 2 + 1 - size[1])
+    )
     if largest >= DIRECTION_LIMIT:
         raise SimulatorError(
             f"the camera's directions reach {largest} at the frame's corners, which is not below 2**20; "

@@ -153,7 +153,7 @@ def build(
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
-        rom = octree.Rom(_name(asset), octree.build(voxelization.voxels), scene.materials, grid)
+        rom = octree.Rom(_text(asset.stem), octree.build(voxelization.voxels), scene.materials, grid)
     warnings = scene.warnings + voxelization.warnings
     outputs: dict[str, Path] = {}
     if output is not None:
@@ -166,7 +166,7 @@ def build(
                 objects=voxelization.objects,
                 warnings=warnings,
                 seconds=seconds,
-                source=export.Source(asset.name, settings),
+                source=export.Source(_text(asset.name), settings),
             )
         outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
@@ -180,10 +180,10 @@ def build(
     return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
 
 
-def _name(asset: Path) -> str:
-    """Give the asset's name as text that can name files: what is no text, or a backslash, becomes ``_``."""
-    name = os.fsencode(asset.stem).decode("utf-8", "replace")
-    return name.translate({0xFFFD: "_", ord("\\"): "_"})
+def _text(name: str) -> str:
+    """Give a file's name as text that can name other files: what is no text, or a backslash, becomes ``_``."""
+    text = os.fsencode(name).decode("utf-8", "replace")
+    return text.translate({0xFFFD: "_", ord("\\"): "_"})
 
 
 def render(

@@ -109,12 +109,13 @@ def _complete(
     above = np.cross(across, sight)
     pixel = _SPREAD / (max(size) / 2)  # the sine of one pixel, nearly
     scale = min(_REGISTER / np.abs(sight).max(), _DIRECTION / (1 + 2 * _SPREAD))
-    if right is not None or up is not None:
-        step = float(np.linalg.norm(up if right is None else right))
-        scale = min(scale, step / pixel)
-    else:
+    given = up if right is None else right
+    if given is None:
         step = pixel * scale
-        look = None  # given alone it is a direction
+        look = None  # alone it is a direction
+    else:
+        step = float(np.linalg.norm(given))
+        scale = min(scale, step / pixel)
     return (
         look or _register(sight * scale),
         right or _register(across * step),

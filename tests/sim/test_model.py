@@ -4,24 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles import ray, worlds
+from oracles import ray
 from oracles.adversary import adversarial_rays
 from oracles.cuts import memory_of
 from oracles.ray_batch import trace_batch
+from oracles.worlds import WORLDS
 
 from voxrt.sim import _model
 
-WORLDS = {
-    "sparse noise": worlds.noise(5, 0.01, 1),
-    "dense noise": worlds.noise(3, 0.3, 2),
-    "boxes": worlds.boxes(6, 12, 3),
-    "ball": worlds.ball(4),
-    "sponge": worlds.sponge(5),
-    "one voxel": np.where(np.indices((4, 4, 4)).sum(axis=0) == 0, 7, 0).astype(np.uint8),
-    "smallest": worlds.noise(1, 0.5, 4),
-    "all solid": np.full((8, 8, 8), 255, np.uint8),
-    "nothing": np.zeros((8, 8, 8), np.uint8),
-}
 RAYS_A_WORLD = 13_000
 
 

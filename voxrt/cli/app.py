@@ -84,6 +84,8 @@ def run(arguments: Sequence[str]) -> ExitCode:
     except Terminated:
         complain("terminated: every file is as it was, or complete")
         return ExitCode.TERMINATED
+    except SystemExit:
+        return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
     except BrokenPipeError:
         # Nobody reads standard output any more: let the interpreter's last flush go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
