@@ -70,7 +70,8 @@ Box box_of(const Corner& low, const Corner& high) {
 auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const Rows<std::uint64_t, 8>& brick_masks,
                 const Vector<std::uint8_t>& brick_materials, const Vector<std::int32_t>& brick_rows,
                 const Rows<std::uint8_t, 512>& cells, const Vector<std::uint64_t>& octant_codes,
-                const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials) {
+                const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials,
+                unsigned threads) {
     require_depth(depth);
     const std::size_t bricks = brick_codes.shape(0);
     const std::size_t octants = octant_codes.shape(0);
@@ -93,7 +94,7 @@ auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const 
     std::vector<Word> words;
     {
         nb::gil_scoped_release release;
-        words = build(view);
+        words = build(view, threads);
     }
     return words_to_numpy(std::move(words));
 }
@@ -241,7 +242,7 @@ NB_MODULE(_native, m) {
     using namespace voxrt::octree;
     m.def("build", &bind_build, "depth"_a, "brick_codes"_a.noconvert(), "brick_masks"_a.noconvert(),
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
-          "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert());
+          "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
     m.def("build_dense", &bind_build_dense, "cells"_a.noconvert(), "depth"_a);
     m.def("validate", &bind_validate, "words"_a.noconvert(), "depth"_a);
     m.def("materials_at", &bind_materials_at, "words"_a.noconvert(), "depth"_a, "points"_a.noconvert());
