@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.export import read_rom
     from voxrt.octree import Octree, Rom, RomError, census, diff
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
@@ -32,6 +32,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AssetError",
+    "BudgetFit",
     "BuildResult",
     "Camera",
     "DoesNotFitError",
@@ -63,7 +64,7 @@ _HOMES = {
     "voxrt.export": ("read_rom",),
     "voxrt.octree": ("Octree", "Rom", "RomError", "census", "diff"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (

@@ -6,6 +6,7 @@ validators.
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.octree import Rom
-    from voxrt.pipeline import BuildResult, Picture
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -71,6 +72,24 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """With ``--check``: pixels on which the two engines differ."""
 
 
+class BudgetEntry(msgspec.Struct, frozen=True):
+    """What fitting a memory to a budget took."""
+
+    words: int
+    """The budget."""
+    words_before: int
+    """What the memory takes without it."""
+    percent_changed: float
+    """Percent of the surface voxels that vanished or took another material."""
+    appeared: int
+    """Voxels that became solid."""
+    recoloured: int
+    """Voxels that took another material, hidden ones included."""
+    psnr: float | None
+    """Of the scene's picture against that without a budget, decibel; null where they are equal."""
+    ssim: float
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -86,6 +105,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Wall seconds a stage, in order."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
+    budget: BudgetEntry | None = None
+    """Null when there was none."""
 
 
 class WorldEntry(msgspec.Struct, frozen=True):
@@ -167,6 +188,20 @@ def build_report(result: BuildResult) -> BuildReport:
         warnings=[WarningEntry(warning.kind, warning.message, warning.count) for warning in result.warnings],
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
+        budget=None if result.budget is None else _budget_entry(result.budget),
+    )
+
+
+def _budget_entry(budget: BudgetFit) -> BudgetEntry:
+    fit = budget.fit
+    return BudgetEntry(
+        words=budget.words,
+        words_before=fit.words_shared,
+        percent_changed=fit.percent_changed,
+        appeared=fit.appeared,
+        recoloured=fit.recoloured,
+        psnr=budget.psnr if math.isfinite(budget.psnr) else None,
+        ssim=budget.ssim,
     )
 
 
