@@ -80,7 +80,7 @@ struct Pixels {
 };
 inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Directions& rays) {
     const Mask x = tile.face[group][0], y = tile.face[group][1], z = tile.face[group][2];
-    const Mask none = static_cast<Mask>(~(x | y | z));
+    const Mask none = static_cast<Mask>(~(x | y | z)), plain = job.shading.flat ? 0xFF : none;
     Pixels out;
     out.material = tile.material[group];
     out.face = bytes_of(y | none) | bytes_of(z | none) << 1;
@@ -90,16 +90,17 @@ inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Dire
     double colours[3][kLanes];
     for (int channel = 0; channel < 3; ++channel)
         for (int lane = 0; lane < kLanes; ++lane)
-            colours[channel][lane] = job.materials[3 * material[lane] + channel];
+            colours[channel][lane] = job.shading.materials[3 * material[lane] + channel];
     Lanes surface[3];
     std::memcpy(surface, colours, sizeof surface);
 
-    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed. The quotient in doubles has the exact one's
-    // floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <= 255, more than half an ulp of
-    // k.
+    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed or the picture is flat. The quotient in
+    // doubles has the exact one's floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <=
+    // 255, more than half an ulp of k.
     const Lanes square[3] = {rays.d[0] * rays.d[0], rays.d[1] * rays.d[1], rays.d[2] * rays.d[2]};
-    const Lanes length = choose(none, all(1), square[0] + square[1] + square[2]);
-    const Lanes across = choose(x, square[0], choose(y, square[1], choose(z, square[2], all(1))));
+    const Lanes length = choose(plain, all(1), square[0] + square[1] + square[2]);
+    const Lanes facing = choose(x, square[0], choose(y, square[1], square[2]));
+    const Lanes across = choose(plain, all(1), facing);
     int32_t channels[3][kLanes];
     const Lanes two = all(2);
     for (int channel = 0; channel < 3; ++channel)
