@@ -73,7 +73,9 @@ class Client:
         frame, self._frame = self._frame, None
         return frame
 
-    async def upload(self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool = False) -> dict[str, Any]:
+    async def upload(
+        self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool = False
+    ) -> dict[str, Any]:
         """Let the server run a scene made of `files`; `check_only` stops before its first word is written.
 
         Raises
