@@ -14,26 +14,39 @@ if TYPE_CHECKING:
 
 UpAxis: TypeAlias = Literal["x", "y", "z"]
 
-# Loaders are imported when a file asks for them: USD alone takes longer to import than a small scene to build.
-_SELF_DESCRIBING = {
-    ".gltf": ("voxrt.voxelize.gltf", "load_gltf"),
-    ".glb": ("voxrt.voxelize.gltf", "load_gltf"),
-    ".usd": ("voxrt.voxelize.usd", "load_usd"),
-    ".usda": ("voxrt.voxelize.usd", "load_usd"),
-    ".usdc": ("voxrt.voxelize.usd", "load_usd"),
-    ".usdz": ("voxrt.voxelize.usd", "load_usd"),
-}
-_UP_AND_UNIT_UNKNOWN = {
-    ".obj": ("voxrt.voxelize.obj", "load_obj"),
-    ".stl": ("voxrt.voxelize.stl", "load_stl"),
-    ".ply": ("voxrt.voxelize.ply", "load_ply"),
+# Loaders are imported when a file asks for them: USD alone takes longer to import than a small scene to build. Each
+# stands with what it can be told.
+_LOADERS = {
+    ".gltf": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants"}),
+    ".glb": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants"}),
+    ".usd": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".usdz": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".obj": ("voxrt.voxelize.obj", "load_obj", {"up", "unit"}),
+    ".stl": ("voxrt.voxelize.stl", "load_stl", {"up", "unit"}),
+    ".ply": ("voxrt.voxelize.ply", "load_ply", {"up", "unit"}),
 }
 
-SUFFIXES = tuple(_SELF_DESCRIBING | _UP_AND_UNIT_UNKNOWN)
+SUFFIXES = tuple(_LOADERS)
 """The suffixes :func:`load` knows, in lower case."""
 
+_WHY_IGNORED = {
+    "up": "the up axis was ignored: {} files say it themselves",
+    "unit": "the unit was ignored: {} files say it themselves",
+    "time": "the time was ignored: {} files have no animation",
+    "variants": "variants were ignored: {} files have none",
+}
 
-def load(path: str | Path, *, up: UpAxis | None = None, unit: float | None = None) -> Scene:
+
+def load(
+    path: str | Path,
+    *,
+    up: UpAxis | None = None,
+    unit: float | None = None,
+    time: float | None = None,
+    variants: tuple[str, ...] = (),
+) -> Scene:
     """Read an asset file into a scene (right-handed, metres, y up).
 
     Parameters
@@ -42,9 +55,16 @@ def load(path: str | Path, *, up: UpAxis | None = None, unit: float | None = Non
         A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file; the case
         of the suffix does not matter.
     up
-        The file's up axis, for formats that do not say (OBJ, STL, PLY); others ignore it with a warning.
+        The file's up axis, for formats that do not say (OBJ, STL, PLY).
     unit
-        Metres per unit of the file, for formats that do not say; others ignore it with a warning.
+        Metres per unit of the file, for formats that do not say.
+    time
+        The second of its animation at which the file is shown, for formats that have some (glTF, USD).
+    variants
+        What to show of what the file has in several ways: the name of one material variant (glTF), or
+        ``/prim/path:set=variant`` any number of times (USD).
+
+    Formats ignore what is not for them, with a warning.
 
     Raises
     ------
@@ -60,15 +80,18 @@ def load(path: str | Path, *, up: UpAxis | None = None, unit: float | None = Non
     if not path.is_file():
         problem = "is a folder, not a file" if path.is_dir() else "no such file"
         raise AssetError(path, problem, fix="check the path")
-    if suffix in _UP_AND_UNIT_UNKNOWN:
-        module, name = _UP_AND_UNIT_UNKNOWN[suffix]
-        scene: Scene = getattr(import_module(module), name)(path, up=up, unit=unit)
-        return scene
-    module, name = _SELF_DESCRIBING[suffix]
-    scene = getattr(import_module(module), name)(path)
+    module, name, understood = _LOADERS[suffix]
+    told = {
+        option: value
+        for option, value in (("up", up), ("unit", unit), ("time", time), ("variants", variants))
+        if value not in (None, ())
+    }
+    scene: Scene = getattr(import_module(module), name)(
+        path, **{option: value for option, value in told.items() if option in understood}
+    )
     ignored = tuple(
-        SceneWarning("ignored-option", f"{option} was ignored: {suffix[1:]} files say it themselves")
-        for option, value in (("up axis", up), ("unit", unit))
-        if value is not None
+        SceneWarning("ignored-option", _WHY_IGNORED[option].format(suffix[1:]))
+        for option in told
+        if option not in understood
     )
     return replace(scene, warnings=scene.warnings + ignored)

@@ -14,13 +14,13 @@ import pytest
 import voxrt as library
 
 # Builds again and again over the same old files, in children of its own, and signals the n-th of them at the n-th time
-# that it touches a file below a folder; leaves what it finds each time in a folder of its own.
+# that it touches a file; leaves what it finds each time in a folder of its own.
 AT_EVERY_TOUCH = """
 import os, shutil, signal, sys
 from itertools import count
 import voxrt.pipeline
 from voxrt.cli import main
-number, folder = int(sys.argv[1]), os.path.abspath("out")
+number, folder = int(sys.argv[1]), os.getcwd()
 touches = moment = 0
 def watch(event, arguments):
     global touches
@@ -58,11 +58,11 @@ for moment in count(1):
 IN_NATIVE_CODE = """
 import os, signal, sys, threading
 from voxrt.sim import _model
-render = _model.render
-def render_interrupted(*arguments):
-    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-    return render(*arguments)
-_model.render = render_interrupted
+class Memory(_model.Memory):
+    def render(self, *arguments):
+        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        return super().render(*arguments)
+_model.Memory = Memory
 from voxrt.cli import main
 main()
 """
@@ -101,7 +101,7 @@ def test_at_every_touch_of_a_file(folder, number):
 
 def test_in_native_code(folder):
     library.build(folder / "house.obj", folder, depth=6)
-    finished = run(folder, IN_NATIVE_CODE, "render", "house.mem", "--engine", "model", "--size", "16000x16000")
+    finished = run(folder, IN_NATIVE_CODE, "render", "house.mem", "--engine", "model", "--size", "8000x8000")
     assert finished.returncode == 130
     assert finished.stderr == "voxrt: error: interrupted: every file is as it was, or complete\n"
     assert not (folder / "house.png").exists()

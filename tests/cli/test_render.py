@@ -101,3 +101,54 @@ def test_directions_out_of_range(voxrt):
     )
     assert finished.code == 5
     assert "2**20" in finished.error
+
+
+def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder):
+    (folder / "sitecustomize.py").write_text("import sys\nsys.modules['voxrt.sim._rtl'] = None\n")
+    for arguments in (("build", "house.obj", "--depth", "3", "--preview"), ("render", "house.mem")):
+        finished = voxrt(*arguments, env={"PYTHONPATH": str(folder)})
+        assert finished.code == 5
+        assert "no verilated ray tracer" in finished.error
+        assert "--engine model" in finished.error
+    assert {"house.mem", "house.json"} <= {path.name for path in folder.iterdir()}
+    assert not list(folder.glob("*.png"))
+
+
+@pytest.fixture
+def ray_tracer():
+    pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
+
+
+@pytest.mark.usefixtures("ray_tracer")
+def test_the_ray_tracer_counts_its_clocks(voxrt, built):
+    finished = voxrt("render", "house.mem", "--size", "64x48", "--json")
+    assert finished.code == 0, finished.err
+    result = json.loads(finished.out)
+    assert result["engine"] == "rtl"
+    assert result["cycles"] > result["rays"]
+    assert result["cycles_per_pixel"] == pytest.approx(result["cycles"] / result["rays"])
+    hardware = (built / "house.png").read_bytes()
+    assert voxrt("render", "house.mem", *MODEL).code == 0
+    assert (built / "house.png").read_bytes() == hardware
+
+
+@pytest.mark.usefixtures("ray_tracer", "built")
+def test_check_counts_wrong_pixels(voxrt):
+    finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
+    assert finished.code == 0, finished.err
+    assert json.loads(finished.out)["wrong_pixels"] == 0
+
+
+@pytest.mark.usefixtures("ray_tracer")
+def test_check_fails_where_the_engines_differ(voxrt, built):
+    (built / "sitecustomize.py").write_text(
+        "import sys, voxrt.sim\nmodule = sys.modules['voxrt.sim.render']\nrender = module.render\n"
+        "def wrong(*arguments, engine, **options):\n    frame = render(*arguments, engine=engine, **options)\n"
+        "    frame.face[7, 5] ^= engine == 'model'\n    return frame\n"
+        "module.render = wrong\n"
+    )
+    arguments = ("render", "house.mem", "--size", "64x48", "--check", "--json")
+    finished = voxrt(*arguments, env={"PYTHONPATH": str(built)})
+    assert finished.code == 5
+    assert json.loads(finished.out)["wrong_pixels"] == 1
+    assert "1 pixels differ" in finished.error

@@ -41,8 +41,16 @@ _SHAPES: dict[ElementType, tuple[int, int]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Layout:
-    """How one element lies in memory. Columns of matrices start at multiples of 4 bytes."""
+class Layout:
+    """How one element lies in memory. Columns of matrices start at multiples of 4 bytes.
+
+    Attributes
+    ----------
+    dtype
+        The type of its components, little-endian.
+    columns, rows
+        Its shape; scalars and vectors are one column.
+    """
 
     dtype: np.dtype[Any]
     columns: int
@@ -50,16 +58,24 @@ class _Layout:
 
     @property
     def column_bytes(self) -> int:
+        """From one column to the next."""
         packed = self.rows * self.dtype.itemsize
         return packed if self.columns == 1 else -(-packed // 4) * 4
 
     @property
     def element_bytes(self) -> int:
+        """What one element takes."""
         return self.columns * self.column_bytes
 
     @property
     def components(self) -> int:
+        """How many numbers one element has."""
         return self.columns * self.rows
+
+
+def layout_of(accessor: Accessor) -> Layout:
+    """Return how the elements of `accessor` lie in memory."""
+    return Layout(_DTYPES[accessor.component_type], *_SHAPES[accessor.type])
 
 
 def read_accessor(document: Document, index: int, place: str, types: Container[str]) -> NDArray[Any]:
@@ -90,7 +106,7 @@ def read_accessor(document: Document, index: int, place: str, types: Container[s
     here = f"accessors[{index}]"
     if accessor.type not in types:
         raise document.error(place, f"accessor {index} holds {accessor.type} elements, which make no sense here")
-    layout = _Layout(_DTYPES[accessor.component_type], *_SHAPES[accessor.type])
+    layout = layout_of(accessor)
     document.charge(accessor.count * layout.element_bytes, here)
     if accessor.buffer_view is None:
         elements = np.zeros((accessor.count, layout.components), layout.dtype)
@@ -109,7 +125,11 @@ def read_floats(document: Document, index: int, place: str, types: Container[str
     elements
         float64, shape (count, components), finite.
     """
-    stored = read_accessor(document, index, place, types)
+    return as_floats(document, read_accessor(document, index, place, types), index)
+
+
+def as_floats(document: Document, stored: NDArray[Any], index: int) -> NDArray[np.float64]:
+    """Return the elements that accessor `index` describes as finite float64, normalized integers mapped."""
     document.charge(stored.size * 8, f"accessors[{index}]")
     if stored.dtype.kind != "f" and document.gltf.accessors[index].normalized:
         return normalized(stored)
@@ -120,6 +140,13 @@ def read_floats(document: Document, index: int, place: str, types: Container[str
     return elements
 
 
+def as_unit_floats(stored: NDArray[Any]) -> NDArray[np.float64]:
+    """Return `stored` as float64, integers mapped as normalized whether the file says so or not: colours, weights."""
+    if stored.dtype.kind == "f":
+        return stored.astype(np.float64)
+    return normalized(stored)
+
+
 def normalized(stored: NDArray[Any]) -> NDArray[np.float64]:
     """Map the range of an integer type to [0, 1], or to [-1, 1] where it has a sign."""
     elements: NDArray[np.float64] = np.maximum(stored / np.float64(np.iinfo(stored.dtype).max), -1.0)
@@ -127,7 +154,7 @@ def normalized(stored: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def _strided(
-    document: Document, source: Accessor | SparseIndices | SparseValues, count: int, layout: _Layout, place: str
+    document: Document, source: Accessor | SparseIndices | SparseValues, count: int, layout: Layout, place: str
 ) -> NDArray[Any]:
     """Return `count` elements from the buffer view that `source` names, without a copy where they lie packed."""
     assert source.buffer_view is not None
@@ -144,11 +171,11 @@ def _strided(
     return elements.reshape(count, layout.components)
 
 
-def _patched(document: Document, sparse: Sparse, base: NDArray[Any], layout: _Layout, place: str) -> NDArray[Any]:
+def _patched(document: Document, sparse: Sparse, base: NDArray[Any], layout: Layout, place: str) -> NDArray[Any]:
     """Return `base` with the elements replaced that `sparse` lists."""
     if sparse.count > len(base):
         raise document.error(place, f"replaces {sparse.count} of {len(base)} elements")
-    scalar = _Layout(_DTYPES[sparse.indices.component_type], 1, 1)
+    scalar = Layout(_DTYPES[sparse.indices.component_type], 1, 1)
     rows = _strided(document, sparse.indices, sparse.count, scalar, f"{place}.indices")[:, 0]
     if int(rows.max()) >= len(base):
         raise document.error(f"{place}.indices", f"index {int(rows.max())} of {len(base)} elements")

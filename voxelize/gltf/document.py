@@ -94,7 +94,11 @@ class Document:
         buffer = self.gltf.buffers[index]
         here = f"buffers[{index}]"
         if buffer.uri is not None:
-            data = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
+            found = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
+            if found is None:
+                problem = f"no file {buffer.uri[:60]!r} beside the asset"
+                raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
+            data = found
         elif index == 0 and self._binary is not None:
             data = self._binary
         else:
@@ -104,10 +108,10 @@ class Document:
         self._buffers[index] = data[: buffer.byte_length]
         return self._buffers[index]
 
-    def resource(self, uri: str, place: str, most: int = -1) -> bytes:
+    def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
         """Return what `uri` refers to: inline data, or at most `most` bytes of a file in the asset's folder or below.
 
-        What a file adds to the asset's size is added to the memory the asset may use.
+        A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
         """
         if uri.startswith("data:"):
             return self._inline(uri, place)
@@ -134,7 +138,7 @@ class Document:
                 raise self.error(place, problem, "check its permissions") from error
             self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
             return data
-        raise self.error(place, f"no file {uri[:60]!r} beside the asset", "put it there, or embed it in a .glb")
+        return None
 
     def _inline(self, uri: str, place: str) -> bytes:
         header, comma, body = uri.partition(",")

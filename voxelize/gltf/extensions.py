@@ -2,12 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
+
+import msgspec
 
 if TYPE_CHECKING:
     from voxrt.voxelize.gltf.document import Document
+    from voxrt.voxelize.gltf.schema import Property
 
-HONOURED = frozenset({"KHR_mesh_quantization", "KHR_materials_unlit"})
+DRACO = "KHR_draco_mesh_compression"
+INSTANCING = "EXT_mesh_gpu_instancing"
+PHYSICS = "KHR_physics_rigid_bodies"
+SHAPES = "KHR_implicit_shapes"
+SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
+TEXTURE_TRANSFORM = "KHR_texture_transform"
+VARIANTS = "KHR_materials_variants"
+
+HONOURED = frozenset(
+    {
+        DRACO,
+        INSTANCING,
+        PHYSICS,
+        SHAPES,
+        SPECULAR_GLOSSINESS,
+        TEXTURE_TRANSFORM,
+        VARIANTS,
+        "EXT_texture_webp",
+        "KHR_materials_unlit",
+        "KHR_mesh_quantization",
+    }
+)
 """Extensions whose meaning reaches the scene."""
 
 NO_BEARING = frozenset(
@@ -31,6 +55,23 @@ NO_BEARING = frozenset(
     }
 )
 """Extensions that say nothing about where surfaces are or what base colour they have."""
+
+
+_T = TypeVar("_T")
+
+
+def read_extension(document: Document, owner: Property, name: str, kind: type[_T], place: str) -> _T | None:
+    """Return the extension `name` of `owner`, which stands at `place`, as a value of `kind`; None where it has none."""
+    if name not in owner.extensions:
+        return None
+    try:
+        return msgspec.json.decode(owner.extensions[name], type=kind)
+    except msgspec.ValidationError as error:
+        problem, _, where = str(error).partition(" - at ")
+        here = f"{place}.extensions.{name}{where.strip('`').removeprefix('$')}"
+        raise document.error(here.removeprefix("."), problem[:1].lower() + problem[1:]) from None
+    except (msgspec.DecodeError, RecursionError):
+        raise document.error(f"{place}.extensions.{name}".removeprefix("."), "is not JSON that can be read") from None
 
 
 def check_required(document: Document) -> None:

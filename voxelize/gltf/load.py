@@ -1,44 +1,44 @@
-"""The way from a glTF file to a scene: place the nodes, read each mesh once, number the materials in use."""
+"""The way from a glTF file to a scene: place the nodes, dress the meshes they show, number the materials."""
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.gltf.colliders import collider_around
+from voxrt.voxelize.gltf.animation import posed
+from voxrt.voxelize.gltf.appearance import dress, find_variant
+from voxrt.voxelize.gltf.colliders import collider_around, collider_points
 from voxrt.voxelize.gltf.document import Document
 from voxrt.voxelize.gltf.extensions import check_required
-from voxrt.voxelize.gltf.extras import NodeExtras, node_extras
-from voxrt.voxelize.gltf.materials import NO_MATERIAL, MaterialKey, make_materials, material_named
-from voxrt.voxelize.gltf.meshes import Surface, read_surface
-from voxrt.voxelize.gltf.nodes import PlacedNode, place_nodes
+from voxrt.voxelize.gltf.nodes import place_nodes
+from voxrt.voxelize.gltf.shown import Stage
+from voxrt.voxelize.gltf.table import finish_meshes
+from voxrt.voxelize.gltf.textures import Textures
 from voxrt.voxelize.scene import Mesh, Scene, SceneObject
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from voxrt.voxelize.gltf.appearance import Look
+    from voxrt.voxelize.gltf.materials import MaterialKey
+    from voxrt.voxelize.gltf.shown import Bend, Shown
+
+_NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
 
 
-@dataclass(frozen=True, slots=True)
-class _Look:
-    """How a node shows a mesh. Nodes with equal looks share one mesh value."""
-
-    mesh: int
-    override: int | None
-    mirrored: bool
-
-    def key(self, material: int) -> MaterialKey:
-        """Return what a face of the file's `material` takes in this look."""
-        return MaterialKey(material if self.override is None else self.override, self.mirrored)
-
-
-def load_gltf(path: Path) -> Scene:
+def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...] = ()) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    time
+        The second of the file's first animation at which it is shown; None for the pose in which the file stands.
+    variants
+        The name of the material variant to show; none for the materials that its primitives name first.
 
     Raises
     ------
@@ -50,84 +50,47 @@ def load_gltf(path: Path) -> Scene:
     """
     document = Document(path)
     check_required(document)
-    surfaces: dict[int, Surface] = {}
-    shown: list[tuple[PlacedNode, _Look, NodeExtras]] = []
-    for placed in place_nodes(document):
-        authored = node_extras(document, placed.index)
-        look = _look(document, placed.index, authored)
-        if look is None:
-            continue
-        if look.mesh not in surfaces:
-            surfaces[look.mesh] = read_surface(document, look.mesh)
-        if len(surfaces[look.mesh].triangles):
-            shown.append((placed, look, authored))
-    if not shown:
-        raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
-    looks = dict.fromkeys(look for _, look, _ in shown)
-    materials, ids = make_materials(document, _keys(looks, surfaces))
-    meshes = {look: _mesh(document, look, surfaces[look.mesh], ids) for look in looks}
-    names = _names(document, [placed.index for placed, _, _ in shown])
+    document.gltf = posed(document, time)
+    stage = Stage(document, place_nodes(document), find_variant(document, variants))
+    shown = list(stage.shown())
+    textures = Textures(document)
+    worn = list(dict.fromkeys(seen.mesh for seen in shown if seen.mesh is not None))
+    dressed = [(stage.surface(bend), dress(document, textures, stage.surface(bend), look)) for bend, look in worn]
+    bare = [seen.material for seen in shown if seen.mesh is None]
+    made, materials, ids = finish_meshes(document, dressed, bare)
+    meshes = dict(zip(worn, made, strict=True))
     objects = tuple(
-        SceneObject(
-            name,
-            meshes[look],
-            _within_range(document, placed, surfaces[look.mesh]),
-            (collider_around(surfaces[look.mesh], authored.voxrt_collider),) if authored.voxrt_collider else (),
-            int(meshes[look].materials[0]),
-        )
-        for name, (placed, look, authored) in zip(names, shown, strict=True)
+        thing
+        for name, seen in zip(stage.names(shown), shown, strict=True)
+        for thing in _objects(document, name, seen, meshes, ids)
     )
+    if not objects:
+        raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
     return Scene(path.stem, objects, materials, document.warnings)
 
 
-def _look(document: Document, index: int, authored: NodeExtras) -> _Look | None:
-    """Return how node `index` shows its mesh, or None where it has none."""
-    node = document.gltf.nodes[index]
-    if node.mesh is None:
-        if authored.voxrt_collider is not None:
-            place = f"nodes[{index}].extras.voxrt_collider"
-            raise document.error(place, "the node has no mesh", "put the property on the node with the mesh")
-        return None
-    document.item(document.gltf.meshes, node.mesh, f"nodes[{index}].mesh", "mesh")
-    override = None
-    if authored.voxrt_material is not None:
-        place = f"nodes[{index}].extras.voxrt_material"
-        override = material_named(document, authored.voxrt_material, place)
-    return _Look(node.mesh, override, bool(authored.voxrt_reflect))
-
-
-def _keys(looks: Iterable[_Look], surfaces: dict[int, Surface]) -> set[MaterialKey]:
-    return {look.key(int(material)) for look in looks for material in np.unique(surfaces[look.mesh].materials)}
-
-
-def _mesh(document: Document, look: _Look, surface: Surface, ids: dict[MaterialKey, int]) -> Mesh:
-    """Return `surface` with material ids for the file's materials."""
-    document.charge(len(surface.triangles), f"meshes[{look.mesh}]")
-    materials = np.empty(len(surface.triangles), np.uint8)
-    for material in np.unique(surface.materials).tolist():
-        faces = surface.materials == material
-        materials[faces] = ids[look.key(material)]
-        if material == NO_MATERIAL and look.override is None:
-            count = int(np.count_nonzero(faces))
-            document.warn("default-material", "faces without material took the default material", count)
-    return Mesh(surface.positions, surface.triangles, materials)
-
-
-def _names(document: Document, indices: list[int]) -> list[str]:
-    """Name objects after their nodes, else their meshes; where a name repeats, say which node is meant."""
-    nodes, meshes = document.gltf.nodes, document.gltf.meshes
-    plain = [nodes[index].name or meshes[nodes[index].mesh or 0].name or f"nodes[{index}]" for index in indices]
-    repeats = Counter(plain)
-    return [
-        name if repeats[name] == 1 else f"{name} (nodes[{index}])" for name, index in zip(plain, indices, strict=True)
-    ]
-
-
-def _within_range(document: Document, placed: PlacedNode, surface: Surface) -> NDArray[np.float64]:
-    """Return the node's transform, having made sure that it leaves the surface in the range of numbers."""
+def _objects(
+    document: Document,
+    name: str,
+    seen: Shown,
+    meshes: Mapping[tuple[Bend, Look], Mesh],
+    ids: Mapping[MaterialKey, int],
+) -> Iterator[SceneObject]:
+    """Make the objects of what is shown, one an instance; none where it is all air."""
+    if seen.mesh is None:
+        mesh, material = _NO_TRIANGLES, ids[seen.material]
+    else:
+        mesh = meshes[seen.mesh]
+        if not len(mesh.triangles):
+            return
+        material = int(mesh.materials[0])
+    collider = collider_around(mesh, seen.around) if seen.around is not None else seen.collider
+    colliders = () if collider is None else (collider,)
+    farthest = np.abs(np.concatenate([mesh.positions, *map(collider_points, colliders)])).max(axis=0)
     with np.errstate(over="ignore", invalid="ignore"):
-        reach = np.abs(placed.transform[:3, :3]) @ np.abs(surface.positions).max(axis=0)
-        reach += np.abs(placed.transform[:3, 3])
+        reach = np.abs(seen.transforms[:, :3, :3]) @ farthest + np.abs(seen.transforms[:, :3, 3])
     if not np.isfinite(reach).all():
-        raise document.error(f"nodes[{placed.index}]", "the transform leaves the range of numbers")
-    return placed.transform
+        raise document.error(f"nodes[{seen.node}]", "the transform leaves the range of numbers")
+    for at, transform in enumerate(seen.transforms):
+        own = name if len(seen.transforms) == 1 else f"{name} [{at}]"
+        yield SceneObject(own, mesh, transform, colliders, material)

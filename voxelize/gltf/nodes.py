@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Container
+    from collections.abc import Container, Iterator
 
     from numpy.typing import NDArray
 
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class PlacedNode:
-    """A node that the scene shows.
+class Hierarchy:
+    """Where the nodes of a file stand.
 
     Attributes
     ----------
-    index
-        Its place in the file's list of nodes.
-    transform
-        float64, shape (4, 4): node frame to scene frame. May mirror.
+    shown
+        The nodes that the scene shows, parents before children, siblings in authored order.
+    transforms
+        float64, shape (4, 4) each: frame of each node of the file to the scene frame. May mirror.
     """
 
-    index: int
-    transform: NDArray[np.float64]
+    shown: tuple[int, ...]
+    transforms: tuple[NDArray[np.float64], ...]
 
 
-def place_nodes(document: Document) -> list[PlacedNode]:
-    """Return the nodes of the file's scene, parents before children, siblings in authored order.
+def place_nodes(document: Document) -> Hierarchy:
+    """Place all nodes, and find those of the file's scene.
 
     The scene is the one the file names, else its first; where the file has none, every root node is shown.
 
@@ -47,29 +47,26 @@ def place_nodes(document: Document) -> list[PlacedNode]:
     """
     nodes = document.gltf.nodes
     parents = _parents(document)
-    placed: list[PlacedNode] = []
-    pending = [(root, _frame(document, root, parents)) for root in reversed(_roots(document, parents))]
-    while pending:
-        index, frame = pending.pop()
-        document.charge(1024, f"nodes[{index}]")
-        with np.errstate(over="ignore", invalid="ignore"):
-            transform = frame @ local_transform(document, nodes[index], f"nodes[{index}]")
+    document.charge(len(nodes) * 1024, "nodes")
+    transforms = [np.eye(4)] * len(nodes)
+    for index in _descendants(document, [index for index in range(len(nodes)) if index not in parents]):
+        transform = local_transform(document, nodes[index], f"nodes[{index}]")
+        if index in parents:
+            with np.errstate(over="ignore", invalid="ignore"):
+                transform = transforms[parents[index]] @ transform
         if not np.isfinite(transform).all():
             raise document.error(f"nodes[{index}]", "the transform leaves the range of numbers")
-        placed.append(PlacedNode(index, transform))
-        pending.extend((child, transform) for child in reversed(nodes[index].children))
-    return placed
+        transforms[index] = transform
+    return Hierarchy(tuple(_descendants(document, _roots(document, parents))), tuple(transforms))
 
 
-def _frame(document: Document, root: int, parents: dict[int, int]) -> NDArray[np.float64]:
-    """Return the frame in which `root` stands: the scene's, unless it has ancestors that the scene does not list."""
-    frame = np.eye(4)
-    node = root
-    while node in parents:
-        node = parents[node]
-        with np.errstate(over="ignore", invalid="ignore"):
-            frame = local_transform(document, document.gltf.nodes[node], f"nodes[{node}]") @ frame
-    return frame
+def _descendants(document: Document, roots: list[int]) -> Iterator[int]:
+    """Go through `roots` and what hangs below them, parents before children, in authored order."""
+    pending = roots[::-1]
+    while pending:
+        index = pending.pop()
+        yield index
+        pending.extend(reversed(document.gltf.nodes[index].children))
 
 
 def _parents(document: Document) -> dict[int, int]:
@@ -145,9 +142,10 @@ def local_transform(document: Document, node: Node, place: str) -> NDArray[np.fl
             raise document.error(f"{place}.matrix", "is not affine: its last row must be 0, 0, 0, 1")
         matrix[3] = (0, 0, 0, 1)
         return matrix
-    translation = np.array(node.translation or (0.0, 0.0, 0.0))
-    scale = np.array(node.scale if node.scale is not None else (1.0, 1.0, 1.0))
-    return compose(document, translation, np.array(node.rotation or (0.0, 0.0, 0.0, 1.0)), scale, place)
+    parts = (node.translation or (0.0, 0.0, 0.0), node.rotation or (0.0, 0.0, 0.0, 1.0), node.scale or (1.0, 1.0, 1.0))
+    translation, rotation, scale = (np.array([part]) for part in parts)
+    transform: NDArray[np.float64] = compose(document, translation, rotation, scale, place)[0]
+    return transform
 
 
 def compose(
@@ -157,20 +155,22 @@ def compose(
     scale: NDArray[np.float64],
     place: str,
 ) -> NDArray[np.float64]:
-    """Return the transform that scales, then rotates by the quaternion (x, y, z, w), then translates."""
+    """Return the transforms, shape (N, 4, 4), that scale, then rotate by quaternions (x, y, z, w), then translate."""
     with np.errstate(over="ignore", under="ignore"):
-        length = float(np.linalg.norm(rotation))
-    if not 1e-6 < length < 1e6:
-        raise document.error(f"{place}.rotation", f"a quaternion of length {length:g}, it must be 1")
-    if abs(length - 1.0) > 1e-3:
-        document.warn("rotation-length", "quaternions whose length is not 1 were brought to it")
-    x, y, z, w = rotation / length
-    transform = np.eye(4)
-    transform[:3, :3] = [
+        length = np.sqrt((rotation**2).sum(axis=1))
+    wrong = ~((length > 1e-6) & (length < 1e6))
+    if wrong.any():
+        raise document.error(f"{place}.rotation", f"a quaternion of length {length[wrong][0]:g}, it must be 1")
+    uneven = np.abs(length - 1.0) > 1e-3
+    if uneven.any():
+        document.warn("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
+    x, y, z, w = (rotation / length[:, None]).T
+    transforms = np.tile(np.eye(4), (len(length), 1, 1))
+    turn = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
-    transform[:3, :3] *= scale
-    transform[:3, 3] = translation
-    return transform
+    transforms[:, :3, :3] = np.moveaxis(np.array(turn), -1, 0) * scale[:, None, :]
+    transforms[:, :3, 3] = translation
+    return transforms

@@ -9,28 +9,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.gltf.accessors import read_accessor
 from voxrt.voxelize.gltf.schema import TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.gltf.attributes import Attributes
     from voxrt.voxelize.gltf.document import Document
     from voxrt.voxelize.gltf.schema import Primitive
 
-_AREALESS = ("points", "lines", "line loops", "line strips")
+_WITHOUT_AREA = ("points", "lines", "line loops", "line strips")
 
 
 def has_area(document: Document, primitive: Primitive) -> bool:
     """Tell whether `primitive` is made of triangles; note that it is left out where it is not."""
     if primitive.mode >= TRIANGLES:
         return True
-    document.warn("no-area", f"{_AREALESS[primitive.mode]} were left out: they have no area to voxelize")
+    document.warn("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
     return False
 
 
-def read_triangles(document: Document, primitive: Primitive, vertices: int, place: str) -> NDArray[np.int32]:
-    """Read the corners of the triangles of `primitive`, which has `vertices` vertices.
+def read_triangles(
+    document: Document, attributes: Attributes, mode: int, vertices: int, place: str
+) -> NDArray[np.int32]:
+    """Read the triangles of a primitive of `mode` that has `vertices` vertices and stands at `place`.
 
     Returns
     -------
@@ -42,16 +44,25 @@ def read_triangles(document: Document, primitive: Primitive, vertices: int, plac
     AssetError
         An index is out of range or restarts the primitive, which glTF does not allow.
     """
-    if primitive.indices is None:
-        document.charge(vertices * 4, place)
+    stored = attributes.corners()
+    document.charge((vertices if stored is None else len(stored)) * 4, place)
+    if stored is None:
         corners = np.arange(vertices, dtype=np.int32)
     else:
-        corners = _read_indices(document, primitive.indices, vertices, f"{place}.indices")
-    return assemble(document, corners, primitive.mode, place)
+        highest = int(stored.max(initial=0))
+        if highest >= vertices:
+            if highest == np.iinfo(stored.dtype).max:
+                raise document.error(f"{place}.indices", "a primitive restart, which glTF does not allow")
+            at = int(np.argmax(stored >= vertices))
+            problem = f"index {int(stored[at])} at {at} is out of range: there are {vertices} vertices"
+            raise document.error(f"{place}.indices", problem)
+        corners = stored.astype(np.int32)
+    document.charge(len(corners) * 12, place)
+    return _assembled(document, corners, TRIANGLES if attributes.is_compressed else mode)
 
 
-def assemble(document: Document, corners: NDArray[np.int32], mode: int, place: str) -> NDArray[np.int32]:
-    """Make triangles, int32, shape (T, 3), of `corners`, int32, shape (N,), in the order of primitive mode `mode`."""
+def _assembled(document: Document, corners: NDArray[np.int32], mode: int) -> NDArray[np.int32]:
+    """Make triangles, shape (T, 3), of `corners`, shape (N,), in the order of primitive mode `mode`."""
     if mode == TRIANGLES:
         whole = len(corners) // 3
         if whole * 3 != len(corners):
@@ -60,7 +71,6 @@ def assemble(document: Document, corners: NDArray[np.int32], mode: int, place: s
     if len(corners) < 3:
         document.warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
         return np.empty((0, 3), np.int32)
-    document.charge(len(corners) * 12, place)
     if mode == TRIANGLE_STRIP:
         triangles = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)
         triangles[1::2] = triangles[1::2][:, [0, 2, 1]]
@@ -70,17 +80,3 @@ def assemble(document: Document, corners: NDArray[np.int32], mode: int, place: s
     # Triangles that use a corner twice only join one strip to the next.
     a, b, c = triangles.T
     return np.ascontiguousarray(triangles[(a != b) & (b != c) & (a != c)])
-
-
-def _read_indices(document: Document, accessor: int, vertices: int, place: str) -> NDArray[np.int32]:
-    stored = read_accessor(document, accessor, place, {"SCALAR"})[:, 0]
-    if stored.dtype.kind != "u":
-        raise document.error(place, f"indices of type {stored.dtype.name}, they must be unsigned integers")
-    highest = int(stored.max())
-    if highest >= vertices:
-        if highest == np.iinfo(stored.dtype).max:
-            raise document.error(place, "a primitive restart, which glTF does not allow")
-        at = int(np.argmax(stored >= vertices))
-        raise document.error(place, f"index {int(stored[at])} at {at} is out of range: there are {vertices} vertices")
-    document.charge(stored.size * 4, place)
-    return stored.astype(np.int32)

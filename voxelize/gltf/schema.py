@@ -105,6 +105,44 @@ class Primitive(Property, frozen=True, kw_only=True):
     targets: list[dict[str, Index]] = []
 
 
+class VariantMapping(Struct, frozen=True, kw_only=True):
+    """A material that a primitive takes in some variants."""
+
+    material: Index
+    variants: list[Index]
+
+
+class PrimitiveVariants(Struct, frozen=True, kw_only=True):
+    """KHR_materials_variants on a primitive."""
+
+    mappings: list[VariantMapping]
+
+
+class Variant(Struct, frozen=True, kw_only=True):
+    """One of the file's variants."""
+
+    name: str
+
+
+class FileVariants(Struct, frozen=True, kw_only=True):
+    """KHR_materials_variants on the file."""
+
+    variants: list[Variant]
+
+
+class DracoPrimitive(Struct, frozen=True, kw_only=True, rename="camel"):
+    """KHR_draco_mesh_compression: the buffer view that holds a primitive, and the ids of its attributes there."""
+
+    buffer_view: Index
+    attributes: dict[str, Index]
+
+
+class Instances(Struct, frozen=True, kw_only=True):
+    """EXT_mesh_gpu_instancing: accessors with one element an instance."""
+
+    attributes: dict[str, Index]
+
+
 class Mesh(Named, frozen=True, kw_only=True):
     """Primitives that are placed together."""
 
@@ -138,6 +176,12 @@ class TextureInfo(Property, frozen=True, kw_only=True):
     tex_coord: Index = 0
 
 
+class NormalTextureInfo(TextureInfo, frozen=True, kw_only=True):
+    """A texture that bends normals; read to be validated alone."""
+
+    scale: float = 1.0
+
+
 class Roughness(Property, frozen=True, kw_only=True):
     """The part of the metallic-roughness model that has colour."""
 
@@ -145,10 +189,27 @@ class Roughness(Property, frozen=True, kw_only=True):
     base_color_texture: TextureInfo | None = None
 
 
+class TextureTransform(Struct, frozen=True, kw_only=True, rename="camel"):
+    """KHR_texture_transform: where in the image texture coordinates fall."""
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: tuple[float, float] = (1.0, 1.0)
+    tex_coord: Index | None = None
+
+
+class SpecularGlossiness(Struct, frozen=True, kw_only=True, rename="camel"):
+    """The part of KHR_materials_pbrSpecularGlossiness that has base colour."""
+
+    diffuse_factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
+    diffuse_texture: TextureInfo | None = None
+
+
 class Material(Named, frozen=True, kw_only=True):
     """What a surface looks like."""
 
     pbr_metallic_roughness: Roughness = Roughness()
+    normal_texture: NormalTextureInfo | None = None
     alpha_mode: Literal["OPAQUE", "MASK", "BLEND"] = "OPAQUE"
     alpha_cutoff: Annotated[float, Meta(ge=0.0)] = 0.5
 
@@ -158,6 +219,12 @@ class Texture(Named, frozen=True, kw_only=True):
 
     sampler: Index | None = None
     source: Index | None = None
+
+
+class TextureSource(Struct, frozen=True, kw_only=True):
+    """EXT_texture_webp: the image to use instead."""
+
+    source: Index
 
 
 class Sampler(Named, frozen=True, kw_only=True):
@@ -174,6 +241,42 @@ class Image(Named, frozen=True, kw_only=True):
     uri: str | None = None
     mime_type: str = ""
     buffer_view: Index | None = None
+
+
+class Skin(Named, frozen=True, kw_only=True):
+    """Joints that carry vertices."""
+
+    joints: Annotated[list[Index], Meta(min_length=1)]
+    inverse_bind_matrices: Index | None = None
+
+
+class AnimationTarget(Property, frozen=True, kw_only=True):
+    """What a channel moves."""
+
+    path: str
+    node: Index | None = None
+
+
+class AnimationChannel(Property, frozen=True, kw_only=True):
+    """One property of one node that changes with time."""
+
+    sampler: Index
+    target: AnimationTarget
+
+
+class AnimationSampler(Property, frozen=True, kw_only=True):
+    """Key frames and what happens between them."""
+
+    input: Index
+    output: Index
+    interpolation: Literal["LINEAR", "STEP", "CUBICSPLINE"] = "LINEAR"
+
+
+class Animation(Named, frozen=True, kw_only=True):
+    """Channels that play together."""
+
+    channels: Annotated[list[AnimationChannel], Meta(min_length=1)]
+    samplers: Annotated[list[AnimationSampler], Meta(min_length=1)]
 
 
 class Gltf(Property, frozen=True, kw_only=True):
@@ -193,3 +296,5 @@ class Gltf(Property, frozen=True, kw_only=True):
     textures: list[Texture] = []
     samplers: list[Sampler] = []
     images: list[Image] = []
+    skins: list[Skin] = []
+    animations: list[Animation] = []

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from voxrt.voxelize import shapes
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.usd import shapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.usd.skin import Deformed
 
 # Positions USD calls legal and no scene has: beyond it, squares overflow.
 _FARTHEST = 1e150
@@ -46,7 +47,9 @@ class Surface:
     face_count: int
 
 
-def surface_of(prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes) -> Surface | None:
+def surface_of(
+    prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None = None
+) -> Surface | None:
     """Return the surface of a Mesh or of one of the solids; None for any other prim and for a mesh without faces.
 
     Raises
@@ -55,7 +58,7 @@ def surface_of(prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes) -> 
         A mesh whose topology contradicts itself, or a solid whose measures are no lengths.
     """
     if prim.IsA(UsdGeom.Mesh):
-        return _mesh(UsdGeom.Mesh(prim), path, time, notes)
+        return _mesh(UsdGeom.Mesh(prim), path, time, notes, deformed)
     solid = _solid(prim, path, time)
     if solid is None:
         return None
@@ -63,11 +66,15 @@ def surface_of(prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes) -> 
     return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1)
 
 
-def _mesh(mesh: UsdGeom.Mesh, path: Path, time: Usd.TimeCode, notes: Notes) -> Surface | None:
+def _mesh(
+    mesh: UsdGeom.Mesh, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None
+) -> Surface | None:
     prim = mesh.GetPrim()
     place = str(prim.GetPath())
     points = mesh.GetPointsAttr().Get(time)
     positions = np.array([] if points is None else points, dtype=np.float64).reshape(-1, 3)
+    if deformed is not None:
+        positions = deformed.positions
     counts = _integers(mesh.GetFaceVertexCountsAttr(), time)
     corners = _integers(mesh.GetFaceVertexIndicesAttr(), time)
     if not len(counts) or not len(positions):

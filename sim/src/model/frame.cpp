@@ -3,7 +3,6 @@
 #include "cores.h"
 #include "frame_tile.h"
 #include "ray.h"
-#include "tile.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -64,12 +63,11 @@ void check_directions(const Camera& camera, int32_t width, int32_t height) {
 }
 
 uint64_t render(const Memory& memory, const uint8_t* materials, const Camera& camera, const FrameView& frame,
-                int threads, const Interrupted& interrupted) {
+                int threads, RenderTile render_tile, const Interrupted& interrupted) {
     const int32_t no_direction[3] = {0, 0, 0};
     const FrameJob job{memory, materials, camera, frame, trace_any(memory, camera.position, no_direction).material};
     const int32_t across = (frame.width + kTileSide - 1) / kTileSide;
     const int32_t down = (frame.height + kTileSide - 1) / kTileSide;
-    const RenderTile render_tile = best_render_tile();
     return on_all_cores(static_cast<size_t>(across) * down, threads, interrupted, [&](size_t tile) {
         const int32_t left = static_cast<int32_t>(tile % across) * kTileSide;
         const int32_t top = static_cast<int32_t>(tile / across) * kTileSide;

@@ -1,7 +1,5 @@
 #include "frame_tile.h"
 
-#include "tile.h"
-
 #include <algorithm>
 #include <cstdlib>
 
@@ -30,14 +28,20 @@ bool tile_fits(const FrameJob& job, int32_t left, int32_t top) {
     return true;
 }
 
-RenderTile best_render_tile() {
+const std::vector<TileEngine>& tile_engines() {
+    static const std::vector<TileEngine> engines = [] {
+        std::vector<TileEngine> found;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        return render_tile_avx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return render_tile_avx2;
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+            __builtin_cpu_supports("avx512vl"))
+            found.push_back({"avx512", render_tile_avx512});
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+            found.push_back({"avx2", render_tile_avx2});
 #endif
-    return render_tile_portable;
+        found.push_back({"portable", render_tile_portable});
+        return found;
+    }();
+    return engines;
 }
 
 } // namespace voxrt::model

@@ -5,8 +5,11 @@
 #include "memory.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace voxrt::model {
+
+inline constexpr int32_t kTileSide = 16; // pixels
 
 struct FrameJob {
     const Memory& memory;     // verified
@@ -20,15 +23,17 @@ struct FrameJob {
 bool tile_fits(const FrameJob& job, int32_t left, int32_t top);
 
 // Renders the tile at (left, top), clipped to the frame, if it fits. Returns how many words were read.
-using RenderTile = uint64_t (*)(const FrameJob& job, int32_t left, int32_t top);
-
 uint64_t render_tile_portable(const FrameJob& job, int32_t left, int32_t top);
 #if defined(__x86_64__)
 uint64_t render_tile_avx2(const FrameJob& job, int32_t left, int32_t top);
 uint64_t render_tile_avx512(const FrameJob& job, int32_t left, int32_t top);
 #endif
 
-// The fastest of them that this processor runs.
-RenderTile best_render_tile();
+// What this processor runs, the fastest first. All give the same pixels.
+struct TileEngine {
+    const char* instructions;
+    RenderTile render_tile;
+};
+const std::vector<TileEngine>& tile_engines();
 
 } // namespace voxrt::model
