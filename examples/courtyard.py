@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solids import Part, ball, box, prism, ring, spin
+from solids import Part, Solid, ball, box, prism, ring, spin
 
 # Bright, for the shade of a face is (n . l)^2: the three faces seen share the light.
 COURTYARD_PALETTE = {
@@ -153,7 +153,7 @@ def garden() -> list[Part]:
 def dog() -> list[Part]:
     """Make a dog of boxes that looks at the viewer."""
 
-    def at(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]):
+    def at(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Solid:
         return box(x, y, z).moved(11.25, GROUND, 11.5)
 
     eyes = [at((x, x + EIGHTH), (1.5, 1.625), (1.5, 1.625)) for x in (-0.25, 0.125)]

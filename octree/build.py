@@ -16,12 +16,19 @@ if TYPE_CHECKING:
     from voxrt.voxelize import Voxels
 
 
-def build(voxels: Voxels) -> Octree:
+def build(voxels: Voxels, *, threads: int = 0) -> Octree:
     """Build the octree of sparse voxels, bottom-up.
 
     Masks collapse by bit operations, equal blocks meet in a flat hash table, and the words come out breadth-first by
     first visit. Cost grows with the bricks and octants, never with the volume; equal voxels give equal bytes, however
-    they are cut into bricks and octants.
+    they are cut into bricks and octants and on however many threads.
+
+    Parameters
+    ----------
+    voxels
+        What the voxelizer made.
+    threads
+        How many threads to use; 0 for as many as the machine has.
 
     Raises
     ------
@@ -38,6 +45,7 @@ def build(voxels: Voxels) -> Octree:
         np.ascontiguousarray(voxels.octant_codes),
         np.ascontiguousarray(voxels.octant_levels),
         np.ascontiguousarray(voxels.octant_materials),
+        threads,
     )
     return Octree(voxels.depth, words)
 

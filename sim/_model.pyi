@@ -4,6 +4,8 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+INSTRUCTION_SETS: tuple[str, ...]
+
 class RenderedPixels(TypedDict):
     colour: NDArray[np.uint8]
     material: NDArray[np.uint8]
@@ -16,19 +18,15 @@ class TracedRays(TypedDict):
     cell: NDArray[np.int32]
     words_read: int
 
-def render(
-    words: NDArray[np.uint32],
-    depth: int,
-    materials: NDArray[np.uint8],
-    camera: NDArray[np.int32],
-    width: int,
-    height: int,
-    threads: int = 0,
-) -> RenderedPixels: ...
-def trace(
-    words: NDArray[np.uint32],
-    depth: int,
-    origins: NDArray[np.int32],
-    directions: NDArray[np.int32],
-    threads: int = 0,
-) -> TracedRays: ...
+class Memory:
+    def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...
+    def render(
+        self,
+        materials: NDArray[np.uint8],
+        camera: NDArray[np.int32],
+        width: int,
+        height: int,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> RenderedPixels: ...
+    def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim.bounds import solid_bounds
+from voxrt.octree import solid_bounds
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -24,7 +24,7 @@ DIRECTION_LIMIT = 1 << 20
 
 _REGISTER_LIMIT = 1 << 15
 _FIELD_OF_VIEW = 35.0
-_THREE_QUARTER = (0.62, 0.55, 1.0)  # from the scene to the eye: front right, from above
+_THREE_QUARTER = (0.62, 0.68, 1.0)  # from the scene to the eye: front right, from above
 _MARGIN = 0.04  # of the frame's side, left free on each side by frame_box
 
 
@@ -113,8 +113,7 @@ def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
     size
         Columns and rows of the frame.
     """
-    side = 1 << rom.octree.depth
-    minimum, maximum = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, side))
+    minimum, maximum = solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3)
     return frame_box(minimum, maximum, size)
 
 

@@ -5,7 +5,7 @@ from pkgutil import extend_path
 __path__ = extend_path(__path__, __name__)
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
-from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.grid import Grid, fit_grid
 from voxrt.voxelize.load import load
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
@@ -23,6 +23,7 @@ from voxrt.voxelize.scene import (
     SphereCollider,
     Viewpoint,
 )
+from voxrt.voxelize.voxelize import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 __all__ = [
@@ -47,5 +48,7 @@ __all__ = [
     "Viewpoint",
     "Voxelization",
     "Voxels",
+    "fit_grid",
     "load",
+    "voxelize",
 ]

@@ -1,7 +1,8 @@
 """Many colours to few: the palette of a scene whose surfaces are painted.
 
-The choice is made by Pillow's median cut in sRGB, which is near enough to what the eye tells apart, and refined by
-k-means; each entry is then the mean, in linear light, of the colours it stands for.
+The choice is Pillow's, in sRGB, which is near enough to what the eye tells apart: colours as far from each other as can
+be, refined by k-means. (Its median cut misses clusters when entries are few.) Each entry is then the mean, in linear
+light, of the colours it stands for.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _PIXELS = 1 << 16
-_ROUNDS = 8
+_UNTIL_CHANGES = 1
 
 
 def quantize(
@@ -68,8 +69,8 @@ def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: i
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]
-    image = Image.fromarray(np.ascontiguousarray(pixels), "RGB")
-    reduced = image.quantize(count, Image.Quantize.MEDIANCUT, kmeans=_ROUNDS, dither=Image.Dither.NONE)
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    reduced = image.quantize(count, Image.Quantize.MAXCOVERAGE, kmeans=_UNTIL_CHANGES, dither=Image.Dither.NONE)
     first = np.cumsum(repeats) - repeats
     _, groups = np.unique(np.asarray(reduced)[0, first], return_inverse=True)
     return groups.reshape(-1)

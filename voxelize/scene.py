@@ -39,8 +39,9 @@ class Material:
     authored: bool = True
 
 
-EMPTY = Material("empty", (0, 0, 0))
-"""Entry 0 of every material table: empty space; its colour is the background's."""
+EMPTY = Material("empty", (24, 28, 36))
+"""Entry 0 of every material table: empty space; its colour is the background's, dark for faces to stand out from it,
+and not black for shaded edges to stand out too."""
 
 DEFAULT_COLOUR = (200, 200, 200)
 """The sRGB colour of the default material."""

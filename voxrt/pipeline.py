@@ -7,7 +7,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from voxrt import export, octree, sim, voxelize
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
@@ -16,9 +16,11 @@ from voxrt.viewpoint import aim_camera
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from voxrt.octree import Rom
-    from voxrt.sim import Camera, Frame
+    from voxrt.octree import Dialect, Rom
+    from voxrt.sim import Camera, Engine, Frame
     from voxrt.voxelize import ObjectReport, SceneWarning
+    from voxrt.voxelize.colliders import Geometry, Pow2
+    from voxrt.voxelize.load import UpAxis
 
 DEFAULT_DEPTH = 7
 """Levels of the octree when neither they nor the voxels' size are given."""
@@ -33,7 +35,7 @@ class Picture:
 
     frame: Frame
     camera: Camera
-    engine: sim.Engine
+    engine: Engine
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -75,15 +77,15 @@ def build(
     *,
     depth: int | None = None,
     voxel_size: float | None = None,
-    fill: voxelize.Fill = "solid",
-    geometry: voxelize.Geometry = "auto",
-    pow2: voxelize.Pow2 = "box",
-    up: voxelize.UpAxis | None = None,
+    fill: Literal["solid", "surface"] = "solid",
+    geometry: Geometry = "auto",
+    pow2: Pow2 = "box",
+    up: UpAxis | None = None,
     unit: float | None = None,
-    dialect: octree.Dialect = "report",
-    preview: str | os.PathLike[str] | None = None,
+    dialect: Dialect = "report",
+    preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
-    engine: sim.Engine = "rtl",
+    engine: Engine = "rtl",
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> BuildResult:
@@ -112,7 +114,8 @@ def build(
     dialect
         How the memory's words spell a material.
     preview
-        PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`.
+        PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
+        ``NAME.preview.png`` in `output`.
     threads
         Threads for the native stages, 0 for one a core. The result does not depend on it.
     progress
@@ -142,8 +145,11 @@ def build(
 
     if output is not None:
         check_folder(Path(output))
-    if preview is not None:
-        check_folder(Path(preview).parent)
+    name = _text(asset.stem)
+    picture_file = None
+    if preview:
+        picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
+        check_folder(picture_file.parent)
     with stage("load"):
         scene = voxelize.load(asset, up=up, unit=unit)
     with stage("fit"):
@@ -153,11 +159,17 @@ def build(
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
-        rom = octree.Rom(_name(asset), octree.build(voxelization.voxels), scene.materials, grid)
+        rom = octree.Rom(name, octree.build(voxelization.voxels), scene.materials, grid)
     warnings = scene.warnings + voxelization.warnings
     outputs: dict[str, Path] = {}
     if output is not None:
-        settings = {"fill": fill, "geometry": geometry, "pow2": pow2, "up": up, "unit": unit}
+        settings: dict[str, str | int | float | bool | None] = {
+            "fill": fill,
+            "geometry": geometry,
+            "pow2": pow2,
+            "up": up,
+            "unit": unit,
+        }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(
                 Path(output),
@@ -166,24 +178,23 @@ def build(
                 objects=voxelization.objects,
                 warnings=warnings,
                 seconds=seconds,
-                source=export.Source(asset.name, settings),
+                source=export.Source(_text(asset.name), settings),
             )
         outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
-    if preview is not None:
+    if picture_file is not None:
         with stage("preview"):
             camera = aim_camera(rom, size)
-            frame = render(rom, camera, size=size, engine=engine, threads=threads)
-            picture = Picture(frame, camera, engine)
-            save_picture(frame, Path(preview))
-            outputs["preview"] = Path(preview)
+            picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
+            save_picture(picture.frame, picture_file)
+            outputs["preview"] = picture_file
     return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
 
 
-def _name(asset: Path) -> str:
-    """Give the asset's name as text that can name files: what is no text, or a backslash, becomes ``_``."""
-    name = os.fsencode(asset.stem).decode("utf-8", "replace")
-    return name.translate({0xFFFD: "_", ord("\\"): "_"})
+def _text(name: str) -> str:
+    """Give a file's name as text that can name other files: what is no text, or a backslash, becomes ``_``."""
+    text = os.fsencode(name).decode("utf-8", "replace")
+    return text.translate({0xFFFD: "_", ord("\\"): "_"})
 
 
 def render(
@@ -191,7 +202,7 @@ def render(
     camera: Camera | None = None,
     *,
     size: tuple[int, int] = PREVIEW_SIZE,
-    engine: sim.Engine = "rtl",
+    engine: Engine = "rtl",
     threads: int = 0,
 ) -> Frame:
     """Render a memory.

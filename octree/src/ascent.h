@@ -1,30 +1,32 @@
-// From octants in Morton order to the root, one pending block a level.
+// From octants in Morton order to larger ones, one pending block a level.
 #pragma once
+
+#include <utility>
 
 #include "block_pool.h"
 
 namespace voxrt::octree {
 
-/// Takes the octants of a world of side 2**depth in Morton order, disjoint, of any levels; what none covers is empty.
-/// Holds one unfinished block a level, so memory is that of the pool alone.
-class Ascent {
+/// Takes disjoint octants in Morton order, of any levels; joins those below level `top` into octants of that level and
+/// hands everything to `emit(level, code, node)`, in Morton order. What no octant covers is empty. Holds one unfinished
+/// block a level, so memory is that of the pool alone.
+template <typename Emit> class Ascent {
 public:
-    Ascent(BlockPool& pool, unsigned depth) : pool_(pool), depth_(depth), root_(kEmpty) {}
+    Ascent(BlockPool& pool, unsigned top, Emit emit) : pool_(pool), top_(top), emit_(std::move(emit)) {}
 
     /// `code` = Morton code of the octant's corner, divided by its volume 8**level.
     void add(unsigned level, std::uint64_t code, Node node) {
-        for (unsigned lower = lowest_; lower < level; ++lower)
+        for (unsigned lower = lowest_; lower < level && lower < top_; ++lower)
             flush(lower);
-        place(level, code, node);
         if (level < lowest_)
             lowest_ = level;
+        place(level, code, node);
     }
 
-    /// The root; nothing may be added afterwards.
-    Node finish() {
-        for (unsigned level = lowest_; level < depth_; ++level)
+    /// Emits what is pending; nothing may be added afterwards.
+    void finish() {
+        for (unsigned level = lowest_; level < top_; ++level)
             flush(level);
-        return root_;
     }
 
 private:
@@ -35,8 +37,8 @@ private:
     };
 
     void place(unsigned level, std::uint64_t code, Node node) {
-        if (level == depth_) {
-            root_ = node;
+        if (level >= top_) {
+            emit_(level, code, node);
             return;
         }
         Pending& pending = pending_[level];
@@ -58,9 +60,9 @@ private:
     }
 
     BlockPool& pool_;
-    unsigned depth_;
+    unsigned top_;
+    Emit emit_;
     unsigned lowest_ = kMaxDepth;
-    Node root_;
     std::array<Pending, kMaxDepth + 1> pending_;
 };
 

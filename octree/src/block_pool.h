@@ -4,6 +4,7 @@
 // other. Bounded by the cache: one probe (a line of slots) and one compare (half a line) a block that is already there.
 #pragma once
 
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -31,7 +32,7 @@ public:
         const std::size_t mask = slots_.size() - 1;
         std::size_t i = hash & mask;
         for (; slots_[i].number != kFree; i = (i + 1) & mask)
-            if (slots_[i].hash == hash && blocks_[slots_[i].number] == children)
+            if (slots_[i].hash == hash && same(blocks_[slots_[i].number], children))
                 return slots_[i].number;
         if (blocks_.size() >= kBlockLimit)
             throw std::length_error("the octree has more blocks than 31-bit addresses can reach");
@@ -41,6 +42,18 @@ public:
         if (2 * blocks_.size() > slots_.size())
             grow();
         return number;
+    }
+
+    /// Interns the blocks of `other`, which were met children first; element i is the node here of its block i.
+    std::vector<Node> absorb(const BlockPool& other) {
+        std::vector<Node> here;
+        here.reserve(other.size());
+        for (Block children : other.blocks_) {
+            for (Node& child : children)
+                child = is_leaf(child) ? child : here[child];
+            here.push_back(intern(children));
+        }
+        return here;
     }
 
     const Block& operator[](Node number) const { return blocks_[number]; }
@@ -54,22 +67,35 @@ private:
     static constexpr Word kFree = 0xFFFFFFFFu;
     static constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
 
-    static bool all_equal(const Block& children) {
-        Word difference = 0;
-        for (unsigned octant = 1; octant < 8; ++octant)
-            difference |= children[octant] ^ children[0];
-        return difference == 0;
+    // Blocks are compared and hashed two words at a time.
+    static std::uint64_t pair(const Block& block, unsigned i) {
+        std::uint64_t words;
+        std::memcpy(&words, &block[2 * i], sizeof words);
+        return words;
     }
 
-    // Multiply-fold mixing, two words a step (Wang Yi, wyhash, 2019).
+    static bool all_equal(const Block& children) {
+        const std::uint64_t first = pair(children, 0);
+        return ((first ^ pair(children, 1)) | (first ^ pair(children, 2)) | (first ^ pair(children, 3)) |
+                (children[0] ^ children[1])) == 0;
+    }
+
+    static bool same(const Block& a, const Block& b) {
+        return ((pair(a, 0) ^ pair(b, 0)) | (pair(a, 1) ^ pair(b, 1)) | (pair(a, 2) ^ pair(b, 2)) |
+                (pair(a, 3) ^ pair(b, 3))) == 0;
+    }
+
+    // Multiply-fold mixing (Wang Yi, wyhash, 2019), in two chains that run side by side.
     static Word hash_of(const Block& children) {
-        std::uint64_t state = 0x9E3779B97F4A7C15u;
-        for (unsigned pair = 0; pair < 4; ++pair) {
-            const std::uint64_t two = children[2 * pair] | std::uint64_t{children[2 * pair + 1]} << 32;
-            const __uint128_t product = static_cast<__uint128_t>(state ^ two) * 0xD6E8FEB86659FD93u;
-            state = static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
-        }
-        return static_cast<Word>(state ^ (state >> 32));
+        const std::uint64_t hash = fold(fold(pair(children, 0) ^ 0x9E3779B97F4A7C15u, pair(children, 1)) ^
+                                            fold(pair(children, 2) ^ 0xA0761D6478BD642Fu, pair(children, 3)),
+                                        0);
+        return static_cast<Word>(hash ^ hash >> 32);
+    }
+
+    static std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
+        const __uint128_t product = static_cast<__uint128_t>(a) * (b ^ 0xD6E8FEB86659FD93u);
+        return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
     }
 
     void grow() {

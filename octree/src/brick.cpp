@@ -1,13 +1,29 @@
 #include "brick.h"
 
+#include <cstring>
+
 namespace voxrt::octree {
+namespace {
+
+constexpr Node kUnknown = 0x7FFFFFFFu; // behind the last block that a pool can hold
+constexpr Word kCells = 256;           // kind of a remembered pattern of 8 materials; kinds below are masks of one
+
+} // namespace
 
 Node BrickBuilder::from_mask8(std::uint8_t mask, std::uint8_t material) {
-    const Word solid = leaf(material);
-    Block children;
-    for (unsigned octant = 0; octant < 8; ++octant)
-        children[octant] = (mask >> octant) & 1 ? solid : kEmpty;
-    return pool_.intern(children);
+    std::unique_ptr<NodesByMask>& nodes = nodes_by_mask_[material];
+    if (!nodes) {
+        nodes = std::make_unique<NodesByMask>();
+        nodes->fill(kUnknown);
+    }
+    Node& node = (*nodes)[mask];
+    if (node == kUnknown) {
+        Block children;
+        for (unsigned octant = 0; octant < 8; ++octant)
+            children[octant] = (mask >> octant) & 1 ? leaf(material) : kEmpty;
+        node = pool_.intern(children);
+    }
+    return node;
 }
 
 Node BrickBuilder::from_mask64(std::uint64_t mask, std::uint8_t material) {
@@ -15,18 +31,12 @@ Node BrickBuilder::from_mask64(std::uint64_t mask, std::uint8_t material) {
         return kEmpty;
     if (mask == ~std::uint64_t{0})
         return leaf(material);
-    std::size_t i = slot_of(mask, material) & (memo_.size() - 1);
-    for (; memo_[i].mask != 0; i = (i + 1) & (memo_.size() - 1))
-        if (memo_[i].mask == mask && memo_[i].material == material)
-            return memo_[i].node;
-    Block children;
-    for (unsigned octant = 0; octant < 8; ++octant)
-        children[octant] = from_mask8(static_cast<std::uint8_t>(mask >> (8 * octant)), material);
-    const Node node = pool_.intern(children);
-    memo_[i] = {mask, material, node};
-    if (2 * ++remembered_ > memo_.size())
-        grow();
-    return node;
+    return memo_.get(mask, material, [&] {
+        Block children;
+        for (unsigned octant = 0; octant < 8; ++octant)
+            children[octant] = from_mask8(static_cast<std::uint8_t>(mask >> (8 * octant)), material);
+        return pool_.intern(children);
+    });
 }
 
 Node BrickBuilder::from_mask(const std::uint64_t mask[8], std::uint8_t material) {
@@ -39,12 +49,14 @@ Node BrickBuilder::from_mask(const std::uint64_t mask[8], std::uint8_t material)
 Node BrickBuilder::from_cells8(const std::uint8_t cells[8]) {
     std::uint64_t eight;
     std::memcpy(&eight, cells, 8);
-    if (eight == (eight & 0xFF) * 0x0101010101010101u)
+    if (eight == cells[0] * 0x0101010101010101u)
         return leaf(cells[0]);
-    Block children;
-    for (unsigned octant = 0; octant < 8; ++octant)
-        children[octant] = leaf(cells[octant]);
-    return pool_.intern(children);
+    return memo_.get(eight, kCells, [&] {
+        Block children;
+        for (unsigned octant = 0; octant < 8; ++octant)
+            children[octant] = leaf(cells[octant]);
+        return pool_.intern(children);
+    });
 }
 
 Node BrickBuilder::from_cells64(const std::uint8_t cells[64]) {
@@ -59,19 +71,6 @@ Node BrickBuilder::from_cells(const std::uint8_t cells[512]) {
     for (unsigned octant = 0; octant < 8; ++octant)
         children[octant] = from_cells64(cells + 64 * octant);
     return pool_.intern(children);
-}
-
-void BrickBuilder::grow() {
-    std::vector<Remembered> old(2 * memo_.size());
-    old.swap(memo_);
-    for (const Remembered& entry : old) {
-        if (entry.mask == 0)
-            continue;
-        std::size_t i = slot_of(entry.mask, entry.material) & (memo_.size() - 1);
-        while (memo_[i].mask != 0)
-            i = (i + 1) & (memo_.size() - 1);
-        memo_[i] = entry;
-    }
 }
 
 } // namespace voxrt::octree

@@ -1,18 +1,17 @@
 // A brick of 8x8x8 voxels to a node, by bit operations.
 #pragma once
 
-#include <cstring>
-#include <vector>
+#include <memory>
 
-#include "block_pool.h"
+#include "node_memo.h"
 
 namespace voxrt::octree {
 
-/// Turns bricks into nodes of a pool. Remembers the 4x4x4 masks that it met (one material each), which is where nearly
-/// all the work of a smooth surface repeats.
+/// Turns bricks into nodes of a pool. Remembers the 2x2x2 and 4x4x4 patterns that it met, which is where nearly all the
+/// work of a smooth surface repeats; bounded by one probe of a table that fits the cache for each 4x4x4 part.
 class BrickBuilder {
 public:
-    explicit BrickBuilder(BlockPool& pool) : pool_(pool), memo_(1u << 14) {}
+    explicit BrickBuilder(BlockPool& pool) : pool_(pool) {}
 
     /// A brick of one material: bit i of the 512 (Morton order) says whether voxel i is solid.
     Node from_mask(const std::uint64_t mask[8], std::uint8_t material);
@@ -33,21 +32,11 @@ public:
     Node from_cells8(const std::uint8_t cells[8]);
 
 private:
-    struct Remembered {
-        std::uint64_t mask = 0; // 0 marks a free slot: an empty mask is a leaf and never looked up
-        Word material = 0;
-        Node node = 0;
-    };
-
-    void grow();
-    static std::size_t slot_of(std::uint64_t mask, Word material) {
-        const std::uint64_t mixed = (mask ^ (std::uint64_t{material} << 56)) * 0x9E3779B97F4A7C15u;
-        return static_cast<std::size_t>((mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93u >> 32);
-    }
+    using NodesByMask = std::array<Node, 256>;
 
     BlockPool& pool_;
-    std::vector<Remembered> memo_;
-    std::size_t remembered_ = 0;
+    NodeMemo memo_;
+    std::array<std::unique_ptr<NodesByMask>, 256> nodes_by_mask_; // of 2x2x2 voxels, a table a material
 };
 
 } // namespace voxrt::octree

@@ -1,5 +1,7 @@
 #include "build.h"
 
+#include <algorithm>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -7,6 +9,7 @@
 #include "breadth_first.h"
 #include "brick.h"
 #include "interrupt.h"
+#include "workers.h"
 
 namespace voxrt::octree {
 namespace {
@@ -82,52 +85,134 @@ Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) 
     }
 }
 
-} // namespace
+// A run of the Morton curve: what lies from `begin` up to `end`, in bricks.
+struct Chunk {
+    std::uint64_t begin;
+    std::uint64_t end;
+    std::size_t brick;
+    std::size_t octant;
+};
 
-std::vector<Word> build(const VoxelsView& voxels) {
-    const unsigned depth = voxels.depth;
-    const unsigned brick_level = depth < kBrickLevel ? depth : kBrickLevel;
-    const std::uint64_t brick_limit = std::uint64_t{1} << (3 * (depth - brick_level));
-    BlockPool pool(voxels.bricks / 2);
-    BrickBuilder builder(pool);
-    Ascent ascent(pool, depth);
-    Interrupt interrupt;
+// Chunks end where octants of this level do, so that no block below that level is shared between two.
+constexpr unsigned kChunkLevel = 6;
+constexpr std::size_t kChunkBricks = 2048;
 
-    std::uint64_t covered = 0; // Morton code, in bricks, behind the last item
-    std::size_t brick = 0;
-    std::size_t octant = 0;
-    while (brick < voxels.bricks || octant < voxels.octants) {
-        interrupt.poll();
-        unsigned level = 0;
-        std::uint64_t begin = 0;
-        if (octant < voxels.octants) {
-            level = voxels.octant_levels[octant];
-            if (level < kBrickLevel || level > depth)
-                refuse("octant", octant, "has a level outside 3 ... depth");
-            if (voxels.octant_codes[octant] >= std::uint64_t{1} << (3 * (depth - level)))
-                refuse("octant", octant, "lies outside the grid");
-            begin = voxels.octant_codes[octant] << (3 * (level - kBrickLevel));
+std::uint64_t octant_begin(const VoxelsView& voxels, std::size_t i) {
+    const unsigned level = voxels.octant_levels[i];
+    if (level < kBrickLevel || level > voxels.depth)
+        refuse("octant", i, "has a level outside 3 ... depth");
+    if (voxels.octant_codes[i] >= std::uint64_t{1} << (3 * (voxels.depth - level)))
+        refuse("octant", i, "lies outside the grid");
+    return voxels.octant_codes[i] << (3 * (level - kBrickLevel));
+}
+
+std::vector<Chunk> cut_into_chunks(const VoxelsView& voxels) {
+    const std::uint64_t end = voxels.depth <= kBrickLevel ? 1 : std::uint64_t{1} << (3 * (voxels.depth - kBrickLevel));
+    std::vector<Chunk> chunks{{0, end, 0, 0}};
+    if (voxels.depth <= kChunkLevel)
+        return chunks;
+    for (std::size_t brick = kChunkBricks; brick < voxels.bricks; brick += kChunkBricks) {
+        constexpr unsigned shift = 3 * (kChunkLevel - kBrickLevel);
+        const std::uint64_t begin = voxels.brick_codes[brick] >> shift << shift;
+        if (begin <= chunks.back().begin || begin >= end)
+            continue;
+        const std::uint64_t* first = std::lower_bound(voxels.brick_codes, voxels.brick_codes + voxels.bricks, begin);
+        std::size_t low = chunks.back().octant;
+        for (std::size_t high = voxels.octants; low < high;) {
+            const std::size_t middle = low + (high - low) / 2;
+            if (octant_begin(voxels, middle) < begin)
+                low = middle + 1;
+            else
+                high = middle;
         }
-        if (brick < voxels.bricks && (octant == voxels.octants || voxels.brick_codes[brick] < begin)) {
+        chunks.back().end = begin;
+        chunks.push_back({begin, end, static_cast<std::size_t>(first - voxels.brick_codes), low});
+    }
+    return chunks;
+}
+
+// Feeds the bricks and octants of `chunk` to `ascent` in Morton order, up to those where the next chunk starts.
+template <typename Ascending>
+void climb(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, std::size_t octant_end,
+           BrickBuilder& builder, Ascending& ascent) {
+    const unsigned brick_level = std::min(voxels.depth, kBrickLevel);
+    std::uint64_t covered = chunk.begin;
+    std::size_t brick = chunk.brick;
+    std::size_t octant = chunk.octant;
+    std::uint64_t next_octant = octant < octant_end ? octant_begin(voxels, octant) : 0;
+    while (brick < brick_end || octant < octant_end) {
+        if (brick < brick_end && (octant == octant_end || voxels.brick_codes[brick] < next_octant)) {
             const std::uint64_t code = voxels.brick_codes[brick];
-            if (code >= brick_limit)
-                refuse("brick", brick, "lies outside the grid");
+            if (code >= chunk.end)
+                refuse("brick", brick, "lies outside the grid or out of Morton order");
             if (code < covered)
                 refuse("brick", brick, "is out of Morton order or overlaps what came before");
             ascent.add(brick_level, code, brick_node(voxels, brick, builder));
             covered = code + 1;
             ++brick;
         } else {
-            if (begin < covered)
+            const unsigned level = voxels.octant_levels[octant];
+            if (next_octant < covered)
                 refuse("octant", octant, "is out of Morton order or overlaps what came before");
             if (voxels.octant_materials[octant] == 0)
                 refuse("octant", octant, "has no material");
             ascent.add(level, voxels.octant_codes[octant], leaf(voxels.octant_materials[octant]));
-            covered = begin + (std::uint64_t{1} << (3 * (level - kBrickLevel)));
-            ++octant;
+            covered = next_octant + (std::uint64_t{1} << (3 * (level - kBrickLevel)));
+            if (covered > chunk.end)
+                refuse("octant", octant, "overlaps what comes behind");
+            if (++octant < octant_end)
+                next_octant = octant_begin(voxels, octant);
         }
     }
-    return breadth_first_words(pool, ascent.finish());
+    ascent.finish();
+}
+
+// An octant of at least the chunk level, as a worker left it.
+struct Part {
+    unsigned level;
+    std::uint64_t code;
+    Node node;
+};
+
+struct Worker {
+    BlockPool pool;
+    BrickBuilder builder{pool};
+};
+
+} // namespace
+
+std::vector<Word> build(const VoxelsView& voxels, unsigned threads) {
+    const std::vector<Chunk> chunks = cut_into_chunks(voxels);
+    const unsigned top = std::min(voxels.depth, kChunkLevel);
+    std::vector<Worker> workers(worker_count(threads, chunks.size()));
+    std::vector<std::vector<Part>> parts(chunks.size());
+    std::vector<unsigned> worker_of(chunks.size());
+    for_each_chunk(static_cast<unsigned>(workers.size()), chunks.size(), [&](unsigned worker, std::size_t i) {
+        if (worker == 0)
+            Interrupt::check();
+        const bool last = i + 1 == chunks.size();
+        const auto keep = [&](unsigned level, std::uint64_t code, Node node) {
+            parts[i].push_back({level, code, node});
+        };
+        Ascent ascent(workers[worker].pool, top, keep);
+        worker_of[i] = worker;
+        climb(voxels, chunks[i], last ? voxels.bricks : chunks[i + 1].brick,
+              last ? voxels.octants : chunks[i + 1].octant, workers[worker].builder, ascent);
+    });
+
+    BlockPool& pool = workers[0].pool;
+    std::vector<std::vector<Node>> translation(workers.size());
+    for (std::size_t worker = 1; worker < workers.size(); ++worker)
+        translation[worker] = pool.absorb(workers[worker].pool);
+    Node root = kEmpty;
+    Ascent ascent(pool, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
+    for (std::size_t i = 0; i < chunks.size(); ++i)
+        for (const Part& part : parts[i]) {
+            const bool foreign = worker_of[i] != 0 && !is_leaf(part.node);
+            ascent.add(part.level, part.code, foreign ? translation[worker_of[i]][part.node] : part.node);
+        }
+    ascent.finish();
+    return breadth_first_words(pool, root);
 }
 
 } // namespace voxrt::octree

@@ -24,8 +24,9 @@ struct VoxelsView {
     const std::uint8_t* octant_materials;
 };
 
-/// The shared, breadth-first memory of `voxels`. Cost: bricks and octants, never volume. Throws std::invalid_argument
-/// where the arrays break their contract. The GIL must not be held.
-std::vector<Word> build(const VoxelsView& voxels);
+/// The shared, breadth-first memory of `voxels`, the same for every number of threads (0: all that the machine has).
+/// Cost: bricks and octants, never volume; memory: the blocks that differ, once and once more a further thread. Throws
+/// std::invalid_argument where the arrays break their contract. The GIL must not be held.
+std::vector<Word> build(const VoxelsView& voxels, unsigned threads);
 
 } // namespace voxrt::octree

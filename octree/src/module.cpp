@@ -11,11 +11,15 @@
 #include <string>
 #include <tuple>
 
+#include "breadth_first.h"
+#include "budget.h"
 #include "build.h"
+#include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
 #include "leaves.h"
 #include "query.h"
+#include "surface.h"
 #include "validate.h"
 
 namespace nb = nanobind;
@@ -70,7 +74,8 @@ Box box_of(const Corner& low, const Corner& high) {
 auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const Rows<std::uint64_t, 8>& brick_masks,
                 const Vector<std::uint8_t>& brick_materials, const Vector<std::int32_t>& brick_rows,
                 const Rows<std::uint8_t, 512>& cells, const Vector<std::uint64_t>& octant_codes,
-                const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials) {
+                const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials,
+                unsigned threads) {
     require_depth(depth);
     const std::size_t bricks = brick_codes.shape(0);
     const std::size_t octants = octant_codes.shape(0);
@@ -93,7 +98,7 @@ auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const 
     std::vector<Word> words;
     {
         nb::gil_scoped_release release;
-        words = build(view);
+        words = build(view, threads);
     }
     return words_to_numpy(std::move(words));
 }
@@ -204,6 +209,43 @@ bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth)
     return {found.appeared, found.vanished, found.recoloured, bounds};
 }
 
+auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
+    const Memory memory = memory_of(words, depth);
+    std::vector<Word> coarse;
+    {
+        nb::gil_scoped_release release;
+        BlockPool pool;
+        const Node root = coarsen(memory, level, pool);
+        coarse = breadth_first_words(pool, root);
+    }
+    return words_to_numpy(std::move(coarse));
+}
+
+auto bind_merge_blocks(
+    const Vector<Word>& words, unsigned depth, unsigned finest,
+    const nb::ndarray<const std::uint16_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>& costs,
+    std::uint64_t fine_price, std::uint64_t coarse_price) {
+    const Memory memory = memory_of(words, depth);
+    require(std::max(fine_price, coarse_price) <= std::uint64_t{1} << 60, "the price is above 2**60");
+    auto recolour = std::make_unique<RecolourCosts>();
+    std::copy_n(costs.data(), 256 * 256, (*recolour)[0].data());
+    std::vector<Word> merged;
+    {
+        nb::gil_scoped_release release;
+        merged = merge_blocks(memory, finest, *recolour, fine_price, coarse_price);
+    }
+    return words_to_numpy(std::move(merged));
+}
+
+std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& first, const Vector<Word>& second,
+                                                            unsigned depth) {
+    const Memory a = memory_of(first, depth);
+    const Memory b = memory_of(second, depth);
+    nb::gil_scoped_release release;
+    const SurfaceChange change = surface_change(a, b);
+    return {change.surface, change.changed};
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -241,7 +283,7 @@ NB_MODULE(_native, m) {
     using namespace voxrt::octree;
     m.def("build", &bind_build, "depth"_a, "brick_codes"_a.noconvert(), "brick_masks"_a.noconvert(),
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
-          "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert());
+          "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
     m.def("build_dense", &bind_build_dense, "cells"_a.noconvert(), "depth"_a);
     m.def("validate", &bind_validate, "words"_a.noconvert(), "depth"_a);
     m.def("materials_at", &bind_materials_at, "words"_a.noconvert(), "depth"_a, "points"_a.noconvert());
@@ -250,6 +292,10 @@ NB_MODULE(_native, m) {
     m.def("solid_bounds", &bind_solid_bounds, "words"_a.noconvert(), "depth"_a);
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
+    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "depth"_a, "finest"_a, "costs"_a.noconvert(),
+          "fine_price"_a, "coarse_price"_a);
+    m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

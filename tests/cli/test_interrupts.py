@@ -7,39 +7,62 @@ import os
 import signal
 import subprocess
 import sys
-from itertools import count
+from pathlib import Path
 
 import pytest
 
 import voxrt as library
 
-ARGUMENTS = ["build", "house.obj", "-o", "out", "--preview", "--size", "16x12", "--engine", "model"]
-
-# Sends itself a signal at the n-th time that the run touches a file below a folder.
-AT_A_TOUCH = """
-import os, signal, sys
-moment, number, folder = int(sys.argv.pop(1)), int(sys.argv.pop(1)), sys.argv.pop(1)
-touches = 0
+# Builds again and again over the same old files, in children of its own, and signals the n-th of them at the n-th time
+# that it touches a file; leaves what it finds each time in a folder of its own.
+AT_EVERY_TOUCH = """
+import os, shutil, signal, sys
+from itertools import count
+import voxrt.pipeline
+from voxrt.cli import main
+number, folder = int(sys.argv[1]), os.getcwd()
+touches = moment = 0
 def watch(event, arguments):
     global touches
-    if event in {"open", "os.rename", "os.remove", "os.mkdir", "os.chmod"} and folder in str(arguments[0]):
-        touches += 1
-        if touches == moment:
-            signal.raise_signal(number)
-from voxrt.cli import main
-sys.addaudithook(watch)
-main()
+    if event in {"open", "os.rename", "os.remove", "os.mkdir", "os.chmod"} and not isinstance(arguments[0], int):
+        if os.path.abspath(os.fsdecode(arguments[0])).startswith(folder):
+            touches += 1
+            if touches == moment:
+                signal.raise_signal(number)
+def build(depth):
+    child = os.fork()
+    if not child:
+        os.dup2(os.open("errors", os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 2)
+        sys.argv = ["voxrt", "build", "house.obj", "-o", "out", "--depth", str(depth)]
+        sys.argv += ["--preview", "--size", "16x12", "--engine", "model"]
+        sys.addaudithook(watch)
+        try:
+            main()
+        except SystemExit as end:
+            os._exit(end.code)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+for depth in (4, 3):
+    assert build(depth) == 0
+    shutil.copytree("out", f"depth-{depth}")
+for moment in count(1):
+    code = build(4)
+    shutil.move("out", f"moment-{moment}")
+    shutil.move("errors", f"moment-{moment}.errors")
+    if code == 0:
+        break
+    assert code == 128 + number, code
+    shutil.copytree("depth-3", "out")
 """
 
 # Sends itself a signal while the model renders.
 IN_NATIVE_CODE = """
 import os, signal, sys, threading
 from voxrt.sim import _model
-render = _model.render
-def render_interrupted(*arguments):
-    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-    return render(*arguments)
-_model.render = render_interrupted
+class Memory(_model.Memory):
+    def render(self, *arguments):
+        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        return super().render(*arguments)
+_model.Memory = Memory
 from voxrt.cli import main
 main()
 """
@@ -50,34 +73,35 @@ def run(folder, code, *arguments):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
 
 
+def files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_at_every_touch_of_a_file(folder, number):
-    states = {}
-    for depth in (3, 4):
-        finished = run(folder, AT_A_TOUCH, -1, 0, "-", *ARGUMENTS, "--depth", depth)
-        assert finished.returncode == 0, finished.stderr
-        states[depth] = {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
-    for moment in count(1):
-        for name, content in states[3].items():
-            (folder / "out" / name).write_bytes(content)
-        finished = run(folder, AT_A_TOUCH, moment, int(number), str(folder / "out"), *ARGUMENTS, "--depth", 4)
-        if finished.returncode == 0:
-            break
-        assert finished.returncode == 128 + number
-        assert len(finished.stderr.splitlines()) == 1, finished.stderr
-        now = {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
+    finished = run(folder, AT_EVERY_TOUCH, int(number))
+    assert finished.returncode == 0, finished.stderr
+    states = {depth: files(folder / f"depth-{depth}") for depth in (3, 4)}
+    *interrupted, complete = sorted(folder.glob("moment-*[0-9]"), key=lambda path: int(path.name.split("-")[1]))
+    assert len(interrupted) >= 6
+    found = set()
+    for moment in interrupted:
+        assert (folder / f"{moment.name}.errors").read_text().count("\n") == 1
+        now = files(moment)
         assert set(now) == set(states[3])
         assert now["house.preview.png"] in {states[3]["house.preview.png"], states[4]["house.preview.png"]}
-        rom, warnings = library.read_rom(folder / "out/house.mem")
+        rom, warnings = library.read_rom(moment / "house.mem")
         assert warnings == ()
         assert now["house.mem"] == states[rom.octree.depth]["house.mem"]
         assert json.loads(now["house.json"])["depth"] == rom.octree.depth
-    assert moment > 5
+        found.add(rom.octree.depth)
+    assert found == {3, 4}
+    assert files(complete)["house.preview.png"] == states[4]["house.preview.png"]
 
 
 def test_in_native_code(folder):
-    assert run(folder, AT_A_TOUCH, -1, 0, "-", "build", "house.obj", "--depth", 6).returncode == 0
-    finished = run(folder, IN_NATIVE_CODE, "render", "house.mem", "--engine", "model", "--size", "16000x16000")
+    library.build(folder / "house.obj", folder, depth=6)
+    finished = run(folder, IN_NATIVE_CODE, "render", "house.mem", "--engine", "model", "--size", "8000x8000")
     assert finished.returncode == 130
     assert finished.stderr == "voxrt: error: interrupted: every file is as it was, or complete\n"
     assert not (folder / "house.png").exists()
@@ -94,10 +118,10 @@ def test_nobody_reads_stdout(folder, arguments):
     assert finished.stderr == b""
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 def test_stdout_is_full(folder):
     command = [sys.executable, "-m", "voxrt", "build", "house.obj", "--depth", "3", "--json"]
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         finished = subprocess.run(command, cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert finished.returncode == 2
     assert finished.stderr == "voxrt: error: standard output: No space left on device\n"

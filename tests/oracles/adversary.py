@@ -35,3 +35,21 @@ def adversarial_rays(side, count, seed):
     aimed = (place == 3) & (kind == 0)
     origins = np.select([place == 0, place == 1, place == 2, aimed], [on_planes, on_some, on_world, corners], origins)
     return origins.astype(np.int32), directions.astype(np.int32)
+
+
+def adversarial_cameras(side, count, seed):
+    """Give registers (N, 4, 3), int32, for frames up to 48 x 36 pixels of a world of `side` voxels."""
+    rng = np.random.default_rng(seed)
+    positions, _ = adversarial_rays(side, count, seed)
+    shape = (count, 3, 3)
+    small = rng.integers(-3, 4, shape)
+    look_along_an_axis = np.zeros(shape, np.int64)
+    signs = rng.choice([-1, 1], (count, 3))
+    for i, order in enumerate(rng.permuted(np.tile(np.arange(3), (count, 1)), axis=1)):
+        look_along_an_axis[i, np.arange(3), order] = signs[i] * [rng.integers(1, 60), 1, 1]
+    large = rng.integers(-24_000, 24_001, shape)
+    mixed = np.where(rng.random(shape) < 0.4, 0, large >> rng.integers(0, 14, shape))
+    triples = np.select(
+        [np.arange(count)[:, None, None] % 4 == kind for kind in range(3)], [small, look_along_an_axis, large], mixed
+    )
+    return np.concatenate([positions[:, None], triples], axis=1).astype(np.int32)

@@ -46,3 +46,16 @@ def sponge(depth: int) -> NDArray[np.uint8]:
         middles = sum((axis // scale % 3 == 1).astype(int) for axis in (x, y, z))
         solid &= middles < 2
     return np.where(solid, 1 + x // 9 % 3, 0).astype(np.uint8)
+
+
+WORLDS = {
+    "sparse noise": noise(5, 0.01, 1),
+    "dense noise": noise(3, 0.3, 2),
+    "boxes": boxes(6, 12, 3),
+    "ball": ball(4),
+    "sponge": sponge(5),
+    "one voxel": np.where(np.indices((4, 4, 4)).sum(axis=0) == 0, 7, 0).astype(np.uint8),
+    "smallest": noise(1, 0.5, 4),
+    "all solid": np.full((8, 8, 8), 255, np.uint8),
+    "nothing": np.zeros((8, 8, 8), np.uint8),
+}

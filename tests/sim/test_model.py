@@ -4,29 +4,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles import ray, worlds
-from oracles.adversary import adversarial_rays
+from oracles import ray
+from oracles.adversary import adversarial_cameras, adversarial_rays
 from oracles.cuts import memory_of
 from oracles.ray_batch import trace_batch
+from oracles.worlds import WORLDS
 
-from voxrt.sim import _model
+from voxrt.sim import Camera, _model, pixel_directions
 
-WORLDS = {
-    "sparse noise": worlds.noise(5, 0.01, 1),
-    "dense noise": worlds.noise(3, 0.3, 2),
-    "boxes": worlds.boxes(6, 12, 3),
-    "ball": worlds.ball(4),
-    "sponge": worlds.sponge(5),
-    "one voxel": np.where(np.indices((4, 4, 4)).sum(axis=0) == 0, 7, 0).astype(np.uint8),
-    "smallest": worlds.noise(1, 0.5, 4),
-    "all solid": np.full((8, 8, 8), 255, np.uint8),
-    "nothing": np.zeros((8, 8, 8), np.uint8),
-}
 RAYS_A_WORLD = 13_000
 
 
 def trace(voxels, origins, directions, **cut):
-    return _model.trace(memory_of(voxels, **cut), len(voxels).bit_length() - 1, origins, directions)
+    return _model.Memory(memory_of(voxels, **cut), len(voxels).bit_length() - 1).trace(origins, directions)
 
 
 @pytest.fixture(scope="module", params=WORLDS, ids=lambda name: name.replace(" ", "-"))
@@ -88,7 +78,7 @@ def test_a_world_of_depth_16_is_walked_to_its_voxels():
     end = 16 << depth
     origins = np.array([[8, 8, -8], [end - 8, end - 8, end + 8], [8, 8, end + 8], [-8, -8, -8]], np.int32)
     directions = np.array([[0, 0, 1], [0, 0, -(2**20) + 1], [0, 0, -1], [2**20 - 1, 2**20 - 1, 2**20 - 1]], np.int32)
-    traced = _model.trace(words, depth, origins, directions)
+    traced = _model.Memory(words, depth).trace(origins, directions)
     last = (1 << depth) - 1
     assert traced["cell"].tolist() == [[0, 0, 0], [last, last, last], [0, 0, 0], [0, 0, 0]]
     assert traced["material"].tolist() == [5, 12, 5, 5]
@@ -100,21 +90,55 @@ CAMERAS = {
     "inside": ([250, 250, 250], [7, 7, 40], [2, 0, 0], [0, 2, 0]),
     "on a plane, along an axis": ([256, 256, 0], [0, 0, 30], [1, 0, 0], [0, 1, 0]),
     "no direction at all": ([256, 256, 256], [0, 0, 0], [1, 0, 0], [0, 1, 0]),
-    "all directions zero": ([40, 40, 40], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
+    "all directions zero, in a solid": ([0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
 }
 
 
 @pytest.mark.parametrize("camera", CAMERAS.values(), ids=CAMERAS)
 @pytest.mark.parametrize("size", [(24, 17), (1, 1), (2, 31)])
 def test_a_frame_is_the_oracles_pixel_by_pixel(camera, size):
-    voxels = WORLDS["sparse noise"]
+    voxels = WORLDS["sparse noise"].copy()
+    voxels[0, 0, 0] = 77
     palette = np.random.default_rng(7).integers(0, 256, (256, 3), dtype=np.uint8)
     registers = np.array(camera, np.int32)
-    frame = _model.render(memory_of(voxels), 5, palette, registers, *size)
+    frame = _model.Memory(memory_of(voxels), 5).render(palette, registers, *size)
     colour, material, face = ray.render(voxels, registers, *size, palette)
     np.testing.assert_array_equal(frame["material"], material)
     np.testing.assert_array_equal(frame["face"], face)
     np.testing.assert_array_equal(frame["colour"], colour)
+
+
+@pytest.mark.parametrize("instructions", _model.INSTRUCTION_SETS)
+@pytest.mark.parametrize("name", WORLDS)
+def test_frames_are_what_the_walk_meets_with_every_instruction_set(name, instructions):
+    voxels = WORLDS[name]
+    depth = len(voxels).bit_length() - 1
+    words = memory_of(voxels)
+    palette = np.random.default_rng(12).integers(0, 256, (256, 3), dtype=np.uint8)
+    for registers in adversarial_cameras(len(voxels), 12, seed=depth):
+        size = (45, 29)
+        frame = _model.Memory(words, depth).render(palette, registers, *size, 1, instructions)
+        camera = Camera(*(tuple(triple) for triple in registers.tolist()))
+        directions = pixel_directions(camera, size).reshape(-1, 3)
+        material, face, _ = trace_batch(voxels, np.broadcast_to(registers[0], directions.shape), directions)
+        np.testing.assert_array_equal(frame["material"].reshape(-1), material)
+        np.testing.assert_array_equal(frame["face"].reshape(-1), face)
+        np.testing.assert_array_equal(frame["colour"].reshape(-1, 3), shades(palette[material], directions, face))
+
+
+def shades(colours, directions, face):
+    """Round c d_a² / |d|² half up, in whole numbers; without a face, c."""
+    square = directions**2
+    across = np.take_along_axis(square, np.minimum(face, 2)[:, None].astype(np.int64), axis=1)
+    length = np.maximum(square.sum(axis=1, keepdims=True), 1)
+    lit = (2 * colours.astype(np.int64) * across + length) // (2 * length)
+    return np.where(face[:, None] == 3, colours, lit)
+
+
+def test_an_instruction_set_that_is_not_there_is_refused():
+    memory = _model.Memory(np.array([0xFFFFFF00], np.uint32), 1)
+    with pytest.raises(ValueError, match="no instruction set 'mmx'"):
+        memory.render(np.zeros((256, 3), np.uint8), np.ones((4, 3), np.int32), 4, 4, 1, "mmx")
 
 
 @settings(max_examples=300, deadline=None)
@@ -129,7 +153,7 @@ def test_the_shade_is_rounded_half_up(colour, direction):
     palette[0] = 0
     middle = [16 - 40 * d // max(map(abs, direction)) for d in direction]
     registers = np.array([middle, direction, [0, 0, 0], [0, 0, 0]], np.int32)
-    frame = _model.render(words, 1, palette, registers, 1, 1)
+    frame = _model.Memory(words, 1).render(palette, registers, 1, 1)
     if frame["material"][0, 0]:
         expected = ray.shade([colour] * 3, direction, int(frame["face"][0, 0]))
         assert tuple(frame["colour"][0, 0]) == expected
@@ -140,7 +164,7 @@ def test_the_frame_does_not_depend_on_the_threads(threads):
     words = memory_of(WORLDS["boxes"])
     palette = np.arange(768, dtype=np.uint64).astype(np.uint8).reshape(256, 3)
     registers = np.array(([-300, 900, 1500], [40, -20, -60], [2, 0, 1], [0, 2, 0]), np.int32)
-    frames = [_model.render(words, 6, palette, registers, 75, 50, count) for count in (1, threads)]
+    frames = [_model.Memory(words, 6).render(palette, registers, 75, 50, count) for count in (1, threads)]
     for what in ("colour", "material", "face", "words_read"):
         np.testing.assert_array_equal(frames[0][what], frames[1][what])
     assert len(np.unique(frames[0]["material"])) > 3
@@ -162,9 +186,8 @@ def test_the_frame_does_not_depend_on_the_threads(threads):
     ],
 )
 def test_a_memory_that_is_not_one_is_refused(words, depth, message):
-    nothing = np.zeros((1, 3), np.int32)
     with pytest.raises(ValueError, match=message):
-        _model.trace(np.array(words, np.uint32), depth, nothing, nothing)
+        _model.Memory(np.array(words, np.uint32), depth)
 
 
 @settings(max_examples=200, deadline=None)
@@ -172,16 +195,17 @@ def test_a_memory_that_is_not_one_is_refused(words, depth, message):
 def test_any_memory_is_traced_or_refused(words):
     origins, directions = adversarial_rays(64, 64, seed=8)
     try:
-        traced = _model.trace(np.array(words, np.uint32), 6, origins, directions)
+        memory = _model.Memory(np.array(words, np.uint32), 6)
     except ValueError:
         return
+    traced = memory.trace(origins, directions)
     assert set(np.unique(traced["material"])) <= {0, 3}
 
 
 def test_directions_out_of_range_are_refused():
     words = np.array([0xFFFFFF00], np.uint32)
     with pytest.raises(ValueError, match=r"direction 0 reaches 1048576 on axis y"):
-        _model.trace(words, 1, np.zeros((1, 3), np.int32), np.array([[0, 1 << 20, 0]], np.int32))
+        _model.Memory(words, 1).trace(np.zeros((1, 3), np.int32), np.array([[0, 1 << 20, 0]], np.int32))
     registers = np.array([[0, 0, 0], [0, 0, 1 << 19], [1 << 14, 0, 0], [0, 0, 0]], np.int32)
     with pytest.raises(ValueError, match=r"pixel \(0, 0\) reaches -1048576 on axis x"):
-        _model.render(words, 1, np.zeros((256, 3), np.uint8), registers, 128, 4)
+        _model.Memory(words, 1).render(np.zeros((256, 3), np.uint8), registers, 128, 4)

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
+PHYSICS = "KHR_physics_rigid_bodies"
+SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
 TEXTURE_TRANSFORM = "KHR_texture_transform"
 VARIANTS = "KHR_materials_variants"
@@ -20,6 +22,8 @@ HONOURED = frozenset(
     {
         DRACO,
         INSTANCING,
+        PHYSICS,
+        SHAPES,
         SPECULAR_GLOSSINESS,
         TEXTURE_TRANSFORM,
         VARIANTS,

@@ -127,11 +127,11 @@ def make_table(document: Document, used: Iterable[MaterialKey]) -> tuple[list[Ma
         if look.renamed:
             merged[group] = ids[key]
         append_named(table, material, _place(key))
-    if len(table) - 1 > MATERIAL_LIMIT:
-        raise DoesNotFitError(
-            f"{document.path}: uses {len(table) - 1} materials, a memory holds {MATERIAL_LIMIT}; "
-            "give materials that look alike one name in their voxrt_material property"
-        )
+        if len(table) - 1 > MATERIAL_LIMIT:
+            raise DoesNotFitError(
+                f"{document.path}: uses more than the {MATERIAL_LIMIT} materials that a memory holds; "
+                "give materials that look alike one name in their voxrt_material property"
+            )
     return table, ids
 
 

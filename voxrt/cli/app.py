@@ -84,6 +84,8 @@ def run(arguments: Sequence[str]) -> ExitCode:
     except Terminated:
         complain("terminated: every file is as it was, or complete")
         return ExitCode.TERMINATED
+    except SystemExit:
+        return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
     except BrokenPipeError:
         # Nobody reads standard output any more: let the interpreter's last flush go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -99,6 +101,8 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
     """Say in one line what went wrong, and in a number whose fault it is."""
     problem, code = str(error), ExitCode.BUG
     match error:
+        case ImportError():
+            problem = f"this installation of voxrt is not complete: {problem}; install it again"
         case cyclopts.CycloptsError() | UsageError():
             command = [name for name in arguments[:1] if name in app]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE

@@ -76,10 +76,7 @@ def build(
     for option, value in (("--voxel-size", voxel_size), ("--unit", unit)):
         if value is not None and not 0 < value < float("inf"):
             raise UsageError(f"{option} {value} is not a positive number of metres")
-    picture = None
-    if preview is not None:
-        picture = png(Path(preview)) if preview else output / f"{asset.stem}.preview.png"
-    with stage_bar(6 if picture else 5) as progress:
+    with stage_bar(5 if preview is None else 6) as progress:
         result = voxrt.build(
             asset,
             output,
@@ -91,7 +88,7 @@ def build(
             up=up,
             unit=unit,
             dialect=dialect,
-            preview=picture,
+            preview=png(Path(preview)) if preview else preview is not None,
             size=size,
             engine=engine,
             progress=progress,

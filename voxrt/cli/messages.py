@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from voxrt.sim import Frame
     from voxrt.voxelize import SceneWarning
 
+_SHOWN_OF_A_KIND = 3
+
 
 def printable(text: object) -> str:
     """Make one line of a text, with what a terminal would act on, and what is no text at all, spelled out."""
@@ -26,10 +28,16 @@ def complain(problem: str) -> None:
 
 
 def warn(warnings: Iterable[SceneWarning]) -> None:
-    """Print warnings, a line each."""
+    """Print warnings, a line each, the first few of a kind; the manifest has them all."""
+    kinds: dict[str, list[SceneWarning]] = {}
     for warning in warnings:
-        times = f" ({warning.count} times)" if warning.count > 1 else ""
-        _print(f"voxrt: warning: {printable(warning.message)}{times}")
+        kinds.setdefault(warning.kind, []).append(warning)
+    for kind, alike in kinds.items():
+        for warning in alike[:_SHOWN_OF_A_KIND]:
+            times = f" ({warning.count} times)" if warning.count > 1 else ""
+            _print(f"voxrt: warning: {printable(warning.message)}{times}")
+        if len(alike) > _SHOWN_OF_A_KIND:
+            _print(f"voxrt: warning: ... and {len(alike) - _SHOWN_OF_A_KIND} more of the kind {kind!r}")
 
 
 def summarize(title: str, rows: Iterable[tuple[str, str]]) -> None:

@@ -1,7 +1,8 @@
 #include "frame.h"
 
+#include "cores.h"
+#include "frame_tile.h"
 #include "ray.h"
-#include "tiles.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -10,7 +11,6 @@
 namespace voxrt::model {
 namespace {
 
-constexpr int32_t kTile = 16;
 constexpr size_t kRaysATile = 1024;
 
 // round(c * d_a^2 / |d|^2), half up: the brightness of a face lit from the camera is (n . l)^2.
@@ -31,6 +31,21 @@ Hit trace_any(const Memory& memory, const int32_t origin[3], const int32_t direc
     return key_fits_64(origin) ? trace<int64_t>(memory, origin, direction) : trace<WideKey>(memory, origin, direction);
 }
 
+uint64_t render_pixel(const FrameJob& job, int32_t column, int32_t row) {
+    const Camera& camera = job.camera;
+    const FrameView& frame = job.frame;
+    int32_t direction[3];
+    for (int axis = 0; axis < 3; ++axis)
+        direction[axis] = camera.look[axis] + camera.right[axis] * (column - frame.width / 2) +
+                          camera.up[axis] * (frame.height / 2 - row);
+    const Hit hit = trace_any(job.memory, camera.position, direction);
+    const size_t pixel = static_cast<size_t>(row) * frame.width + column;
+    frame.material[pixel] = hit.material;
+    frame.face[pixel] = hit.face;
+    shade(job.materials + 3 * hit.material, direction, hit.face, frame.colour + 3 * pixel);
+    return hit.words_read;
+}
+
 } // namespace
 
 void check_directions(const Camera& camera, int32_t width, int32_t height) {
@@ -48,26 +63,20 @@ void check_directions(const Camera& camera, int32_t width, int32_t height) {
 }
 
 uint64_t render(const Memory& memory, const uint8_t* materials, const Camera& camera, const FrameView& frame,
-                int threads, const Interrupted& interrupted) {
-    const int32_t across = (frame.width + kTile - 1) / kTile;
-    const int32_t down = (frame.height + kTile - 1) / kTile;
+                int threads, RenderTile render_tile, const Interrupted& interrupted) {
+    const int32_t no_direction[3] = {0, 0, 0};
+    const FrameJob job{memory, materials, camera, frame, trace_any(memory, camera.position, no_direction).material};
+    const int32_t across = (frame.width + kTileSide - 1) / kTileSide;
+    const int32_t down = (frame.height + kTileSide - 1) / kTileSide;
     return on_all_cores(static_cast<size_t>(across) * down, threads, interrupted, [&](size_t tile) {
-        const int32_t left = static_cast<int32_t>(tile % across) * kTile;
-        const int32_t top = static_cast<int32_t>(tile / across) * kTile;
+        const int32_t left = static_cast<int32_t>(tile % across) * kTileSide;
+        const int32_t top = static_cast<int32_t>(tile / across) * kTileSide;
+        if (tile_fits(job, left, top))
+            return render_tile(job, left, top);
         uint64_t words_read = 0;
-        for (int32_t row = top; row < std::min(top + kTile, frame.height); ++row)
-            for (int32_t column = left; column < std::min(left + kTile, frame.width); ++column) {
-                int32_t direction[3];
-                for (int axis = 0; axis < 3; ++axis)
-                    direction[axis] = camera.look[axis] + camera.right[axis] * (column - frame.width / 2) +
-                                      camera.up[axis] * (frame.height / 2 - row);
-                const Hit hit = trace_any(memory, camera.position, direction);
-                const size_t pixel = static_cast<size_t>(row) * frame.width + column;
-                frame.material[pixel] = hit.material;
-                frame.face[pixel] = hit.face;
-                shade(materials + 3 * hit.material, direction, hit.face, frame.colour + 3 * pixel);
-                words_read += hit.words_read;
-            }
+        for (int32_t row = top; row < std::min(top + kTileSide, frame.height); ++row)
+            for (int32_t column = left; column < std::min(left + kTileSide, frame.width); ++column)
+                words_read += render_pixel(job, column, row);
         return words_read;
     });
 }

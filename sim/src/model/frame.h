@@ -36,6 +36,10 @@ struct RaysView {
     int32_t* cell; // 3 a ray
 };
 
+struct FrameJob;
+// Renders one tile of a frame: frame_tile.h.
+using RenderTile = uint64_t (*)(const FrameJob& job, int32_t left, int32_t top);
+
 // Asked now and then from the calling thread; true ends the work early, its output unfinished.
 using Interrupted = std::function<bool()>;
 
@@ -43,9 +47,9 @@ using Interrupted = std::function<bool()>;
 void check_directions(const Camera& camera, int32_t width, int32_t height);
 
 // Renders a frame of a verified memory. `materials` holds 256 sRGB triples, entry 0 the background. `threads` = 0
-// takes every core. Returns how many octree words were read.
+// takes every core. `render_tile` is one of tile_engines (frame_tile.h). Returns how many octree words were read.
 uint64_t render(const Memory& memory, const uint8_t* materials, const Camera& camera, const FrameView& frame,
-                int threads, const Interrupted& interrupted);
+                int threads, RenderTile render_tile, const Interrupted& interrupted);
 
 // Traces a list of rays through a verified memory; directions are below kDirectionLimit. Returns words read.
 uint64_t trace_all(const Memory& memory, const RaysView& rays, int threads, const Interrupted& interrupted);

@@ -7,6 +7,7 @@
 namespace voxrt::model {
 
 inline constexpr int kMaxDepth = 16;
+inline constexpr uint8_t kFaceNone = 3; // of a hit or miss that crossed no face
 
 inline constexpr bool is_leaf(uint32_t word) { return word >> 31 != 0; }
 inline constexpr uint8_t material_of(uint32_t word) { return static_cast<uint8_t>(word); }

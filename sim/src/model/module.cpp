@@ -1,13 +1,16 @@
 // voxrt.sim._model: the exact model for Python.
 #include "frame.h"
+#include "frame_tile.h"
 #include "ray.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace nb = nanobind;
 using namespace voxrt::model;
@@ -33,12 +36,23 @@ template <class T> struct Owned {
     }
 };
 
-Memory verified(const Words& words, int depth, int threads) {
+// A memory that this module owns and has verified, so that nobody changes a word under it.
+class OwnedMemory {
+public:
+    OwnedMemory(const Words& words, int depth) : words_(words.data(), words.data() + words.shape(0)), depth_(depth) {
+        nb::gil_scoped_release release;
+        view().verify();
+    }
+    Memory view() const { return {words_.data(), words_.size(), depth_}; }
+
+private:
+    std::vector<uint32_t> words_;
+    int depth_;
+};
+
+void check_threads(int threads) {
     if (threads < 0 || threads > kThreadLimit)
         throw std::invalid_argument("threads is " + std::to_string(threads) + ", not 0 ... 1024");
-    const Memory memory{words.data(), words.shape(0), depth};
-    memory.verify();
-    return memory;
 }
 
 // Whether Python has a signal waiting; the caller has released the GIL.
@@ -47,11 +61,17 @@ bool signal_waits() {
     return PyErr_CheckSignals() != 0;
 }
 
-nb::dict render_frame(const Words& words, int depth, const Palette& materials, const Registers& registers, int width,
-                      int height, int threads) {
+nb::dict render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
+                      int height, int threads, const std::string& instructions) {
+    check_threads(threads);
     if (width < 1 || height < 1 || width > kSizeLimit || height > kSizeLimit)
         throw std::invalid_argument("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
                                     " pixels is not 1x1 ... 16384x16384");
+    const auto& engines = tile_engines();
+    auto engine = engines.begin();
+    while (!instructions.empty() && instructions != engine->instructions)
+        if (++engine == engines.end())
+            throw std::invalid_argument("this processor has no instruction set '" + instructions + "'");
     Camera camera;
     for (int axis = 0; axis < 3; ++axis) {
         camera.position[axis] = registers(0, axis);
@@ -66,10 +86,9 @@ nb::dict render_frame(const Words& words, int depth, const Palette& materials, c
     bool stopped = false;
     {
         nb::gil_scoped_release release;
-        const Memory memory = verified(words, depth, threads);
-        words_read = render(memory, materials.data(), camera,
+        words_read = render(memory.view(), materials.data(), camera,
                             {width, height, colour.data.get(), material.data.get(), face.data.get()}, threads,
-                            [&] { return stopped = signal_waits(); });
+                            engine->render_tile, [&] { return stopped = signal_waits(); });
     }
     if (stopped)
         throw nb::python_error();
@@ -81,7 +100,8 @@ nb::dict render_frame(const Words& words, int depth, const Palette& materials, c
     return out;
 }
 
-nb::dict trace_rays(const Words& words, int depth, const Triples& origins, const Triples& directions, int threads) {
+nb::dict trace_rays(const OwnedMemory& memory, const Triples& origins, const Triples& directions, int threads) {
+    check_threads(threads);
     const size_t count = origins.shape(0);
     if (directions.shape(0) != count)
         throw std::invalid_argument(std::to_string(count) + " origins do not go with " +
@@ -96,10 +116,10 @@ nb::dict trace_rays(const Words& words, int depth, const Triples& origins, const
     bool stopped = false;
     {
         nb::gil_scoped_release release;
-        const Memory memory = verified(words, depth, threads);
-        words_read = trace_all(
-            memory, {count, origins.data(), directions.data(), material.data.get(), face.data.get(), cell.data.get()},
-            threads, [&] { return stopped = signal_waits(); });
+        words_read =
+            trace_all(memory.view(),
+                      {count, origins.data(), directions.data(), material.data.get(), face.data.get(), cell.data.get()},
+                      threads, [&] { return stopped = signal_waits(); });
     }
     if (stopped)
         throw nb::python_error();
@@ -114,16 +134,21 @@ nb::dict trace_rays(const Words& words, int depth, const Triples& origins, const
 } // namespace
 
 NB_MODULE(_model, m) {
-    m.def(
-        "render", &render_frame, nb::arg("words"), nb::arg("depth"), nb::arg("materials"), nb::arg("camera"),
-        nb::arg("width"), nb::arg("height"), nb::arg("threads") = 0,
-        "Render a frame of a memory (uint32, report dialect): materials (256, 3) uint8 sRGB, entry 0 the background;\n"
-        "camera (4, 3) int32 position, look, right, up; threads 0 takes every core. Gives colour (H, W, 3), material\n"
-        "(H, W), face (H, W), uint8, and words_read. ValueError: a malformed memory, a frame above 16384 x 16384,\n"
-        "pixel directions not below 2**20.");
-    m.def("trace", &trace_rays, nb::arg("words"), nb::arg("depth"), nb::arg("origins"), nb::arg("directions"),
-          nb::arg("threads") = 0,
-          "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20. Gives\n"
-          "material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read. ValueError: a malformed\n"
-          "memory, a direction out of range.");
+    nb::list instruction_sets;
+    for (const TileEngine& engine : tile_engines())
+        instruction_sets.append(engine.instructions);
+    m.attr("INSTRUCTION_SETS") = nb::tuple(instruction_sets);
+    nb::class_<OwnedMemory>(m, "Memory", "A verified octree memory, which any number of threads may trace through.")
+        .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
+             "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
+        .def("render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
+             nb::arg("threads") = 0, nb::arg("instructions") = "",
+             "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
+             "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
+             "which is the fastest. Gives colour (H, W, 3), material (H, W), face (H, W), uint8, and words_read.\n"
+             "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20.")
+        .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
+             "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
+             "Gives material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"
+             "ValueError: a direction out of range.");
 }

@@ -14,7 +14,6 @@
 
 namespace voxrt::model {
 
-inline constexpr uint8_t kFaceNone = 3;
 inline constexpr int32_t kDirectionLimit = 1 << 20;
 
 using WideKey = __int128;
