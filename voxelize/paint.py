@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
 
-_FINEST = 32
-_MOST_SAMPLES = 1 << 23
+_FINEST = 8
+_MOST_SAMPLES = 1 << 20
 _CHUNK = 1 << 16
 
 
