@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
+MESHOPT = "EXT_meshopt_compression"
 PHYSICS = "KHR_physics_rigid_bodies"
 SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
@@ -22,6 +23,7 @@ HONOURED = frozenset(
     {
         DRACO,
         INSTANCING,
+        MESHOPT,
         PHYSICS,
         SHAPES,
         SPECULAR_GLOSSINESS,
