@@ -4,6 +4,7 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
+from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
 from voxrt.octree.build import build, from_dense
 from voxrt.octree.census import Census, census
 from voxrt.octree.decode import decode
@@ -16,25 +17,30 @@ from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 
 __all__ = [
+    "BOARDS",
     "DIALECTS",
     "MAX_DEPTH",
     "Census",
     "Dialect",
     "Difference",
+    "Fit",
     "Leaves",
     "Octree",
     "Rom",
     "RomError",
     "build",
     "census",
+    "coarsen",
     "count_in_box",
     "decode",
     "detect_dialect",
     "diff",
     "encode",
+    "fit",
     "from_dense",
     "leaves",
     "material_at",
+    "share",
     "solid_bounds",
     "to_dense",
 ]

@@ -163,7 +163,13 @@ def build(
     warnings = scene.warnings + voxelization.warnings
     outputs: dict[str, Path] = {}
     if output is not None:
-        settings = {"fill": fill, "geometry": geometry, "pow2": pow2, "up": up, "unit": unit}
+        settings: dict[str, str | int | float | bool | None] = {
+            "fill": fill,
+            "geometry": geometry,
+            "pow2": pow2,
+            "up": up,
+            "unit": unit,
+        }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(
                 Path(output),

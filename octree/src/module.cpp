@@ -11,11 +11,15 @@
 #include <string>
 #include <tuple>
 
+#include "breadth_first.h"
+#include "budget.h"
 #include "build.h"
+#include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
 #include "leaves.h"
 #include "query.h"
+#include "surface.h"
 #include "validate.h"
 
 namespace nb = nanobind;
@@ -205,6 +209,43 @@ bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth)
     return {found.appeared, found.vanished, found.recoloured, bounds};
 }
 
+auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
+    const Memory memory = memory_of(words, depth);
+    std::vector<Word> coarse;
+    {
+        nb::gil_scoped_release release;
+        BlockPool pool;
+        const Node root = coarsen(memory, level, pool);
+        coarse = breadth_first_words(pool, root);
+    }
+    return words_to_numpy(std::move(coarse));
+}
+
+auto bind_merge_blocks(
+    const Vector<Word>& words, unsigned depth, unsigned finest,
+    const nb::ndarray<const std::uint16_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>& costs,
+    std::uint64_t fine_price, std::uint64_t coarse_price) {
+    const Memory memory = memory_of(words, depth);
+    require(std::max(fine_price, coarse_price) <= std::uint64_t{1} << 60, "the price is above 2**60");
+    auto recolour = std::make_unique<RecolourCosts>();
+    std::copy_n(costs.data(), 256 * 256, (*recolour)[0].data());
+    std::vector<Word> merged;
+    {
+        nb::gil_scoped_release release;
+        merged = merge_blocks(memory, finest, *recolour, fine_price, coarse_price);
+    }
+    return words_to_numpy(std::move(merged));
+}
+
+std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& first, const Vector<Word>& second,
+                                                            unsigned depth) {
+    const Memory a = memory_of(first, depth);
+    const Memory b = memory_of(second, depth);
+    nb::gil_scoped_release release;
+    const SurfaceChange change = surface_change(a, b);
+    return {change.surface, change.changed};
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -251,6 +292,10 @@ NB_MODULE(_native, m) {
     m.def("solid_bounds", &bind_solid_bounds, "words"_a.noconvert(), "depth"_a);
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
+    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "depth"_a, "finest"_a, "costs"_a.noconvert(),
+          "fine_price"_a, "coarse_price"_a);
+    m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

@@ -142,9 +142,10 @@ def test_check_counts_wrong_pixels(voxrt):
 @pytest.mark.usefixtures("ray_tracer")
 def test_check_fails_where_the_engines_differ(voxrt, built):
     (built / "sitecustomize.py").write_text(
-        "from voxrt.sim import _model\nrender = _model.render\n"
-        "def wrong(*arguments):\n    pixels = render(*arguments)\n    pixels['face'][7, 5] ^= 1\n    return pixels\n"
-        "_model.render = wrong\n"
+        "import sys, voxrt.sim\nmodule = sys.modules['voxrt.sim.render']\nrender = module.render\n"
+        "def wrong(*arguments, engine, **options):\n    frame = render(*arguments, engine=engine, **options)\n"
+        "    frame.face[7, 5] ^= engine == 'model'\n    return frame\n"
+        "module.render = wrong\n"
     )
     arguments = ("render", "house.mem", "--size", "64x48", "--check", "--json")
     finished = voxrt(*arguments, env={"PYTHONPATH": str(built)})

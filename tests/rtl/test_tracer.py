@@ -88,13 +88,13 @@ def test_random_worlds_and_troublesome_cameras(config, seed):
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(
     config=st.sampled_from(rtl.CONFIGS),
-    depth=st.integers(1, 3),
-    bits=st.integers(0, 2**64 - 1),
+    world=st.tuples(st.integers(1, 3), st.integers(0, 2**64 - 1)),
     position=st.tuples(*[st.integers(-200, 300)] * 3),
     frame=st.lists(st.tuples(*[st.integers(-9, 9)] * 3), min_size=3, max_size=3),
     stall_seed=st.integers(0, 2**32 - 1),
 )
-def test_any_world_any_camera(config, depth, bits, position, frame, stall_seed):
+def test_any_world_any_camera(config, world, position, frame, stall_seed):
+    depth, bits = world
     side = 1 << depth
     voxels = np.random.default_rng(bits).choice([0, 0, 0, 1, 2, 255], (side,) * 3).astype(np.uint8)
     assert_exact(config, voxels, [position, *frame], 7, 5, stall_seed=stall_seed)

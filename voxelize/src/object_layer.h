@@ -17,7 +17,7 @@ namespace voxrt {
 inline constexpr int kTileBricks = kTileSide / kBrickSide;
 inline constexpr int kTileColumns = kTileBricks * kTileBricks; // brick columns
 
-/// Materials of a brick voxel by voxel: index x + 8 y + 64 z, 0 where empty.
+/// Materials of a brick voxel by voxel: index column_bit(x, y) + 64 z, 0 where empty.
 using Cells = std::array<uint8_t, kBrickVoxels>;
 
 inline constexpr uint32_t kNone = 0xFFFF'FFFF;
@@ -121,7 +121,7 @@ private:
     };
     Place locate(int x, int y) const {
         const int u = x - x_, v = y - y_;
-        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), (u & 7) | (v & 7) << 3};
+        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), column_bit(u, v)};
     }
 
     /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.

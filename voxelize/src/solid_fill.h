@@ -149,7 +149,7 @@ private:
         const int x0 = w.x0 + column % kTileBricks * kBrickSide, y0 = w.y0 + column / kTileBricks * kBrickSide;
         uint64_t columns = 0; // inside the box and the grid
         for (int bit = 0; bit < 64; ++bit) {
-            const int x = x0 + (bit & 7), y = y0 + (bit >> 3);
+            const int x = x0 + column_x(bit), y = y0 + column_y(bit);
             if (x >= box.low[0] && x <= std::min(box.high[0], w.x1) && y >= box.low[1] &&
                 y <= std::min(box.high[1], w.y1))
                 columns |= uint64_t{1} << bit;
@@ -172,7 +172,8 @@ private:
                 for (uint64_t left = columns & ~brick.shell[z]; left != 0; left &= left - 1) {
                     const int bit = std::countr_zero(left);
                     constexpr double sample = 0.5 + 1.0 / 8192;
-                    const double seen = holes.at({x0 + (bit & 7) + sample, y0 + (bit >> 3) + sample, at + sample});
+                    const double seen =
+                        holes.at({x0 + column_x(bit) + sample, y0 + column_y(bit) + sample, at + sample});
                     if (std::abs(winding.at(bit) - seen) > 0.5 + 1e-6)
                         within[z] |= uint64_t{1} << bit;
                 }

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from voxrt.voxelize import shapes
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.usd import shapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

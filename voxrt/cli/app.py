@@ -101,6 +101,8 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
     """Say in one line what went wrong, and in a number whose fault it is."""
     problem, code = str(error), ExitCode.BUG
     match error:
+        case ImportError():
+            problem = f"this installation of voxrt is not complete: {problem}; install it again"
         case cyclopts.CycloptsError() | UsageError():
             command = [name for name in arguments[:1] if name in app]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE

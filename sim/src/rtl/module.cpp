@@ -1,4 +1,23 @@
-// voxrt.sim._rtl: the verilated ray tracer for Python. Checks every argument; see _rtl.pyi for the contract.
+// voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
+//
+//   CONFIGS: list[str]        names of the configurations that were built
+//   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
+//     .memory_words           how many words the simulated memory holds
+//     .max_depth              the deepest octree that the configuration can trace
+//     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
+//     .load(words, *, through_port=False)
+//                             uint32, 1-D, report dialect. Through the design's load port, one word a clock, or
+//                             straight into the simulated memory: the outcome is the same
+//     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
+//                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
+//                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
+//                             materials uint8 (256, 3), sRGB, row 0 is the background. With a stall_seed, the
+//                             picture's consumer stalls in a pattern that depends on it.
+//                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
+//                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
+//                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
+//
+// ValueError: a name, size or register out of range.
 #include "design.h"
 
 #include <nanobind/nanobind.h>
