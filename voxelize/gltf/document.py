@@ -44,7 +44,7 @@ class Document:
         self.path = path
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
-        self._buffers: dict[int, bytes] = {}
+        self._buffers: dict[int, memoryview] = {}
         self._unpacked: dict[int, bytes] = {}
         self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
         self._warnings: Counter[tuple[str, str]] = Counter()
@@ -83,8 +83,7 @@ class Document:
             return memoryview(self._unpacked[index])
         compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
         if compressed is None:
-            data = self._buffer(view.buffer)
-            return memoryview(data)[view.byte_offset : view.byte_offset + view.byte_length]
+            return self._buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
         self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
         return memoryview(self._unpacked[index])
 
@@ -100,7 +99,7 @@ class Document:
             raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
         data = self._buffer(compressed.buffer)[compressed.byte_offset : end]
         try:
-            return decode(compressed, data)
+            return decode(compressed, bytes(data))
         except BadStreamError as error:
             raise self.error(here, f"the compressed data is damaged: {error}") from None
 
@@ -113,7 +112,7 @@ class Document:
             if end > buffer.byte_length:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
-    def _buffer(self, index: int) -> bytes:
+    def _buffer(self, index: int) -> memoryview:
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -123,7 +122,7 @@ class Document:
             if found is None:
                 problem = f"no file {buffer.uri[:60]!r} beside the asset"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
-            data = found
+            data = memoryview(found)
         elif index == 0 and self._binary is not None:
             data = self._binary
         else:
