@@ -18,6 +18,7 @@ SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
 TEXTURE_TRANSFORM = "KHR_texture_transform"
 VARIANTS = "KHR_materials_variants"
+VISIBILITY = "KHR_node_visibility"
 
 HONOURED = frozenset(
     {
@@ -29,6 +30,7 @@ HONOURED = frozenset(
         SPECULAR_GLOSSINESS,
         TEXTURE_TRANSFORM,
         VARIANTS,
+        VISIBILITY,
         "EXT_texture_webp",
         "KHR_materials_unlit",
         "KHR_mesh_quantization",
