@@ -131,8 +131,8 @@ def test_options_reach_their_stage(voxrt, folder):
     assert json.loads((folder / "house.json").read_bytes())["source"]["settings"]["up"] == "z"
     built("--unit", "0.01")
     assert json.loads((folder / "house.json").read_bytes())["world"]["voxel_size"] == pytest.approx(0.0775 / 32)
-    rounded = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json").out)
-    exact = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json", "--pow2", "none").out)
+    rounded = json.loads(voxrt("build", "dog.usda", "--json").out)
+    exact = json.loads(voxrt("build", "dog.usda", "--json", "--pow2", "none").out)
     assert rounded["voxels"] > exact["voxels"]
     assert rounded["words"] < exact["words"]
 
