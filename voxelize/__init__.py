@@ -5,7 +5,8 @@ from pkgutil import extend_path
 __path__ = extend_path(__path__, __name__)
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
-from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.grid import Grid, fit_grid
+from voxrt.voxelize.load import load
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -16,10 +17,13 @@ from voxrt.voxelize.scene import (
     Material,
     Mesh,
     MeshCollider,
+    PointLight,
     Scene,
     SceneObject,
     SphereCollider,
+    Viewpoint,
 )
+from voxrt.voxelize.voxelize import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 __all__ = [
@@ -36,10 +40,15 @@ __all__ = [
     "Mesh",
     "MeshCollider",
     "ObjectReport",
+    "PointLight",
     "Scene",
     "SceneObject",
     "SceneWarning",
     "SphereCollider",
+    "Viewpoint",
     "Voxelization",
     "Voxels",
+    "fit_grid",
+    "load",
+    "voxelize",
 ]

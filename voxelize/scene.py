@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.errors import SceneWarning
+    from voxrt.voxelize.paint import Coat
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +39,9 @@ class Material:
     authored: bool = True
 
 
-EMPTY = Material("empty", (0, 0, 0))
-"""Entry 0 of every material table: empty space; its colour is the background's."""
+EMPTY = Material("empty", (24, 28, 36))
+"""Entry 0 of every material table: empty space; its colour is the background's, dark for faces to stand out from it,
+and not black for shaded edges to stand out too."""
 
 DEFAULT_COLOUR = (200, 200, 200)
 """The sRGB colour of the default material."""
@@ -59,12 +61,15 @@ class Mesh:
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
-        uint8, shape (T,): material ids, 1 … 255.
+        uint8, shape (T,): material ids, 1 … 255. Painted triangles have the material nearest to their mean colour.
+    coat
+        The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
+    coat: Coat | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -130,6 +135,30 @@ class SceneObject:
     collider_material: int = 1
 
 
+@dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """Where an author wants the scene seen from.
+
+    Attributes
+    ----------
+    eye, target
+        Metres, scene frame: where the camera stands and what is in the middle of its picture.
+    field_of_view
+        Degrees from the picture's top to its bottom; None where the author does not say.
+    """
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    field_of_view: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PointLight:
+    """Where an author wants light to come from: `position` in metres, scene frame."""
+
+    position: tuple[float, float, float]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
     """Everything an asset file said, in the scene frame.
@@ -144,9 +173,15 @@ class Scene:
         Indexed by material id; entry 0 is :data:`EMPTY`; at most 256 entries.
     warnings
         What was said by the file and not honoured as it stands.
+    viewpoint
+        The author's camera, for pictures for which no other is asked; None where the author gave none.
+    light
+        The author's light, likewise.
     """
 
     name: str
     objects: tuple[SceneObject, ...]
     materials: tuple[Material, ...]
     warnings: tuple[SceneWarning, ...] = ()
+    viewpoint: Viewpoint | None = None
+    light: PointLight | None = None

@@ -1,8 +1,88 @@
-"""voxrt: meshes to voxels to an octree memory to pictures ray-traced by hardware."""
+"""voxrt: meshes to voxels to an octree memory to pictures ray-traced by hardware.
 
+The front door. Each name is imported when it is first used, so that ``import voxrt`` and ``voxrt --help`` are instant::
+
+    import voxrt
+
+    result = voxrt.build("courtyard.glb", "out", depth=7, preview="out/courtyard.png")
+    rom, warnings = voxrt.read_rom("out/courtyard.mem")
+    frame = voxrt.render(rom, size=(640, 480), engine="model")
+
+The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`voxrt.octree`, :mod:`voxrt.export`,
+:mod:`voxrt.sim`.
+"""
+
+from importlib import import_module
 from pkgutil import extend_path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from voxrt.export import read_rom
+    from voxrt.octree import Octree, Rom, RomError
+    from voxrt.outputs import OutputError
+    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.sim import Camera, Frame, SimulatorError, check
+    from voxrt.viewpoint import ViewpointError, aim_camera
+    from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
 # A checkout's Python and an installed wheel's extension modules make one package.
 __path__ = extend_path(__path__, __name__)
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "AssetError",
+    "BuildResult",
+    "Camera",
+    "DoesNotFitError",
+    "Frame",
+    "Grid",
+    "Material",
+    "Octree",
+    "OutputError",
+    "Picture",
+    "Rom",
+    "RomError",
+    "Scene",
+    "SceneWarning",
+    "SimulatorError",
+    "ViewpointError",
+    "aim_camera",
+    "build",
+    "check",
+    "fit_grid",
+    "load",
+    "read_rom",
+    "render",
+    "save_picture",
+]
+
+_HOMES = {
+    "voxrt.export": ("read_rom",),
+    "voxrt.octree": ("Octree", "Rom", "RomError"),
+    "voxrt.outputs": ("OutputError",),
+    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),
+    "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
+    "voxrt.voxelize": (
+        "AssetError",
+        "DoesNotFitError",
+        "Grid",
+        "Material",
+        "Scene",
+        "SceneWarning",
+        "fit_grid",
+        "load",
+    ),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from assets import asset
 from hypothesis import given, settings
-from oracles.worlds import dense_cubes
+from oracles.random_worlds import dense_cubes
 
 from voxrt import export, octree
 from voxrt.octree import Rom, RomError

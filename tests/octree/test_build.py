@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.octree import reference_words, voxels_from_dense
-from oracles.worlds import dense_cubes
+from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
 from voxrt.voxelize import DoesNotFitError, Voxels

@@ -3,7 +3,7 @@ import pytest
 from assets import asset
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.worlds import dense_cubes
+from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
 from voxrt.octree import RomError

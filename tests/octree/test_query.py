@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.octree import unshared_words, walk
-from oracles.worlds import dense_cubes
+from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
 from voxrt.voxelize import DoesNotFitError

@@ -1,23 +1,61 @@
-"""Random worlds: lumpy ones with uniform octants, repeats and several materials, of any depth up to 5."""
+"""Small dense worlds for tests of rays, each (S, S, S) uint8 indexed [x, y, z]."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
-from hypothesis import strategies as st
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
-@st.composite
-def dense_cubes(draw, max_depth=5):
-    depth = draw(st.integers(1, max_depth))
-    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+def noise(depth: int, density: float, seed: int) -> NDArray[np.uint8]:
+    """Solid voxels of random materials, thrown independently."""
+    rng = np.random.default_rng(seed)
+    shape = (1 << depth,) * 3
+    return np.where(rng.random(shape) < density, rng.integers(1, 256, shape), 0).astype(np.uint8)
+
+
+def boxes(depth: int, count: int, seed: int) -> NDArray[np.uint8]:
+    """Boxes of random place, size and material, many of them large octants."""
+    rng = np.random.default_rng(seed)
     side = 1 << depth
-    cube = np.zeros((side,) * 3, np.uint8)
-    if draw(st.booleans()):
-        cube[:] = rng.integers(0, 4)
-    for _ in range(draw(st.integers(0, 6))):
-        level = int(rng.integers(0, depth + 1))
-        a, b = (rng.integers(0, side // (1 << level), 3) << level for _ in range(2))
-        low, high = np.minimum(a, b), np.maximum(a, b) + (1 << level)
-        cube[tuple(map(slice, low, high))] = rng.choice([0, 1, 2, 3, 7, 240, 255])
-    if draw(st.booleans()):
-        noisy = rng.random(cube.shape) < 0.02
-        cube[noisy] = rng.integers(0, 256, int(noisy.sum()))
-    return cube
+    voxels = np.zeros((side,) * 3, np.uint8)
+    for material in range(1, count + 1):
+        length = 1 << rng.integers(0, depth, 3)
+        corner = rng.integers(0, side // length) * length
+        voxels[tuple(slice(c, c + n) for c, n in zip(corner, length, strict=True))] = material
+    return voxels
+
+
+def ball(depth: int) -> NDArray[np.uint8]:
+    """A ball in the middle, its material telling the eight octants apart."""
+    side = 1 << depth
+    x, y, z = np.indices((side,) * 3) * 2 + 1 - side
+    material = 1 + (x > 0) + 2 * (y > 0) + 4 * (z > 0)
+    return np.where(x * x + y * y + z * z < (0.8 * side) ** 2, material, 0).astype(np.uint8)
+
+
+def sponge(depth: int) -> NDArray[np.uint8]:
+    """A Menger sponge as far as it fits: long thin tunnels along every axis."""
+    side = 1 << depth
+    x, y, z = np.indices((side,) * 3)
+    solid = (x < 27) & (y < 27) & (z < 27)
+    for scale in (1, 3, 9):
+        middles = sum((axis // scale % 3 == 1).astype(int) for axis in (x, y, z))
+        solid &= middles < 2
+    return np.where(solid, 1 + x // 9 % 3, 0).astype(np.uint8)
+
+
+WORLDS = {
+    "sparse noise": noise(5, 0.01, 1),
+    "dense noise": noise(3, 0.3, 2),
+    "boxes": boxes(6, 12, 3),
+    "ball": ball(4),
+    "sponge": sponge(5),
+    "one voxel": np.where(np.indices((4, 4, 4)).sum(axis=0) == 0, 7, 0).astype(np.uint8),
+    "smallest": noise(1, 0.5, 4),
+    "all solid": np.full((8, 8, 8), 255, np.uint8),
+    "nothing": np.zeros((8, 8, 8), np.uint8),
+}

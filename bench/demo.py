@@ -1,0 +1,68 @@
+"""Benchmark of the demo: seconds a stage, clocks of the hardware, hardware simulated against its model.
+
+Usage: ``python bench/demo.py [--depth N] [--size WxH] [--write]``. ``--write`` puts the table into
+``bench/results/demo.md`` as well. Each time is the least of three.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+from pathlib import Path
+
+import voxrt
+
+SCENE = Path(__file__).resolve().parents[1] / "examples" / "courtyard.glb"
+RESULTS = Path(__file__).resolve().parent / "results" / "demo.md"
+REPEATS = 3
+
+
+def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
+    """Build and render the demo, and give the rows of the table."""
+    builds = [voxrt.build(SCENE, depth=depth) for _ in range(REPEATS)]
+    rom = builds[0].rom
+    rows = [
+        ("scene", f"{SCENE.name}, depth {depth}, {size[0]}x{size[1]} pixels"),
+        ("machine", f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"),
+        ("solid voxels", f"{builds[0].solid_voxels:,}"),
+        ("memory", f"{len(rom.octree.words):,} words in {rom.octree.blocks:,} blocks"),
+    ]
+    rows += [(stage, f"{min(build.seconds[stage] for build in builds) * 1e3:.1f} ms") for stage in builds[0].seconds]
+    costs = {}
+    for engine in ("rtl", "model"):
+        frames = [voxrt.render(rom, size=size, engine=engine) for _ in range(REPEATS)]
+        costs[engine] = min((frame.cost for frame in frames), key=lambda cost: cost.seconds)
+        rows.append((f"render, {engine}", f"{costs[engine].seconds * 1e3:.1f} ms"))
+    rtl, model = costs["rtl"], costs["model"]
+    return [
+        *rows,
+        ("model against simulated hardware", f"{rtl.seconds / model.seconds:.0f} times as fast"),
+        ("cycles", f"{rtl.cycles:,}"),
+        ("cycles a pixel", f"{rtl.cycles / rtl.rays:.3f}"),
+        ("words a ray", f"{rtl.words_read / rtl.rays:.3f}"),
+        ("words a clock", f"{rtl.words_read / rtl.cycles:.4f}"),
+        ("clocks simulated a second", f"{rtl.cycles / rtl.seconds:,.0f}"),
+        ("pixels that differ", f"{voxrt.check(rom, voxrt.aim_camera(rom, size), size).wrong_pixels}"),
+    ]
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--depth", type=int, default=7)
+    parser.add_argument("--size", default="640x480")
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
+    width, height = (int(side) for side in options.size.split("x"))
+    table = [("", ""), ("---", "---"), *measure(options.depth, (width, height))]
+    table[0] = ("what", "measured")
+    text = "".join(f"| {name} | {value} |\n" for name, value in table)
+    print(text, end="")
+    if options.write:
+        RESULTS.parent.mkdir(exist_ok=True)
+        RESULTS.write_text(f"# The demo, measured by bench/demo.py\n\n{text}")
+
+
+if __name__ == "__main__":
+    main()

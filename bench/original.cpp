@@ -1,0 +1,145 @@
+// The ray tracer that the report compared its hardware with (appendix B.2), re-implemented from its description, to
+// compare the exact model with.
+//
+//     original MEMORY DEPTH WIDTH HEIGHT CAMERA...   ->  "seconds hits" on stdout
+//
+// MEMORY holds hexadecimal words in the report dialect; CAMERA is twelve whole numbers: position (voxels), look, right,
+// up. A ray stands on whole voxels. It looks up the octant it stands in, from the root; if that is empty it takes steps
+// along its direction, first doubled until they are as long as the octant and then halved, keeping those that end in
+// the octant or one voxel outside, until it stands outside. Plain arrays stand where the original copies vectors and
+// formats strings, so this is the algorithm at its best and not the original's overhead.
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Vector = std::array<int, 3>;
+
+struct Octant {
+    uint32_t word;
+    int side;
+    Vector lowest, highest; // voxels, both inside
+};
+
+Octant octant_at(const std::vector<uint32_t>& words, int depth, const Vector& position) {
+    Octant found{words[0], 1 << depth, {0, 0, 0}, {}};
+    for (int level = depth - 1; found.word >> 31 == 0; --level) {
+        found.side /= 2;
+        uint32_t index = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int bit = position[axis] >> level & 1;
+            found.lowest[axis] += bit * found.side;
+            index |= static_cast<uint32_t>(bit) << axis;
+        }
+        found.word = words[found.word + index];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        found.highest[axis] = found.lowest[axis] + found.side - 1;
+    return found;
+}
+
+enum class Place { inside, just_outside, beyond };
+
+Place place_of(const Vector& position, const Octant& octant) {
+    Place place = Place::inside;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (position[axis] < octant.lowest[axis] - 1 || position[axis] > octant.highest[axis] + 1)
+            return Place::beyond;
+        if (position[axis] < octant.lowest[axis] || position[axis] > octant.highest[axis])
+            place = Place::just_outside;
+    }
+    return place;
+}
+
+Vector step_out(Vector position, Vector step, const Octant& octant) {
+    const auto longer_than_step = [&] {
+        const int64_t x = step[0], y = step[1], z = step[2], side = octant.side;
+        return x * x + y * y + z * z < side * side;
+    };
+    while (longer_than_step())
+        for (int& component : step)
+            component *= 2;
+    while (place_of(position, octant) != Place::just_outside) {
+        Vector next = position;
+        for (int axis = 0; axis < 3; ++axis)
+            next[axis] += step[axis];
+        if (place_of(next, octant) != Place::beyond)
+            position = next;
+        for (int& component : step)
+            component = std::abs(component) > 1 ? component / 2 : component >= 0 ? 1 : -1;
+    }
+    return position;
+}
+
+// The squared cosine between the direction and the normal of the face that the ray stands at.
+double brightness(const Vector& position, const Vector& direction, const Octant& octant) {
+    double length = 0;
+    for (const int component : direction)
+        length += static_cast<double>(component) * component;
+    length = std::sqrt(length);
+    for (int axis = 0; axis < 3; ++axis)
+        if (position[axis] == octant.lowest[axis] || position[axis] == octant.highest[axis]) {
+            const double cosine = direction[axis] / length;
+            return cosine * cosine;
+        }
+    return 1;
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    if (count != 17) {
+        std::fprintf(stderr, "usage: original MEMORY DEPTH WIDTH HEIGHT and twelve numbers of the camera\n");
+        return 2;
+    }
+    std::vector<uint32_t> words;
+    std::ifstream file(arguments[1]);
+    for (std::string line; file >> line;)
+        words.push_back(static_cast<uint32_t>(std::stoul(line, nullptr, 16)));
+    const int depth = std::atoi(arguments[2]), width = std::atoi(arguments[3]), height = std::atoi(arguments[4]);
+    Vector camera[4]; // position, look, right, up
+    for (int i = 0; i < 12; ++i)
+        camera[i / 3][i % 3] = std::atoi(arguments[5 + i]);
+    const auto& [position, look, right, up] = camera;
+
+    std::vector<uint8_t> image(static_cast<size_t>(width) * height * 3);
+    int hits = 0;
+    const auto started = std::chrono::steady_clock::now();
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column) {
+            Vector direction = look;
+            for (int axis = 0; axis < 3; ++axis)
+                direction[axis] += right[axis] * (column - width / 2) + up[axis] * (height / 2 - row);
+            Vector ray = position;
+            const int last = (1 << depth) - 1;
+            const auto in_world = [&] {
+                return ray[0] >= 0 && ray[1] >= 0 && ray[2] >= 0 && ray[0] <= last && ray[1] <= last && ray[2] <= last;
+            };
+            while (in_world()) {
+                const Octant octant = octant_at(words, depth, ray);
+                const int material = octant.word & 0xFF;
+                if (material == 0) {
+                    ray = step_out(ray, direction, octant);
+                    continue;
+                }
+                const double shade = brightness(ray, direction, octant);
+                for (int channel = 0; channel < 3; ++channel)
+                    image[3 * (static_cast<size_t>(row) * width + column) + channel] =
+                        static_cast<uint8_t>(std::lround(shade * (40 * material * (channel + 1) % 256)));
+                ++hits;
+                break;
+            }
+        }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - started;
+    unsigned sum = 0; // so that no compiler drops the image
+    for (const uint8_t byte : image)
+        sum += byte;
+    std::printf("%.9f %d %u\n", taken.count(), hits, sum);
+}

@@ -1,0 +1,35 @@
+// Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
+module voxrt_merge
+  import voxrt_pkg::*;
+#(
+  parameter int unsigned Lanes = 1
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             start_i,         // The next pixel is lane 0's.
+  input  logic [Lanes-1:0] valid_i,
+  output logic [Lanes-1:0] ready_o,
+  input  pixel_t           pixel_i [Lanes],
+  output logic             valid_o,
+  input  logic             ready_i,
+  output pixel_t           pixel_o
+);
+  logic [Lanes-1:0] turn_q;  // One-hot.
+  logic             valid;
+  pixel_t           pixel;
+
+  always_comb begin
+    pixel = '0;
+    for (int unsigned i = 0; i < Lanes; i++) if (turn_q[i]) pixel |= pixel_i[i];
+  end
+
+  assign valid   = (valid_i & turn_q) != '0;
+  assign valid_o = valid;
+  assign pixel_o = pixel;
+  assign ready_o = ready_i ? turn_q : '0;
+
+  always_ff @(posedge clk_i) begin
+    if (valid && ready_i) turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
+    if (!rst_ni || start_i) turn_q <= Lanes'(1);
+  end
+endmodule

@@ -1,0 +1,192 @@
+// From materials and faces to colours, exact to the last bit, one pixel a clock:
+//   colour = round half up (c * d_a**2 / |d|**2), a the axis crossed, d the ray's direction
+// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour.
+//
+// Directions are made again by a second ray generator, in pixel order: nothing of the ray but material and face need
+// come through the lanes. The pipeline never stops; a pixel enters when the FIFO behind has a place for it.
+//
+// Pipeline: direction, material | sizes | squares | sums | colour x square | dividend | 8 digits | FIFO.
+module voxrt_shader
+  import voxrt_pkg::*;
+(
+  input  logic                         clk_i,
+  input  logic                         rst_ni,
+  // Frame, as voxrt_ray_generator wants it.
+  input  logic                         start_i,
+  input  logic signed [CameraBits-1:0] look_i            [3],
+  input  logic signed [CameraBits-1:0] right_i           [3],
+  input  logic signed [CameraBits-1:0] up_i              [3],
+  input  logic        [  SizeBits-1:0] width_i,
+  input  logic        [  SizeBits-1:0] height_i,
+  // Material table; row 0 is the background.
+  input  logic                         table_write_i,
+  input  material_t                    table_material_i,
+  input  colour_t                      table_colour_i,
+  // Pixels in.
+  input  logic                         valid_i,
+  output logic                         ready_o,
+  input  pixel_t                       pixel_i,
+  // Pixels out.
+  output logic                         valid_o,
+  input  logic                         ready_i,
+  output colour_t                      colour_o,
+  output pixel_t                       pixel_o,
+  output logic                         first_o,                // Of the frame.
+  output logic                         line_end_o,
+  output logic                         last_o                  // Of the frame.
+);
+  localparam int unsigned SquareBits = 2 * DirectionBits;
+  localparam int unsigned SumBits = SquareBits + 2;
+  localparam int unsigned Setup = 7;
+  localparam int unsigned Stages = Setup + 8;
+  localparam int unsigned FifoDepth = 32;
+
+  typedef struct packed {
+    pixel_t pixel;
+    logic   first;
+    logic   line_end;
+    logic   last;
+  } place_t;
+
+  // Directions.
+  logic                       direction_valid, enters, first, line_end, last;
+  logic signed [ScanBits-1:0] direction[3];
+
+  voxrt_ray_generator u_directions (
+    .clk_i,
+    .rst_ni,
+    .start_i,
+    .look_i,
+    .right_i,
+    .up_i,
+    .width_i,
+    .height_i,
+    .valid_o    (direction_valid),
+    .ready_i    (enters),
+    .direction_o(direction),
+    .first_o    (first),
+    .line_end_o (line_end),
+    .last_o     (last)
+  );
+
+  // Places in the FIFO that are not promised to a pixel under way.
+  localparam int unsigned CreditBits = $clog2(FifoDepth) + 1;
+  logic [CreditBits-1:0] credit_q;
+  logic                  leaves;
+
+  assign ready_o = credit_q != '0 && direction_valid;
+  assign enters  = valid_i && ready_o;
+
+  always_ff @(posedge clk_i) begin
+    credit_q <= credit_q - CreditBits'(enters) + CreditBits'(leaves);
+    if (!rst_ni) credit_q <= CreditBits'(FifoDepth);
+  end
+
+  logic [Stages:1] valid_q;
+  place_t          place_q[1:Stages];
+
+  always_ff @(posedge clk_i) begin
+    valid_q    <= rst_ni ? {valid_q[Stages-1:1], enters} : '0;
+    place_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
+    for (int unsigned s = 2; s <= Stages; s++) if (valid_q[s-1]) place_q[s] <= place_q[s-1];
+  end
+
+  // 1 direction, material.
+  colour_t                    table_q[256];
+  colour_t                    colour_q[1:4];
+  logic signed [ScanBits-1:0] direction1_q[3];
+
+  always_ff @(posedge clk_i) begin
+    if (table_write_i) table_q[table_material_i] <= table_colour_i;
+    if (enters) begin
+      colour_q[1]  <= table_q[pixel_i.material];
+      direction1_q <= direction;
+    end
+    for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) colour_q[s] <= colour_q[s-1];
+  end
+
+  // 2 sizes, 3 squares, 4 registered for the multipliers' own output registers, 5 sums.
+  logic [DirectionBits-1:0] size2_q  [3];
+  logic [SquareBits-1:0]    square3_q[3], square4_q;
+  logic [SumBits-1:0]       sum4_q, sum5_q, sum6_q, sum7_q;
+
+  always_ff @(posedge clk_i) begin
+    if (valid_q[1]) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        size2_q[a] <= DirectionBits'(direction1_q[a] < 0 ? -direction1_q[a] : direction1_q[a]);
+      end
+    end
+    if (valid_q[2]) begin
+      for (int unsigned a = 0; a < 3; a++) square3_q[a] <= SquareBits'(size2_q[a]) * SquareBits'(size2_q[a]);
+    end
+    if (valid_q[3]) begin
+      sum4_q <= SumBits'(square3_q[0]) + SumBits'(square3_q[1]) + SumBits'(square3_q[2]);
+      unique case (place_q[3].pixel.face)
+        FaceX:   square4_q <= square3_q[0];
+        FaceY:   square4_q <= square3_q[1];
+        FaceZ:   square4_q <= square3_q[2];
+        default: begin
+          // Without a face: c * 1 / 1.
+          square4_q <= SquareBits'(1);
+          sum4_q    <= SumBits'(1);
+        end
+      endcase
+    end
+    if (valid_q[4]) sum5_q <= sum4_q;
+    if (valid_q[5]) sum6_q <= sum5_q;
+    if (valid_q[6]) sum7_q <= sum6_q;
+  end
+
+  // 5, 6 colour x square, 7 dividend, then the digits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
+  logic [7:0] channel[3];
+  logic [7:0] quotient[3];
+
+  assign {channel[0], channel[1], channel[2]} = colour_q[4];
+
+  for (genvar c = 0; c < 3; c++) begin : gen_channel
+    logic [SquareBits+7:0] product5_q, product6_q;
+    logic [SumBits+8:0]    dividend7_q;
+
+    always_ff @(posedge clk_i) begin
+      if (valid_q[4]) product5_q <= (SquareBits + 8)'(square4_q) * (SquareBits + 8)'(channel[c]);
+      if (valid_q[5]) product6_q <= product5_q;
+      if (valid_q[6]) dividend7_q <= (SumBits + 9)'({product6_q, 1'b0}) + (SumBits + 9)'(sum6_q);
+    end
+
+    voxrt_divide #(
+      .DivisorBits (SumBits + 1),
+      .QuotientBits(8)
+    ) u_divide (
+      .clk_i,
+      .valid_i   (valid_q[Stages-1:Setup]),
+      .dividend_i(dividend7_q),
+      .divisor_i ({sum7_q, 1'b0}),
+      .quotient_o(quotient[c])
+    );
+  end
+
+  // Out.
+  localparam int unsigned OutBits = $bits(colour_t) + $bits(place_t);
+  logic   unused_ready;
+  place_t place;
+
+  voxrt_fifo #(
+    .Width(OutBits),
+    .Depth(FifoDepth)
+  ) u_out (
+    .clk_i,
+    .rst_ni,
+    .valid_i(valid_q[Stages]),
+    .ready_o(unused_ready),
+    .data_i ({quotient[0], quotient[1], quotient[2], place_q[Stages]}),
+    .valid_o,
+    .ready_i,
+    .data_o ({colour_o, place})
+  );
+
+  assign leaves     = valid_o && ready_i;
+  assign pixel_o    = place.pixel;
+  assign first_o    = place.first;
+  assign line_end_o = place.line_end;
+  assign last_o     = place.last;
+endmodule

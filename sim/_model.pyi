@@ -1,0 +1,32 @@
+# The exact model, native; src/model/module.cpp documents it.
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+INSTRUCTION_SETS: tuple[str, ...]
+
+class RenderedPixels(TypedDict):
+    colour: NDArray[np.uint8]
+    material: NDArray[np.uint8]
+    face: NDArray[np.uint8]
+    words_read: int
+
+class TracedRays(TypedDict):
+    material: NDArray[np.uint8]
+    face: NDArray[np.uint8]
+    cell: NDArray[np.int32]
+    words_read: int
+
+class Memory:
+    def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...
+    def render(
+        self,
+        materials: NDArray[np.uint8],
+        camera: NDArray[np.int32],
+        width: int,
+        height: int,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> RenderedPixels: ...
+    def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...

@@ -1,0 +1,37 @@
+"""Frames as picture files."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PIL import Image
+
+from voxrt.export.atomic import write_atomically
+
+if TYPE_CHECKING:
+    import os
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
+    """Write a picture, all of it or nothing: an interrupted write leaves the old file.
+
+    Parameters
+    ----------
+    path
+        Where to; the folder exists.
+    colour
+        uint8, shape (H, W, 3), sRGB. The same pixels give the same bytes.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    encoded = io.BytesIO()
+    Image.fromarray(colour, "RGB").save(encoded, format="PNG")
+    write_atomically(Path(path), encoded.getvalue())

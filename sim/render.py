@@ -1,0 +1,173 @@
+"""Frames from the verilated ray tracer or from the exact model, and the two held against each other."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from voxrt.sim import _model
+from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
+from voxrt.sim.errors import SimulatorError
+from voxrt.sim.frame import Frame, RenderCost
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.octree import Rom
+    from voxrt.sim.camera import Camera
+
+Engine: TypeAlias = Literal["rtl", "model"]
+
+_FRAME_LIMIT = 1 << 14
+_RTL_FRAME_LIMIT = (1 << 12) - 1
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class EngineCheck:
+    """The same view from both engines.
+
+    Attributes
+    ----------
+    rtl, model
+        The two frames.
+    wrong
+        bool, shape (H, W): pixels whose colour, material or face differ.
+    """
+
+    rtl: Frame
+    model: Frame
+    wrong: NDArray[np.bool_]
+
+    @property
+    def wrong_pixels(self) -> int:
+        """How many pixels differ."""
+        return int(np.count_nonzero(self.wrong))
+
+
+def render(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    engine: Engine,
+    threads: int = 0,
+    config: str = "tiny",
+) -> Frame:
+    """Render a frame.
+
+    Parameters
+    ----------
+    rom
+        The memory and its materials; the colour of entry 0 is the background.
+    camera
+        Where from.
+    size
+        Columns and rows.
+    engine
+        ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact C++ model. Both give the
+        same pixels.
+    threads
+        Threads of the model, 0 for one a core. The frame does not depend on it.
+    config
+        The configuration of the ray tracer that ``"rtl"`` runs.
+
+    Raises
+    ------
+    SimulatorError
+        The ray tracer is not in this installation, or cannot hold the memory or the camera; a size or a direction is
+        out of range.
+    """
+    width, height = size
+    if not (1 <= width <= _FRAME_LIMIT and 1 <= height <= _FRAME_LIMIT):
+        raise SimulatorError(f"a frame of {width}x{height} pixels is not 1x1 … {_FRAME_LIMIT}x{_FRAME_LIMIT}")
+    _check_directions(camera, size)
+    started = time.perf_counter()
+    if engine == "model":
+        return _render_model(rom, camera, size, threads, started)
+    return _render_rtl(rom, camera, size, config, started)
+
+
+def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, config: str = "tiny") -> EngineCheck:
+    """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
+    rtl = render(rom, camera, size, engine="rtl", config=config)
+    model = render(rom, camera, size, engine="model", threads=threads)
+    wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
+    return EngineCheck(rtl=rtl, model=model, wrong=wrong)
+
+
+def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
+    pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
+        palette_of(rom), _registers(camera), size[0], size[1], threads
+    )
+    return Frame(
+        colour=pixels["colour"],
+        material=pixels["material"],
+        face=pixels["face"],
+        cost=RenderCost(size[0] * size[1], pixels["words_read"], None, time.perf_counter() - started),
+    )
+
+
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, started: float) -> Frame:
+    try:
+        from voxrt.sim import _rtl  # noqa: PLC0415 - not built on every platform
+    except ImportError as error:
+        raise SimulatorError(
+            "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
+            "render with --engine model"
+        ) from error
+    if config not in _rtl.CONFIGS:
+        raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
+    tracer = _rtl.Tracer(config)
+    place = tuple(value / POSITION_UNITS for value in camera.position)
+    for misfit, problem in (
+        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
+        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
+        (
+            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
+            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
+        ),
+        (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
+    ):
+        if misfit:
+            raise SimulatorError(
+                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
+            )
+    tracer.load(rom.octree.words)
+    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom))
+    if pixels["errors"]:
+        raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
+    return Frame(
+        colour=pixels["colour"],
+        material=pixels["material"],
+        face=pixels["face"],
+        cost=RenderCost(size[0] * size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started),
+    )
+
+
+def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
+    # Directions are linear in the pixel: the largest stand in the corners.
+    largest = max(
+        abs(look + right * column + up * row)
+        for look, right, up in zip(camera.look, camera.right, camera.up, strict=True)
+        for column in (-(size[0] // 2), size[0] - 1 - size[0] // 2)
+        for row in (size[1] // 2, size[1] // 2 + 1 - size[1])
+    )
+    if largest >= DIRECTION_LIMIT:
+        raise SimulatorError(
+            f"the camera's directions reach {largest} at the frame's corners, which is not below 2**20; "
+            "scale look, right and up down together"
+        )
+
+
+def _registers(camera: Camera) -> NDArray[np.int32]:
+    return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
+
+
+def palette_of(rom: Rom) -> NDArray[np.uint8]:
+    """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
+    palette = np.zeros((256, 3), dtype=np.uint8)
+    palette[: len(rom.materials)] = [material.colour for material in rom.materials]
+    return palette

@@ -1,0 +1,39 @@
+// One tile of a frame: its rays, their walk and their colours. frame_tile_body.h is compiled once an instruction set.
+#pragma once
+
+#include "frame.h"
+#include "memory.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace voxrt::model {
+
+inline constexpr int32_t kTileSide = 16; // pixels
+
+struct FrameJob {
+    const Memory& memory;     // verified
+    const uint8_t* materials; // 256 sRGB triples, entry 0 the background
+    const Camera& camera;
+    const FrameView& frame;
+    uint8_t material_at_camera; // of the camera's own voxel: what a ray without direction hits
+};
+
+// Whether the keys of the tile with its upper left pixel at (left, top) are exact in doubles.
+bool tile_fits(const FrameJob& job, int32_t left, int32_t top);
+
+// Renders the tile at (left, top), clipped to the frame, if it fits. Returns how many words were read.
+uint64_t render_tile_portable(const FrameJob& job, int32_t left, int32_t top);
+#if defined(__x86_64__)
+uint64_t render_tile_avx2(const FrameJob& job, int32_t left, int32_t top);
+uint64_t render_tile_avx512(const FrameJob& job, int32_t left, int32_t top);
+#endif
+
+// What this processor runs, the fastest first. All give the same pixels.
+struct TileEngine {
+    const char* instructions;
+    RenderTile render_tile;
+};
+const std::vector<TileEngine>& tile_engines();
+
+} // namespace voxrt::model

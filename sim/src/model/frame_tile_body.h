@@ -1,0 +1,136 @@
+// frame_tile.h's render_tile for the instruction set of the including file, which defines VOXRT_RENDER_TILE as its
+// name.
+#include "frame_tile.h"
+#include "tile.h"
+#include "tile_walk.h"
+
+#include <cstring>
+
+namespace voxrt::model {
+namespace {
+
+constexpr int kGroupsAcross = kTileSide / kLanes;
+
+// The group's first pixel; the others stand to its right.
+struct Place {
+    int32_t column, row;
+};
+inline Place place_of(int32_t left, int32_t top, int group) {
+    return {left + group % kGroupsAcross * kLanes, top + group / kGroupsAcross};
+}
+
+// The directions of a group's rays: whole numbers, exact.
+struct Directions {
+    Lanes d[3];
+};
+inline Directions directions_of(const FrameJob& job, Place place) {
+    constexpr Lanes kSteps{0, 1, 2, 3, 4, 5, 6, 7};
+    Directions out;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double right = job.camera.right[axis];
+        const double first = job.camera.look[axis] + right * (place.column - job.frame.width / 2) +
+                             static_cast<double>(job.camera.up[axis]) * (job.frame.height / 2 - place.row);
+        out.d[axis] = all(first) + right * kSteps;
+    }
+    return out;
+}
+
+// Bit i: pixel i of the group lies in the frame.
+inline Mask inside(const FrameJob& job, Place place) {
+    const int32_t columns = place.row < job.frame.height ? job.frame.width - place.column : 0;
+    return static_cast<Mask>(columns >= kLanes ? 0xFF : columns > 0 ? (1 << columns) - 1 : 0);
+}
+
+inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
+    const double world = 16.0 * (1 << job.memory.depth);
+    const Lanes zero = all(0);
+    for (int group = 0; group < kGroups; ++group) {
+        const Place place = place_of(left, top, group);
+        const Directions rays = directions_of(job, place);
+        Lanes size[3];
+        Mask still = 0xFF;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Lanes d = rays.d[axis];
+            tile.mirrored[group][axis] = less(d, zero);
+            still &= equal(d, zero);
+            size[axis] = larger(larger(d, -d), all(1));
+            tile.face[group][axis] = 0;
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            const double origin = job.camera.position[axis];
+            const Lanes weight = 4 * size[(axis + 1) % 3] * size[(axis + 2) % 3];
+            const Lanes start = choose(tile.mirrored[group][axis], all(world - origin), all(origin));
+            tile.scale[group][axis] = 16 * weight;
+            tile.offset[group][axis] = all(axis) - start * weight;
+            if (const Mask dead = equal(rays.d[axis], zero)) {
+                const double rest = (job.camera.position[axis] >> 4) + 0.5; // in the middle of a cell: on no plane
+                tile.scale[group][axis] = choose(dead, all(kNeverKey), tile.scale[group][axis]);
+                tile.offset[group][axis] = choose(dead, all(-rest * kNeverKey), tile.offset[group][axis]);
+            }
+        }
+        tile.alive[group] = inside(job, place) & ~still;
+        tile.material[group] = bytes_of(still) * job.material_at_camera;
+    }
+}
+
+// What a group shows, one byte a pixel; colours three.
+struct Pixels {
+    uint64_t material;
+    uint64_t face;
+    uint8_t colour[3 * kLanes + 1];
+};
+inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Directions& rays) {
+    const Mask x = tile.face[group][0], y = tile.face[group][1], z = tile.face[group][2];
+    const Mask none = static_cast<Mask>(~(x | y | z));
+    Pixels out;
+    out.material = tile.material[group];
+    out.face = bytes_of(y | none) | bytes_of(z | none) << 1;
+
+    uint8_t material[kLanes];
+    std::memcpy(material, &out.material, kLanes);
+    double colours[3][kLanes];
+    for (int channel = 0; channel < 3; ++channel)
+        for (int lane = 0; lane < kLanes; ++lane)
+            colours[channel][lane] = job.materials[3 * material[lane] + channel];
+    Lanes surface[3];
+    std::memcpy(surface, colours, sizeof surface);
+
+    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed. The quotient in doubles has the exact one's
+    // floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <= 255, more than half an ulp of
+    // k.
+    const Lanes square[3] = {rays.d[0] * rays.d[0], rays.d[1] * rays.d[1], rays.d[2] * rays.d[2]};
+    const Lanes length = choose(none, all(1), square[0] + square[1] + square[2]);
+    const Lanes across = choose(x, square[0], choose(y, square[1], choose(z, square[2], all(1))));
+    IntLanes packed{};
+    for (int channel = 0; channel < 3; ++channel) {
+        const Lanes shaded = (2 * surface[channel] * across + length) / (2 * length);
+        packed |= __builtin_convertvector(shaded, IntLanes) << 8 * channel;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const int32_t pixel = packed[lane];
+        std::memcpy(out.colour + 3 * lane, &pixel, 4); // the fourth byte is the next pixel's to overwrite
+    }
+    return out;
+}
+
+} // namespace
+
+uint64_t VOXRT_RENDER_TILE(const FrameJob& job, int32_t left, int32_t top) {
+    Tile tile;
+    set_up(tile, job, left, top);
+    const uint64_t words_read = trace_tile(job.memory, tile);
+    for (int group = 0; group < kGroups; ++group) {
+        const Place place = place_of(left, top, group);
+        if (place.row >= job.frame.height || place.column >= job.frame.width)
+            continue;
+        const Pixels pixels = shade(tile, job, group, directions_of(job, place));
+        const size_t pixel = static_cast<size_t>(place.row) * job.frame.width + place.column;
+        const size_t count = job.frame.width - place.column < kLanes ? job.frame.width - place.column : kLanes;
+        std::memcpy(job.frame.colour + 3 * pixel, pixels.colour, 3 * count);
+        std::memcpy(job.frame.face + pixel, &pixels.face, count);
+        std::memcpy(job.frame.material + pixel, &pixels.material, count);
+    }
+    return words_read;
+}
+
+} // namespace voxrt::model

@@ -1,0 +1,58 @@
+// A configuration of the ray tracer, whatever class Verilator made of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace voxrt::rtl {
+
+// The parameters of the design that callers must respect: Design checks none of them.
+struct Limits {
+    unsigned lanes;
+    unsigned max_depth;     // depth is 1 .. max_depth
+    unsigned position_bits; // signed
+    unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
+
+    std::size_t memory_words() const { return (std::size_t{8} << block_bits) + 1; }
+};
+
+// Sizes are 1 .. 2 ** size_bits - 1.
+inline constexpr unsigned size_bits = 12;
+
+struct FrameRequest {
+    int32_t position[3]; // 1/16 voxel
+    int16_t look[3], right[3], up[3];
+    unsigned width, height;
+    unsigned depth;
+    const uint8_t* materials; // 256 x 3, row 0 is the background
+    uint32_t stall_seed;      // 0: the output is always ready; else it stalls in a pattern of this seed's
+};
+
+// Row by row from the top; colour 3 bytes a pixel.
+struct FrameImage {
+    uint8_t* colour;
+    uint8_t* material;
+    uint8_t* face;
+};
+
+struct FrameCost {
+    uint64_t cycles; // from the start to the last pixel accepted
+    uint64_t words_read;
+    bool direction_overflow, bad_pointer, step_limit;
+};
+
+class Design {
+public:
+    virtual ~Design() = default;
+    virtual const Limits& limits() const = 0;
+    // At most memory_words(), report dialect. Through the load port, a word a clock, or straight into the memory.
+    virtual void load(std::span<const uint32_t> words, bool through_port) = 0;
+    // Calls poll now and then; what it throws ends the frame, and the design stays usable.
+    virtual FrameCost render(const FrameRequest& request, const FrameImage& image,
+                             const std::function<void()>& poll) = 0;
+};
+
+} // namespace voxrt::rtl

@@ -1,0 +1,185 @@
+// voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
+//
+//   CONFIGS: list[str]        names of the configurations that were built
+//   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
+//     .memory_words           how many words the simulated memory holds
+//     .max_depth              the deepest octree that the configuration can trace
+//     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
+//     .load(words, *, through_port=False)
+//                             uint32, 1-D, report dialect. Through the design's load port, one word a clock, or
+//                             straight into the simulated memory: the outcome is the same
+//     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
+//                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
+//                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
+//                             materials uint8 (256, 3), sRGB, row 0 is the background. With a stall_seed, the
+//                             picture's consumer stalls in a pattern that depends on it.
+//                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
+//                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
+//                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
+//
+// ValueError: a name, size or register out of range.
+#include "design.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace voxrt::rtl {
+
+#define VOXRT_CONFIGURATION(name) std::unique_ptr<Design> make_##name();
+#include "configurations.inc"
+#undef VOXRT_CONFIGURATION
+
+namespace {
+
+struct Configuration {
+    const char* name;
+    std::unique_ptr<Design> (*make)();
+};
+
+constexpr Configuration configurations[] = {
+#define VOXRT_CONFIGURATION(name) {#name, make_##name},
+#include "configurations.inc"
+#undef VOXRT_CONFIGURATION
+};
+
+using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using CameraRegisters = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
+using Materials = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::device::cpu>;
+
+std::string range(long low, long high) { return std::to_string(low) + " ... " + std::to_string(high); }
+
+void check(const char* what, long value, long low, long high) {
+    if (value < low || value > high)
+        throw std::invalid_argument(std::string(what) + " " + std::to_string(value) + " is not in " + range(low, high));
+}
+
+int16_t direction_register(int32_t value) {
+    check("camera direction component", value, INT16_MIN, INT16_MAX);
+    return static_cast<int16_t>(value);
+}
+
+nb::object array(std::vector<std::size_t> shape, uint8_t*& data) {
+    std::size_t size = 1;
+    for (std::size_t n : shape)
+        size *= n;
+    data = new uint8_t[size]();
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<uint8_t*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, uint8_t>(data, shape.size(), shape.data(), owner));
+}
+
+class Tracer {
+public:
+    explicit Tracer(const std::string& name) {
+        for (const Configuration& configuration : configurations)
+            if (name == configuration.name)
+                design_ = configuration.make();
+        if (!design_)
+            throw std::invalid_argument("no configuration " + name + ": see CONFIGS");
+    }
+
+    std::size_t memory_words() const { return design_->limits().memory_words(); }
+    unsigned max_depth() const { return design_->limits().max_depth; }
+    int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
+
+    void load(const Words& words, bool through_port) {
+        if (words.size() < 1 || words.size() > memory_words())
+            throw std::invalid_argument(std::to_string(words.size()) + " words do not fit this memory of " +
+                                        range(1, static_cast<long>(memory_words())));
+        Busy busy(*this);
+        nb::gil_scoped_release released;
+        design_->load({words.data(), words.size()}, through_port);
+    }
+
+    nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
+                    uint32_t stall_seed) {
+        const Limits& limits = design_->limits();
+        check("width", width, 1, (1 << size_bits) - 1);
+        check("height", height, 1, (1 << size_bits) - 1);
+        check("depth", depth, 1, limits.max_depth);
+        FrameRequest request{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            check("camera position", camera(0, axis), -position_limit(), position_limit() - 1);
+            request.position[axis] = camera(0, axis);
+            request.look[axis] = direction_register(camera(1, axis));
+            request.right[axis] = direction_register(camera(2, axis));
+            request.up[axis] = direction_register(camera(3, axis));
+        }
+        request.width = static_cast<unsigned>(width);
+        request.height = static_cast<unsigned>(height);
+        request.depth = static_cast<unsigned>(depth);
+        request.materials = materials.data();
+        request.stall_seed = stall_seed;
+
+        FrameImage image{};
+        const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);
+        nb::dict result;
+        result["colour"] = array({rows, columns, 3}, image.colour);
+        result["material"] = array({rows, columns}, image.material);
+        result["face"] = array({rows, columns}, image.face);
+
+        FrameCost cost;
+        {
+            Busy busy(*this);
+            nb::gil_scoped_release released;
+            cost = design_->render(request, image, [] {
+                nb::gil_scoped_acquire acquired;
+                if (PyErr_CheckSignals() != 0)
+                    throw nb::python_error();
+            });
+        }
+        result["cycles"] = cost.cycles;
+        result["words_read"] = cost.words_read;
+        nb::list errors;
+        if (cost.direction_overflow)
+            errors.append("direction overflow");
+        if (cost.bad_pointer)
+            errors.append("bad pointer");
+        if (cost.step_limit)
+            errors.append("step limit");
+        result["errors"] = errors;
+        return result;
+    }
+
+private:
+    // One call at a time: the GIL, held here, guards the flag.
+    struct Busy {
+        explicit Busy(Tracer& tracer) : tracer(tracer) {
+            if (tracer.busy_)
+                throw std::runtime_error("this Tracer is at work in another thread: make one Tracer a thread");
+            tracer.busy_ = true;
+        }
+        ~Busy() { tracer.busy_ = false; }
+        Tracer& tracer;
+    };
+
+    std::unique_ptr<Design> design_;
+    bool busy_ = false;
+};
+
+} // namespace
+} // namespace voxrt::rtl
+
+NB_MODULE(_rtl, m) {
+    using voxrt::rtl::Tracer;
+    std::vector<std::string> names;
+    for (const auto& configuration : voxrt::rtl::configurations)
+        names.emplace_back(configuration.name);
+    m.attr("CONFIGS") = names;
+    nb::class_<Tracer>(m, "Tracer")
+        .def(nb::init<const std::string&>(), "config"_a)
+        .def_prop_ro("memory_words", &Tracer::memory_words)
+        .def_prop_ro("max_depth", &Tracer::max_depth)
+        .def_prop_ro("position_limit", &Tracer::position_limit)
+        .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
+        .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
+             "stall_seed"_a = 0);
+}

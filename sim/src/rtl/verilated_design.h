@@ -1,0 +1,189 @@
+// Drives a verilated voxrt_rtu: clock, reset, load port, material table, frame, pixels.
+#pragma once
+
+#include "design.h"
+
+#include <verilated.h>
+#include <verilated_syms.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace voxrt::rtl {
+
+template <class Model> class VerilatedDesign final : public Design {
+public:
+    explicit VerilatedDesign(const Limits& limits) : limits_(limits) {
+        context_.threads(1);
+        enter();
+        model_ = std::make_unique<Model>(&context_, "TOP");
+        model_->rst_ni = 0;
+        model_->eval();
+    }
+
+    ~VerilatedDesign() override {
+        enter();
+        model_.reset();
+        Verilated::threadContextp(Verilated::defaultContextp());
+    }
+
+    const Limits& limits() const override { return limits_; }
+
+    void load(std::span<const uint32_t> words, bool through_port) override {
+        enter();
+        if (through_port) {
+            model_->load_valid_i = 1;
+            for (std::size_t address = 0; address < words.size(); ++address) {
+                model_->load_address_i = static_cast<uint32_t>(address);
+                model_->load_word_i = words[address];
+                clock();
+            }
+            model_->load_valid_i = 0;
+            return;
+        }
+        *variable<uint32_t>("TOP.voxrt_rtu.u_memory", "root_q") = memory_word(words[0]);
+        for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
+            const std::string scope = "TOP.voxrt_rtu.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram";
+            uint32_t* rows = variable<uint32_t>(scope, "data_q");
+            for (std::size_t row = 0; row + 1 < words.size(); ++row)
+                rows[row] = memory_word(words[row + 1]);
+        }
+    }
+
+    FrameCost render(const FrameRequest& request, const FrameImage& image, const std::function<void()>& poll) override {
+        enter();
+        reset();
+        set_frame(request);
+        model_->start_i = 1;
+        clock();
+        model_->start_i = 0;
+
+        const std::size_t pixels = std::size_t{request.width} * request.height;
+        StallPattern stalls(request.stall_seed);
+        std::size_t done = 0;
+        for (uint64_t clocks = 1; done < pixels; ++clocks) {
+            model_->out_ready_i = !stalls.next();
+            if (model_->out_valid_o && model_->out_ready_i) {
+                const uint32_t colour = model_->out_colour_o;
+                image.colour[3 * done] = static_cast<uint8_t>(colour >> 16);
+                image.colour[3 * done + 1] = static_cast<uint8_t>(colour >> 8);
+                image.colour[3 * done + 2] = static_cast<uint8_t>(colour);
+                image.material[done] = static_cast<uint8_t>(model_->out_pixel_o >> 2);
+                image.face[done] = model_->out_pixel_o & 3;
+                const bool last = done + 1 == pixels;
+                const bool line_end = (done + 1) % request.width == 0;
+                if (model_->out_first_o != (done == 0) || model_->out_line_end_o != line_end ||
+                    model_->out_last_o != last)
+                    throw std::logic_error("pixel " + std::to_string(done) + " has wrong first, line or last marks");
+                ++done;
+            }
+            clock();
+            if (clocks % poll_interval == 0)
+                poll();
+        }
+        if (model_->busy_o)
+            throw std::logic_error("busy after the last pixel");
+        const unsigned errors = model_->error_o;
+        return {.cycles = model_->cycles_o,
+                .words_read = model_->words_read_o,
+                .direction_overflow = (errors & 4) != 0,
+                .bad_pointer = (errors & 2) != 0,
+                .step_limit = (errors & 1) != 0};
+    }
+
+private:
+    // Verilator's run time works on the calling thread's context, in destructors too: never on one that is gone.
+    void enter() { Verilated::threadContextp(&context_); }
+
+    static constexpr uint64_t poll_interval = 1 << 16;
+
+    // Runs of random length, stalled or not, so that queues fill and drain.
+    class StallPattern {
+    public:
+        explicit StallPattern(uint32_t seed) : state_(seed) {}
+
+        bool next() {
+            if (state_ == 0)
+                return false;
+            if (run_ == 0) {
+                state_ ^= state_ << 13; // xorshift32 (Marsaglia 2003)
+                state_ ^= state_ >> 17;
+                state_ ^= state_ << 5;
+                stalled_ = !stalled_;
+                run_ = 1 + (state_ % 8 == 0 ? state_ / 8 % 200 : state_ / 8 % 4);
+            }
+            --run_;
+            return stalled_;
+        }
+
+    private:
+        uint32_t state_;
+        unsigned run_ = 0;
+        bool stalled_ = false;
+    };
+
+    void clock() {
+        model_->clk_i = 0;
+        model_->eval();
+        model_->clk_i = 1;
+        model_->eval();
+    }
+
+    // The pixel buffers clear themselves, 128 places a clock each, after reset.
+    void reset() {
+        model_->start_i = 0;
+        model_->out_ready_i = 0;
+        model_->rst_ni = 0;
+        for (int i = 0; i < 16; ++i)
+            clock();
+        model_->rst_ni = 1;
+        clock();
+    }
+
+    void set_frame(const FrameRequest& request) {
+        model_->table_write_i = 1;
+        for (unsigned material = 0; material < 256; ++material) {
+            const uint8_t* colour = request.materials + 3 * material;
+            model_->table_material_i = static_cast<uint8_t>(material);
+            model_->table_colour_i = uint32_t{colour[0]} << 16 | uint32_t{colour[1]} << 8 | colour[2];
+            clock();
+        }
+        model_->table_write_i = 0;
+        const uint32_t position_mask = limits_.position_bits < 32 ? (1u << limits_.position_bits) - 1 : ~0u;
+        for (int axis = 0; axis < 3; ++axis) {
+            model_->position_i[axis] = static_cast<uint32_t>(request.position[axis]) & position_mask;
+            model_->look_i[axis] = static_cast<uint16_t>(request.look[axis]);
+            model_->right_i[axis] = static_cast<uint16_t>(request.right[axis]);
+            model_->up_i[axis] = static_cast<uint16_t>(request.up[axis]);
+        }
+        model_->width_i = static_cast<uint16_t>(request.width);
+        model_->height_i = static_cast<uint16_t>(request.height);
+        model_->depth_i = static_cast<uint8_t>(request.depth);
+    }
+
+    // What voxrt_octree_memory keeps for a word of the report dialect.
+    uint32_t memory_word(uint32_t word) const {
+        const unsigned payload_bits = limits_.block_bits > 9 ? limits_.block_bits : 9;
+        const uint32_t leaf = 1u << payload_bits;
+        if (word >> 31)
+            return leaf | (word & 0xFF);
+        if ((word & 7) != 1 || word >> (limits_.block_bits + 3))
+            return leaf | 0x100;
+        return word >> 3;
+    }
+
+    template <class Value> Value* variable(const std::string& scope_name, const char* name) {
+        const VerilatedScope* scope = context_.scopeFind(scope_name.c_str());
+        VerilatedVar* found = scope ? scope->varFind(name) : nullptr;
+        if (!found)
+            throw std::logic_error("the verilated design has no " + scope_name + "." + name);
+        return static_cast<Value*>(found->datap());
+    }
+
+    Limits limits_;
+    VerilatedContext context_;
+    std::unique_ptr<Model> model_;
+};
+
+} // namespace voxrt::rtl

@@ -1,0 +1,184 @@
+"""``voxrt build``: the files, the JSON and the summary that it promises."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from PIL import Image
+
+from voxrt.cli.results import BuildReport
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def without_seconds(manifest: bytes) -> dict:
+    return {key: value for key, value in json.loads(manifest).items() if key != "seconds"}
+
+
+def test_writes_memory_and_manifest_and_tells_people(voxrt, folder):
+    finished = voxrt("build", "house.obj", "-o", "out", "--depth", "5")
+    assert finished.code == 0, finished.err
+    assert finished.out == ""
+    assert sorted(files(folder / "out")) == ["house.json", "house.mem"]
+    assert "32 voxels a side (depth 5)" in finished.err
+    assert "out/house.mem" in finished.err
+
+
+def test_the_default_depth_is_7_and_the_default_folder_is_here(voxrt, folder):
+    assert voxrt("build", "house.obj").code == 0
+    assert json.loads((folder / "house.json").read_bytes())["depth"] == 7
+
+
+def test_a_voxel_size_instead_of_a_depth(voxrt, folder):
+    assert voxrt("build", "house.obj", "--voxel-size", "0.5").code == 0
+    manifest = json.loads((folder / "house.json").read_bytes())
+    assert manifest["depth"] == 4
+    assert manifest["world"]["voxel_size"] == 0.5
+
+
+def test_json_is_all_that_stdout_gets_and_keeps_its_promise(voxrt, folder):
+    finished = voxrt("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json")
+    assert finished.code == 0, finished.err
+    report = msgspec.json.decode(finished.out, type=BuildReport, strict=True)
+    result = json.loads(finished.out)
+    keys = {"outputs", "depth", "words", "blocks", "voxels", "materials", "warnings", "seconds", "render"}
+    assert keys <= set(result)
+    assert {"rays", "cycles", "words_read", "cycles_per_pixel", "words_per_ray", "seconds"} <= set(result["render"])
+    assert report.outputs == {
+        "mem": "out/house.mem",
+        "manifest": "out/house.json",
+        "preview": "out/house.preview.png",
+    }
+    manifest = json.loads((folder / "out/house.json").read_bytes())
+    for key in ("depth", "words", "blocks", "voxels"):
+        assert result[key] == manifest[key], key
+    assert report.words == 1 + 8 * report.blocks == len((folder / "out/house.mem").read_text().split())
+    assert [material.name for material in report.materials[1:]] == ["timber", "glass", "brick", "plaster", "tiles"]
+    assert list(report.seconds) == ["load", "fit", "voxelize", "octree", "write", "preview"]
+    assert report.render is not None
+    assert report.render.rays == 640 * 480
+    assert report.render.cycles is None
+    assert report.render.words_per_ray == pytest.approx(report.render.words_read / report.render.rays)
+
+
+def test_without_preview_render_is_null(voxrt):
+    assert json.loads(voxrt("build", "house.obj", "--depth", "3", "--json").out)["render"] is None
+
+
+@pytest.mark.parametrize("asset", ["house.obj", "dog.usda"])
+def test_the_same_input_gives_the_same_bytes(voxrt, folder, asset):
+    for out in ("one", "two"):
+        arguments = ("build", asset, "-o", out, "--depth", "6", "--preview", "--engine", "model", "--size", "80x60")
+        assert voxrt(*arguments, env={"PYTHONHASHSEED": str(len(out) + ord(out[0]))}).code == 0
+    one, two = files(folder / "one"), files(folder / "two")
+    name = asset.split(".")[0]
+    assert one[f"{name}.mem"] == two[f"{name}.mem"]
+    assert one[f"{name}.preview.png"] == two[f"{name}.preview.png"]
+    assert without_seconds(one[f"{name}.json"]) == without_seconds(two[f"{name}.json"])
+
+
+def test_preview_may_stand_before_the_asset_and_may_have_a_file(voxrt, folder):
+    assert voxrt("build", "--preview", "house.obj", "--depth", "3", "--engine", "model").code == 0
+    assert (folder / "house.preview.png").is_file()
+    arguments = ("--preview", "new/picture.png", "house.obj", "--depth", "3", "--engine", "model", "--size", "32x20")
+    assert voxrt("build", *arguments).code == 0
+    with Image.open(folder / "new/picture.png") as picture:
+        assert picture.size == (32, 20)
+
+
+def test_the_preview_shows_the_scene(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "6", "--preview", "--engine", "model").code == 0
+    with Image.open(folder / "house.preview.png") as picture:
+        pixels = np.asarray(picture)
+    tiles = (pixels[..., 0] > 2 * pixels[..., 2]) & (pixels[..., 0] > 100)
+    assert 0.03 < tiles.mean() < 0.5
+    drawn = (pixels != pixels[0, 0]).any(axis=2)
+    assert not drawn[0].any()
+    assert not drawn[-1].any()
+    assert not drawn[:, 0].any()
+    assert not drawn[:, -1].any()
+    assert drawn.any(axis=1).mean() > 0.7 or drawn.any(axis=0).mean() > 0.7
+
+
+@pytest.mark.parametrize(("dialect", "empty"), [("report", "FFFFFF00"), ("seed-rtl", "FFFFFFF0"), ("msb", "80000000")])
+def test_dialects(voxrt, folder, dialect, empty):
+    assert voxrt("build", "house.obj", "--depth", "4", "--dialect", dialect).code == 0
+    assert empty in (folder / "house.mem").read_text().split()
+    assert json.loads((folder / "house.json").read_bytes())["dialect"] == dialect
+    assert voxrt("render", "house.mem", "--engine", "model", "--size", "8x8").code == 0
+
+
+def test_options_reach_their_stage(voxrt, folder):
+    def built(*options: str) -> dict:
+        finished = voxrt("build", "house.obj", "--depth", "5", "--json", *options)
+        assert finished.code == 0, finished.err
+        return json.loads(finished.out)
+
+    plain = built()
+    assert built("--fill", "surface")["voxels"] < plain["voxels"]
+    assert built("--geometry", "collider")["voxels"] > plain["voxels"]
+    built("--up", "z")
+    assert json.loads((folder / "house.json").read_bytes())["source"]["settings"]["up"] == "z"
+    built("--unit", "0.01")
+    assert json.loads((folder / "house.json").read_bytes())["world"]["voxel_size"] == pytest.approx(0.0775 / 32)
+    rounded = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json").out)
+    exact = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json", "--pow2", "none").out)
+    assert rounded["voxels"] > exact["voxels"]
+    assert rounded["words"] < exact["words"]
+
+
+def test_warnings_go_to_people_and_to_programs(voxrt):
+    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--json")
+    assert finished.code == 0
+    assert "voxrt: warning: " in finished.err
+    assert "ignored-option" in [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
+
+
+@pytest.mark.parametrize(
+    "name", [b"with space.obj", b"caf\xc3\xa9.obj", b"caf\xe9.obj", b"back\\slash.obj", b"-dash.obj"]
+)
+def test_names(voxrt, folder, name):
+    shutil.copy(folder / "house.obj", folder / os.fsdecode(name))
+    finished = voxrt(
+        "build", "--depth", "3", "-o", "out", "--preview", "--engine", "model", "--json", "--", os.fsdecode(name)
+    )
+    assert finished.code == 0, finished.err
+    outputs = json.loads(finished.out)["outputs"]
+    assert all((folder / output).is_file() for output in outputs.values()), outputs
+    stem = name.removesuffix(b".obj").decode("utf-8", "replace").replace("\ufffd", "_").replace("\\", "_")
+    assert outputs["mem"] == f"out/{stem}.mem"
+
+
+def test_build_is_one_command_with_three_names(folder):
+    scripts = Path(sys.executable).parent
+    outputs = []
+    for command in ([scripts / "voxrt-build"], [scripts / "voxrt", "build"], [sys.executable, "-m", "voxrt", "build"]):
+        subprocess.run([*command, "house.obj", "--depth", "4"], cwd=folder, check=True, capture_output=True)
+        outputs.append((folder / "house.mem").read_bytes())
+        (folder / "house.mem").unlink()
+    assert outputs[0] == outputs[1] == outputs[2]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_permission(voxrt, folder):
+    (folder / "out").mkdir(mode=0o500)
+    finished = voxrt("build", "house.obj", "-o", "out")
+    assert finished.code == 2
+    assert "no permission to write in out" in finished.error
+
+
+def test_a_target_that_is_a_folder(voxrt, folder):
+    (folder / "house.mem").mkdir()
+    finished = voxrt("build", "house.obj", "--depth", "3")
+    assert finished.code == 2
+    assert "cannot be written" in finished.error

@@ -1,0 +1,154 @@
+"""``voxrt render``: cameras from all, some or no registers; memories with and without manifest; both engines."""
+
+from __future__ import annotations
+
+import json
+
+import msgspec
+import pytest
+from PIL import Image
+
+from voxrt.cli.results import RenderResult
+
+MODEL = ("--engine", "model", "--size", "64x48")
+
+
+@pytest.fixture
+def built(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "5").code == 0
+    return folder
+
+
+def test_json(voxrt, built):
+    finished = voxrt("render", "house.mem", "-o", "out/picture.png", *MODEL, "--json")
+    assert finished.code == 0, finished.err
+    result = msgspec.json.decode(finished.out, type=RenderResult, strict=True)
+    keys = {"rays", "cycles", "words_read", "cycles_per_pixel", "words_per_ray", "seconds"}
+    assert keys <= set(json.loads(finished.out))
+    assert result.rays == 64 * 48
+    assert result.size == (64, 48)
+    assert result.outputs == {"picture": "out/picture.png"}
+    assert "wrong_pixels" not in json.loads(finished.out)
+    with Image.open(built / "out/picture.png") as picture:
+        assert picture.size == (64, 48)
+
+
+def test_the_picture_has_the_memorys_name_and_the_previews_pixels(voxrt, built):
+    assert voxrt("render", "house.mem", *MODEL).code == 0
+    assert voxrt("build", "house.obj", "--depth", "5", *MODEL, "--preview").code == 0
+    assert (built / "house.png").read_bytes() == (built / "house.preview.png").read_bytes()
+
+
+@pytest.mark.usefixtures("built")
+def test_registers_are_taken_as_they_are(voxrt):
+    registers = ("--look", "3,-2,-90", "--right", "1,0,0", "--up", "-0,1,0")
+    finished = voxrt("render", "house.mem", *MODEL, "--json", "--position", "-5,3.0625,-2", *registers)
+    camera = json.loads(finished.out)["camera"]
+    assert camera == {"position": [-5, 3.0625, -2], "look": [3, -2, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
+
+
+@pytest.mark.usefixtures("built")
+def test_registers_that_make_no_camera(voxrt):
+    for registers in (["--look", "0,0,0"], ["--look", "0,0,9", "--right", "0,0,1"], ["--up", "0,0,0"]):
+        finished = voxrt("render", "house.mem", *MODEL, *registers)
+        assert finished.code == 2
+        assert finished.error.startswith("voxrt: error: ")
+
+
+def test_without_manifest(voxrt, built):
+    (built / "house.json").unlink()
+    finished = voxrt("render", "house.mem", *MODEL)
+    assert finished.code == 0
+    assert "no manifest" in finished.err
+    finished = voxrt("render", "house.mem", *MODEL, "--depth", "6", "--dialect", "report")
+    assert finished.code == 0
+    finished = voxrt("render", "house.mem", *MODEL, "--depth", "1")
+    assert finished.code == 3
+
+
+def test_a_damaged_memory(voxrt, built):
+    memory = built / "house.mem"
+    memory.write_text(memory.read_text().replace("FFFFFF00", "00000002", 1))
+    (built / "house.json").unlink()
+    finished = voxrt("render", "house.mem", *MODEL)
+    assert finished.code == 3
+    assert finished.error.startswith("voxrt: error: house.mem: ")
+
+
+def test_memory_and_manifest_of_different_builds(voxrt, built):
+    memory = built / "house.mem"
+    memory.write_text(memory.read_text() + "FFFFFF00\n" * 8)
+    finished = voxrt("render", "house.mem", *MODEL)
+    assert finished.code == 3
+    assert "house.json" in finished.error
+
+
+@pytest.mark.usefixtures("built")
+def test_directions_out_of_range(voxrt):
+    finished = voxrt(
+        "render",
+        "house.mem",
+        "--engine",
+        "model",
+        "--size",
+        "640x480",
+        "--right",
+        "32000,0,0",
+        "--look",
+        "0,0,-9",
+        "--up",
+        "0,9,0",
+    )
+    assert finished.code == 5
+    assert "2**20" in finished.error
+
+
+def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder):
+    (folder / "sitecustomize.py").write_text("import sys\nsys.modules['voxrt.sim._rtl'] = None\n")
+    for arguments in (("build", "house.obj", "--depth", "3", "--preview"), ("render", "house.mem")):
+        finished = voxrt(*arguments, env={"PYTHONPATH": str(folder)})
+        assert finished.code == 5
+        assert "no verilated ray tracer" in finished.error
+        assert "--engine model" in finished.error
+    assert {"house.mem", "house.json"} <= {path.name for path in folder.iterdir()}
+    assert not list(folder.glob("*.png"))
+
+
+@pytest.fixture
+def ray_tracer():
+    pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
+
+
+@pytest.mark.usefixtures("ray_tracer")
+def test_the_ray_tracer_counts_its_clocks(voxrt, built):
+    finished = voxrt("render", "house.mem", "--size", "64x48", "--json")
+    assert finished.code == 0, finished.err
+    result = json.loads(finished.out)
+    assert result["engine"] == "rtl"
+    assert result["cycles"] > result["rays"]
+    assert result["cycles_per_pixel"] == pytest.approx(result["cycles"] / result["rays"])
+    hardware = (built / "house.png").read_bytes()
+    assert voxrt("render", "house.mem", *MODEL).code == 0
+    assert (built / "house.png").read_bytes() == hardware
+
+
+@pytest.mark.usefixtures("ray_tracer", "built")
+def test_check_counts_wrong_pixels(voxrt):
+    finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
+    assert finished.code == 0, finished.err
+    assert json.loads(finished.out)["wrong_pixels"] == 0
+
+
+@pytest.mark.usefixtures("ray_tracer")
+def test_check_fails_where_the_engines_differ(voxrt, built):
+    (built / "sitecustomize.py").write_text(
+        "import sys, voxrt.sim\nmodule = sys.modules['voxrt.sim.render']\nrender = module.render\n"
+        "def wrong(*arguments, engine, **options):\n    frame = render(*arguments, engine=engine, **options)\n"
+        "    frame.face[7, 5] ^= engine == 'model'\n    return frame\n"
+        "module.render = wrong\n"
+    )
+    arguments = ("render", "house.mem", "--size", "64x48", "--check", "--json")
+    finished = voxrt(*arguments, env={"PYTHONPATH": str(built)})
+    assert finished.code == 5
+    assert json.loads(finished.out)["wrong_pixels"] == 1
+    assert "1 pixels differ" in finished.error

@@ -1,0 +1,128 @@
+"""Every wrong command line and every unusable file is one line and the promised exit code."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["frob"], 'Unknown command "frob"'),
+        (["build"], "ASSET requires an argument"),
+        (["build", "house.obj", "more.obj"], "more.obj"),
+        (["build", "house.obj", "--bogus"], "--bogus"),
+        (["build", "house.obj", "--dept", "3"], "Did you mean --depth?"),
+        (["build", "house.obj", "--depth", "3.5"], "'3.5' is not a whole number"),
+        (["build", "house.obj", "--depth", "0"], "--depth 0 is not 1 to 16"),
+        (["build", "house.obj", "--depth", "17"], "--depth 17 is not 1 to 16"),
+        (["build", "house.obj", "--depth", "3", "--voxel-size", "1"], "exclude each other"),
+        (["build", "house.obj", "--voxel-size", "-1"], "not a positive number"),
+        (["build", "house.obj", "--voxel-size", "nan"], "not a positive number"),
+        (["build", "house.obj", "--unit", "0"], "not a positive number"),
+        (["build", "house.obj", "--unit", "inf"], "not a positive number"),
+        (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
+        (["build", "house.obj", "--size", "640"], "is not WIDTHxHEIGHT"),
+        (["build", "house.obj", "--size", "0x480"], "is not between 1x1 and"),
+        (["build", "house.obj", "--size", "99999x99999"], "is not between 1x1 and"),
+        (["build", "house.obj", "--preview", "picture.jpg"], "ends in .png"),
+        (["build", "house.obj", "-o", "house.mtl"], "house.mtl is a file, not a folder"),
+        (["build", "house.obj", "-o", "house.mtl/deeper"], "house.mtl is a file, not a folder"),
+        (["build", "house.obj", "--preview", "house.mtl/picture.png"], "house.mtl is a file, not a folder"),
+        (["render", "house.mem", "-o", "picture.bmp"], "ends in .png"),
+        (["render", "house.mem", "--position", "1,2"], "is not X,Y,Z"),
+        (["render", "house.mem", "--position", "1,2,x"], "'x' is not a number"),
+        (["render", "house.mem", "--position", "1,2,0.05"], "multiple of 1/16"),
+        (["render", "house.mem", "--position", "1,2,1e99999"], "out of range"),
+        (["render", "house.mem", "--look", "0,0,40000"], "signed 16 bits"),
+        (["render", "house.mem", "--look", "0,0,0.5"], "three whole numbers"),
+    ],
+)
+def test_usage(voxrt, arguments, said):
+    finished = voxrt(*arguments)
+    assert finished.code == 2
+    assert finished.out == ""
+    assert finished.error.startswith("voxrt: error: ")
+    assert said in finished.error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["build", "nothing.glb"], "nothing.glb: no such file"),
+        (["build", "."], "unknown kind of file"),
+        (["build", "folder.glb"], "folder.glb: is a folder"),
+        (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz, .obj, .stl, .ply"),
+        (["build", "notes"], "unknown kind of file"),
+        (["build", "broken.glb"], "broken.glb"),
+        (["build", "broken.usda"], "broken.usda"),
+        (["build", "broken.obj"], "broken.obj"),
+        (["render", "nothing.mem"], "nothing.mem"),
+        (["render", "notes.txt"], "notes.txt"),
+        (["render", "folder.glb"], "folder.glb"),
+    ],
+)
+def test_asset(voxrt, folder, arguments, said):
+    (folder / "folder.glb").mkdir()
+    for name in ("notes.txt", "notes", "broken.glb", "broken.usda", "broken.obj"):
+        (folder / name).write_text("v 1 2 three\nneither this nor that\n")
+    before = sorted(folder.iterdir())
+    finished = voxrt(*arguments)
+    assert finished.code == 3
+    assert finished.out == ""
+    assert finished.error.startswith("voxrt: error: ")
+    assert said in finished.error
+    assert sorted(folder.iterdir()) == before
+
+
+def test_a_voxel_too_small_does_not_fit(voxrt):
+    finished = voxrt("build", "house.obj", "--voxel-size", "1e-9")
+    assert finished.code == 4
+    assert finished.error.startswith("voxrt: error: ")
+
+
+def test_a_bug_is_one_line_that_says_how_to_report_it(voxrt, folder):
+    (folder / "sitecustomize.py").write_text("import voxrt.voxelize as room\nroom.load = None\n")
+    finished = voxrt("build", "house.obj", env={"PYTHONPATH": str(folder)})
+    assert finished.code == 1
+    assert "this is a bug of voxrt: TypeError" in finished.error
+    assert "please report it" in finished.error
+
+
+def test_the_traceback_comes_with_debug_only(voxrt):
+    assert "Traceback" not in voxrt("build", "nothing.glb").err
+    finished = voxrt("build", "nothing.glb", "--debug")
+    assert finished.code == 3
+    assert "Traceback" in finished.err
+    assert finished.err.splitlines()[-1].startswith("voxrt: error: nothing.glb: no such file")
+
+
+@pytest.mark.parametrize("command", ["build", "render"])
+def test_help_has_an_example(voxrt, command):
+    finished = voxrt(command, "--help")
+    assert finished.code == 0
+    assert f"Example: voxrt {command}" in finished.out
+    assert finished.err == ""
+
+
+def test_help_imports_no_heavy_library(folder):
+    code = (
+        "import sys\nfrom voxrt.cli import main\nsys.argv = ['voxrt', '--help']\n"
+        "try:\n    main()\nfinally:\n"
+        "    assert not {'numpy', 'PIL', 'trimesh', 'pxr', 'voxrt.pipeline'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True)
+
+
+def test_version(voxrt):
+    from voxrt import __version__
+
+    assert voxrt("--version") == (0, f"{__version__}\n", "")
+
+
+def test_what_a_terminal_would_act_on_is_spelled_out(voxrt):
+    assert "\\x1b[31mred.glb" in voxrt("build", "\x1b[31mred.glb").error
+    assert "two\\nlines.glb" in voxrt("build", "two\nlines.glb").error

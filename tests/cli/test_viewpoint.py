@@ -1,0 +1,92 @@
+"""Cameras from all, some or no registers: right-handed, with the whole scene in the picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from voxrt import Camera, Material, Rom, ViewpointError, aim_camera, render
+from voxrt.octree import from_dense
+from voxrt.voxelize import EMPTY
+
+SIZE = (80, 60)
+
+
+@pytest.fixture(scope="module")
+def rom():
+    """Two boxes that do not reach the world's sides."""
+    world = np.zeros((64, 64, 64), np.uint8)
+    world[5:50, 3:11, 20:60] = 1
+    world[30:41, 11:30, 22:31] = 2
+    return Rom("boxes", from_dense(world), (EMPTY, Material("low", (255, 255, 255)), Material("high", (255, 0, 0))))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"position": (-80, 48, 1280)},
+        {"position": (440, 1600, 640)},
+        {"position": (440, -900, 640)},
+        {"look": (0, 0, -1)},
+        {"look": (0, -1, 0)},
+        {"look": (0, 1, 0)},
+        {"look": (30000, -30000, 30000)},
+        {"look": (5, -3, -9), "position": (0, 480, 640)},
+        {"right": (20, 0, -3)},
+        {"up": (0, 20, 0)},
+        {"look": (0, 0, 900), "right": (-20, 0, 0)},
+        {"look": (0, 0, 900), "up": (0, 20, 0)},
+        {"right": (-20, 0, 0), "up": (0, 20, 0)},
+        {"look": (0, 0, -900), "right": (20, 0, 0), "up": (0, 20, 0)},
+        {"right": (20, 0, -3), "position": (0, 480, 1640)},
+    ],
+)
+def test_a_camera_is_right_handed_and_sees_the_scene(rom, given):
+    camera = aim_camera(rom, SIZE, **given)
+    for name, value in given.items():
+        alone = name == "look" and not {"right", "up"} & set(given)
+        assert getattr(camera, name) == value or alone
+    look, right, up = (np.array(vector, float) for vector in (camera.look, camera.right, camera.up))
+    if "look" in given:
+        assert np.cross(look, given["look"]) == pytest.approx(0, abs=2e-4 * np.linalg.norm(look))
+        assert look @ given["look"] > 0
+    look, right, up = (vector / np.linalg.norm(vector) for vector in (look, right, up))
+    assert right == pytest.approx(np.cross(look, up), abs=0.05)
+    assert "up" in given or "right" in given or up[1] > -0.01
+    drawn = render(rom, camera, size=SIZE, engine="model").material != 0
+    assert drawn.any()
+    if "position" not in given:
+        assert not (drawn[0].any())
+        assert not (drawn[-1].any())
+        assert not (drawn[:, 0].any())
+        assert not (drawn[:, -1].any())
+        assert drawn.any(axis=0).mean() > 0.7 or drawn.any(axis=1).mean() > 0.7
+
+
+def test_given_registers_are_kept(rom):
+    registers = (1, 2, 3), (4, 5, 6), (7, 8, 9), (-1, 0, 1)
+    position, look, right, up = registers
+    assert aim_camera(rom, SIZE, position=position, look=look, right=right, up=up) == Camera(*registers)
+
+
+def test_an_empty_memory_has_a_camera():
+    empty = Rom("empty", from_dense(np.zeros((4, 4, 4), np.uint8)), (EMPTY,))
+    assert not render(empty, size=SIZE, engine="model").material.any()
+    aim_camera(empty, SIZE, look=(0, 0, 1))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"look": (0, 0, 0)},
+        {"right": (0, 0, 0)},
+        {"up": (0, 0, 0), "look": (0, 0, 1)},
+        {"look": (0, 0, 9), "right": (0, 0, 1)},
+        {"look": (0, 0, 9), "up": (0, 0, 1)},
+        {"look": (0, 0, 9), "right": (1, 0, 0), "up": (1, 0, 0)},
+    ],
+)
+def test_registers_that_make_no_camera(rom, given):
+    with pytest.raises(ViewpointError):
+        aim_camera(rom, SIZE, **given)

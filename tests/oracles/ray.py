@@ -1,0 +1,93 @@
+"""The pixel as the contract states it, in rational arithmetic, walking unit voxels one at a time.
+
+Slow on purpose: no octree, no mirroring, no weights, no integers scaled to avoid a division. A ray is o + t d with t a
+Fraction; the planes it crosses are sorted by (t, axis).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor
+
+import numpy as np
+
+FACE_NONE = 3
+
+
+def first_cell(coordinate: Fraction, direction: int) -> int:
+    """Give the cell a ray starts in on one axis; on a plane it is the one ahead, or at floor where it does not move."""
+    if direction < 0:
+        return -floor(-coordinate) - 1  # ceil - 1
+    return floor(coordinate)
+
+
+def trace(voxels, position, direction):
+    """Find the first solid cell on a ray.
+
+    Parameters
+    ----------
+    voxels
+        Materials, indexed [x, y, z], a cube; 0 is empty.
+    position
+        Three integers, 1/16 voxel.
+    direction
+        Three integers.
+
+    Returns
+    -------
+    tuple
+        (material, face): face is the axis of the plane crossed last, 3 for none; (0, 3) for a miss.
+    """
+    side = len(voxels)
+    origin = [Fraction(int(c), 16) for c in position]
+    direction = [int(c) for c in direction]
+    cell = [first_cell(o, d) for o, d in zip(origin, direction, strict=True)]
+    face = FACE_NONE
+    while True:
+        if all(0 <= c < side for c in cell):
+            material = int(voxels[cell[0], cell[1], cell[2]])
+            if material:
+                return material, face
+        crossings = []
+        for axis in range(3):
+            ahead, behind = (cell[axis] >= side), (cell[axis] < 0)
+            d = direction[axis]
+            if (ahead and d >= 0) or (behind and d <= 0):
+                return 0, FACE_NONE  # it never comes back into the world
+            if d:
+                plane = cell[axis] + (1 if d > 0 else 0)
+                crossings.append(((plane - origin[axis]) / d, axis))
+        if not crossings:
+            return 0, FACE_NONE
+        _, face = min(crossings)
+        cell[face] += 1 if direction[face] > 0 else -1
+
+
+def shade(colour, direction, face):
+    """Give the colour of a hit: round half up of c (d_a / |d|)^2, as it is without a face."""
+    if face == FACE_NONE:
+        return tuple(int(c) for c in colour)
+    d = [int(c) for c in direction]
+    brightness = Fraction(d[face] ** 2, sum(c * c for c in d))
+    return tuple(floor(int(c) * brightness + Fraction(1, 2)) for c in colour)
+
+
+def directions(camera, width, height):
+    """Give a frame's directions, int64, shape (height, width, 3); camera has rows position, look, right, up."""
+    _, look, right, up = np.asarray(camera, dtype=np.int64)
+    columns = np.arange(width) - width // 2
+    rows = height // 2 - np.arange(height)
+    return look + right * columns[None, :, None] + up * rows[:, None, None]
+
+
+def render(voxels, camera, width, height, materials):
+    """Render a frame: (colour, material, face), uint8, of shapes (height, width, 3), (height, width) twice."""
+    rays = directions(camera, width, height)
+    colour = np.zeros((height, width, 3), np.uint8)
+    material = np.zeros((height, width), np.uint8)
+    face = np.zeros((height, width), np.uint8)
+    for (row, column), _ in np.ndenumerate(material):
+        direction = rays[row, column]
+        material[row, column], face[row, column] = trace(voxels, camera[0], direction)
+        colour[row, column] = shade(materials[material[row, column]], direction, face[row, column])
+    return colour, material, face

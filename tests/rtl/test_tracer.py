@@ -1,0 +1,226 @@
+"""The verilated ray tracer against the oracle that walks unit voxels with fractions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from oracles.memory import words_of
+from oracles.ray import render
+
+rtl = pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
+
+MATERIALS = np.random.default_rng(7).integers(0, 256, (256, 3), dtype=np.uint8)
+
+TRACERS = {}
+
+
+def tracer(config):
+    """One tracer a configuration: its memory is large, and loading replaces what was there."""
+    if config not in TRACERS:
+        TRACERS[config] = rtl.Tracer(config)
+    return TRACERS[config]
+
+
+def assert_exact(config, voxels, camera, width, height, *, stall_seed=0):
+    depth = len(voxels).bit_length() - 1
+    camera = np.asarray(camera, np.int32)
+    design = tracer(config)
+    design.load(words_of(voxels))
+    got = design.render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed)
+    colour, material, face = render(voxels, camera, width, height, MATERIALS)
+    np.testing.assert_array_equal(got["material"], material)
+    np.testing.assert_array_equal(got["face"], face)
+    np.testing.assert_array_equal(got["colour"], colour)
+    assert got["errors"] == []
+    return got
+
+
+def random_voxels(rng, depth, density):
+    """A world of boxes and single voxels: octants of every size, solid and empty."""
+    side = 1 << depth
+    voxels = np.zeros((side,) * 3, np.uint8)
+    for _ in range(int(rng.integers(0, 4))):
+        low = rng.integers(0, side, 3)
+        high = np.minimum(low + rng.integers(1, side + 1, 3), side)
+        voxels[low[0] : high[0], low[1] : high[1], low[2] : high[2]] = rng.integers(0, 256)
+    sprinkled = rng.random(voxels.shape) < density
+    voxels[sprinkled] = rng.integers(0, 256, int(sprinkled.sum()))
+    return voxels
+
+
+def random_camera(rng, side):
+    """Cameras that like trouble: on planes, edges and corners, along axes and diagonals, inside, far outside."""
+    world = 16 * side
+    position = [
+        int(rng.choice([rng.integers(0, side + 1) * 16, rng.integers(-world, 2 * world), 0, world, -1, world - 1]))
+        for _ in range(3)
+    ]
+    kind = rng.integers(4)
+    scale = int(rng.choice([1, 3, 1000, 30000]))
+    if kind == 0:
+        frame = rng.integers(-2, 3, (3, 3)) * scale
+    elif kind == 1:
+        frame = rng.permutation(np.diag(rng.choice([-scale, scale], 3)))
+        frame[0] *= int(rng.integers(0, 2))
+    elif kind == 2:
+        frame = rng.integers(-scale, scale + 1, (3, 3))
+    else:
+        frame = np.zeros((3, 3), int)
+        frame[0] = [side * 8 - p for p in position]
+        frame[1:] = rng.integers(-side, side + 1, (2, 3))
+    return np.array([position, *np.clip(frame, -32768, 32767)], np.int32)
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+@pytest.mark.parametrize("seed", range(40))
+def test_random_worlds_and_troublesome_cameras(config, seed):
+    rng = np.random.default_rng([seed, 1])
+    depth = int(rng.integers(1, 5))
+    voxels = random_voxels(rng, depth, rng.choice([0, 0.01, 0.1, 0.5]))
+    for _ in range(6):
+        camera = random_camera(rng, len(voxels))
+        width, height = (int(n) for n in rng.integers(1, 20, 2))
+        assert_exact(config, voxels, camera, width, height, stall_seed=int(rng.integers(0, 2) * rng.integers(2**32)))
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    config=st.sampled_from(rtl.CONFIGS),
+    world=st.tuples(st.integers(1, 3), st.integers(0, 2**64 - 1)),
+    position=st.tuples(*[st.integers(-200, 300)] * 3),
+    frame=st.lists(st.tuples(*[st.integers(-9, 9)] * 3), min_size=3, max_size=3),
+    stall_seed=st.integers(0, 2**32 - 1),
+)
+def test_any_world_any_camera(config, world, position, frame, stall_seed):
+    depth, bits = world
+    side = 1 << depth
+    voxels = np.random.default_rng(bits).choice([0, 0, 0, 1, 2, 255], (side,) * 3).astype(np.uint8)
+    assert_exact(config, voxels, [position, *frame], 7, 5, stall_seed=stall_seed)
+
+
+@pytest.mark.parametrize("material", [0, 1, 255])
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_a_world_of_one_leaf(config, material):
+    voxels = np.full((4, 4, 4), material, np.uint8)
+    assert len(words_of(voxels)) == 1
+    for position in ([32, 32, 32], [-32, 32, 32], [-32, 70, 100], [64, 32, 32], [0, 0, 0]):
+        assert_exact(config, voxels, [position, [40, 0, 0], [0, 0, 16], [0, 16, 0]], 9, 9)
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_a_camera_without_direction_sees_its_own_voxel(config):
+    voxels = np.zeros((4, 4, 4), np.uint8)
+    voxels[1, 2, 3] = 9
+    still = [[0, 0, 0]] * 3
+    inside = assert_exact(config, voxels, [[16, 47, 50], *still], 2, 2)
+    assert (inside["material"] == 9).all()
+    assert (inside["face"] == 3).all()
+    assert_exact(config, voxels, [[15, 47, 50], *still], 2, 2)
+    assert_exact(config, voxels, [[16, 47, 64], *still], 2, 2)
+    assert_exact(config, voxels, [[16, 47, -1], *still], 2, 2)
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_extreme_directions_and_positions(config):
+    voxels = random_voxels(np.random.default_rng(3), 3, 0.2)
+    for position in ([64, 64, -65536], [65535, 65535, 65535], [-65536, 64, 64]):
+        look = [int(np.sign(64 - p)) * min(abs(64 - p), 32767) // 2 for p in position]
+        assert_exact(config, voxels, [position, look, [200, 3, 0], [0, 100, 77]], 3, 3)
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_a_direction_too_large_is_flagged_and_not_traced(config):
+    design = tracer(config)
+    design.load(words_of(np.full((2, 2, 2), 5, np.uint8)))
+    camera = np.array([[16, 16, 16], [0, 0, 1], [32767, 0, 0], [0, 0, 0]], np.int32)
+    got = design.render(camera, 100, 1, 1, MATERIALS)
+    offset = np.arange(100) - 50
+    fits = np.abs(offset) * 32767 < 2**20
+    np.testing.assert_array_equal(got["material"][0], np.where(fits, 5, 0))
+    np.testing.assert_array_equal(got["colour"][0][~fits], np.broadcast_to(MATERIALS[0], ((~fits).sum(), 3)))
+    assert got["errors"] == ["direction overflow"]
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_the_load_port_equals_the_fast_path(config):
+    rng = np.random.default_rng(5)
+    words = words_of(random_voxels(rng, 4, 0.2))
+    garbage = rng.integers(0, 2**32, len(words), dtype=np.uint32)
+    camera = np.array([[-100, 300, -80], [100, -60, 100], [16, 0, -16], [0, 16, 3]], np.int32)
+    for memory in (words, garbage, words & 0xFFFF):
+        design = tracer(config)
+        design.load(memory)
+        fast = design.render(camera, 16, 16, 4, MATERIALS)
+        design.load(np.zeros_like(memory))
+        design.load(memory, through_port=True)
+        slow = design.render(camera, 16, 16, 4, MATERIALS)
+        for key in fast:
+            np.testing.assert_array_equal(fast[key], slow[key])
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+@pytest.mark.parametrize(
+    ("words", "errors"),
+    [
+        ([1, 1, 1, 1, 1, 1, 1, 1, 1], ["step limit"]),
+        ([1, 9, 9, 9, 9, 9, 9, 9, 9, *[1] * 8], ["step limit"]),
+        ([2, *[0xFFFFFF01] * 16], ["bad pointer"]),
+        ([0x7FFFFFF9, *[0xFFFFFF01] * 8], ["bad pointer"]),
+        ([1, *[0x40000001] * 8], ["bad pointer"]),
+        ([1, *[4] * 8], ["bad pointer"]),
+    ],
+)
+def test_a_corrupt_memory_ends_the_ray_with_an_error(config, words, errors):
+    design = tracer(config)
+    design.load(np.array(words, np.uint32))
+    got = design.render(np.array([[-160, 60, 70], [100, 1, 2], [0, 0, 9], [0, 9, 0]], np.int32), 16, 16, 5, MATERIALS)
+    assert got["errors"] == errors
+    assert (got["material"] == 0).all()
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_the_output_is_the_same_under_any_back_pressure(config):
+    rng = np.random.default_rng(11)
+    voxels = random_voxels(rng, 4, 0.05)
+    design = tracer(config)
+    design.load(words_of(voxels))
+    camera = np.array([[-100, 300, -80], [100, -60, 100], [4, 0, -4], [0, 4, 1]], np.int32)
+    free = design.render(camera, 61, 47, 4, MATERIALS)
+    for seed in range(1, 9):
+        stalled = design.render(camera, 61, 47, 4, MATERIALS, stall_seed=seed)
+        for key in ("colour", "material", "face", "words_read"):
+            np.testing.assert_array_equal(free[key], stalled[key])
+
+
+def test_one_lane_reads_a_word_every_clock():
+    voxels = random_voxels(np.random.default_rng(2), 4, 0.1)
+    voxels[0] = voxels[:, :, 0] = 0
+    design = tracer("tiny")
+    design.load(words_of(voxels))
+    camera = np.array([[40, 130, 10], [90, 0, 160], [1, 0, 0], [0, 1, 0]], np.int32)
+    got = design.render(camera, 200, 200, 4, MATERIALS)
+    assert got["words_read"] / got["cycles"] >= 0.999
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_arguments_out_of_range_are_refused(config):
+    design = rtl.Tracer(config)
+    camera = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], np.int32)
+    design.load(np.array([0xFFFFFF01], np.uint32))
+    for width, height, depth in ((0, 1, 1), (1, 0, 1), (4096, 1, 1), (1, 1, 0), (1, 1, design.max_depth + 1)):
+        with pytest.raises(ValueError, match="is not in"):
+            design.render(camera, width, height, depth, MATERIALS)
+    far = camera.copy()
+    far[0, 1] = design.position_limit
+    with pytest.raises(ValueError, match="camera position"):
+        design.render(far, 1, 1, 1, MATERIALS)
+    steep = camera.copy()
+    steep[2, 2] = 32768
+    with pytest.raises(ValueError, match="direction component 32768"):
+        design.render(steep, 1, 1, 1, MATERIALS)
+    with pytest.raises(ValueError, match="do not fit"):
+        design.load(np.zeros(0, np.uint32))
+    with pytest.raises(ValueError, match="no configuration"):
+        rtl.Tracer("imaginary")

@@ -1,0 +1,74 @@
+"""The verilated ray tracer against the exact model and against walks from voxel to voxel, pixel by pixel."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+from oracles.adversary import adversarial_cameras
+from oracles.cuts import memory_of
+from oracles.ray_batch import trace_batch
+from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, seed_words
+from oracles.worlds import WORLDS
+
+from voxrt.octree import Octree, Rom
+from voxrt.sim import Camera, check, frame_scene, look_at, pixel_directions
+from voxrt.voxelize import Material
+
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("voxrt.sim._rtl") is None, reason="this build has no verilated ray tracer"
+)
+
+PALETTE = np.random.default_rng(11).integers(0, 256, (256, 3))
+SIZE = (48, 36)
+CAMERAS_A_WORLD = 7
+
+
+def rom_of(words, depth):
+    materials = tuple(Material(f"m{i}", tuple(colour)) for i, colour in enumerate(PALETTE.tolist()))
+    return Rom("scene", Octree(depth, words), materials)
+
+
+def agreed(rom, camera, size=SIZE):
+    found = check(rom, camera, size)
+    where = np.argwhere(found.wrong)[:3].tolist()
+    assert found.wrong_pixels == 0, f"{found.wrong_pixels} pixels differ from {camera}, such as (row, column) {where}"
+    return found.rtl
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_every_ray_meets_what_the_walk_meets(name):
+    voxels = WORLDS[name]
+    rom = rom_of(memory_of(voxels), len(voxels).bit_length() - 1)
+    for registers in adversarial_cameras(len(voxels), CAMERAS_A_WORLD, seed=len(voxels)):
+        camera = Camera(*(tuple(triple) for triple in registers.tolist()))
+        frame = agreed(rom, camera)
+        directions = pixel_directions(camera, SIZE).reshape(-1, 3)
+        origins = np.broadcast_to(registers[0], directions.shape)
+        material, face, _ = trace_batch(voxels, origins, directions)
+        np.testing.assert_array_equal(frame.material.reshape(-1), material)
+        np.testing.assert_array_equal(frame.face.reshape(-1), face)
+
+
+@pytest.mark.parametrize("name", ["cubes", "dog", "house"])
+def test_the_published_memories_have_no_wrong_pixel(name):
+    rom = rom_of(seed_words(name), SEED_DEPTH)
+    agreed(rom, Camera(*HOUSE_CAMERA), (128, 128))
+    agreed(rom, frame_scene(rom, (97, 61)), (97, 61))
+
+
+EYES = {
+    "outside": (-40.0, 30.0, 90.0),
+    "far outside": (3000.0, 2500.0, -3500.0),
+    "on a plane": (16.0, 70.0, 16.03),
+    "on an edge": (32.0, 32.0, 70.0),
+    "inside": (16.5, 20.0, 20.0),
+    "below": (20.0, -50.0, 21.0),
+}
+
+
+@pytest.mark.parametrize("eye", EYES.values(), ids=EYES)
+@pytest.mark.parametrize("name", ["boxes", "ball", "sponge"])
+def test_cameras_for_people_have_no_wrong_pixel(name, eye):
+    voxels = WORLDS[name]
+    rom = rom_of(memory_of(voxels), len(voxels).bit_length() - 1)
+    agreed(rom, look_at(eye, (len(voxels) / 2,) * 3, size=SIZE, field_of_view=60))

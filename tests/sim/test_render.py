@@ -1,0 +1,145 @@
+"""Frames by way of a Rom: both engines, what they refuse, the published memories, picture files."""
+
+import importlib.util
+import sys
+
+import numpy as np
+import pytest
+from oracles import worlds
+from oracles.cuts import memory_of
+from oracles.ray_batch import trace_batch
+from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, PointQueries, seed_words
+from PIL import Image
+
+import voxrt.sim
+from voxrt.octree import Octree, Rom
+from voxrt.sim import (
+    FACE_NONE,
+    Camera,
+    SimulatorError,
+    check,
+    frame_scene,
+    pixel_directions,
+    render,
+    write_png,
+)
+from voxrt.voxelize import Material
+
+needs_rtl = pytest.mark.skipif(
+    importlib.util.find_spec("voxrt.sim._rtl") is None, reason="this build has no verilated ray tracer"
+)
+
+
+ALONG_Z = Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0))
+
+
+def rom_of(words, depth, name="scene"):
+    colours = np.random.default_rng(depth).integers(40, 256, (256, 3)).tolist()
+    materials = tuple(Material(f"m{i}", tuple(colour)) for i, colour in enumerate(colours))
+    return Rom(name, Octree(depth, words), materials)
+
+
+@pytest.fixture(scope="module")
+def rom():
+    return rom_of(memory_of(worlds.ball(5)), 5)
+
+
+def test_the_model_gives_a_whole_frame(rom):
+    camera = frame_scene(rom, (80, 60))
+    frame = render(rom, camera, (80, 60), engine="model")
+    assert frame.colour.shape == (60, 80, 3)
+    assert frame.material.shape == frame.face.shape == (60, 80)
+    seen = frame.material > 0
+    assert 0.15 < seen.mean() < 0.8
+    assert np.all(frame.face[~seen] == FACE_NONE)
+    assert np.all(frame.colour[~seen] == rom.materials[0].colour)
+    assert frame.cost.rays == 4800
+    assert frame.cost.words_read > 4800
+    assert frame.cost.cycles is None
+    # From above, in front and on the right: upper faces show, and the materials of the upper octants.
+    assert set(np.unique(frame.face[seen])) == {0, 1, 2}
+    assert {3 + 1, 4 + 3 + 1} <= set(np.unique(frame.material))
+
+
+@pytest.mark.parametrize("name", ["cubes", "dog", "house"])
+def test_the_published_memories_are_seen_without_a_wrong_pixel(name):
+    words = seed_words(name)
+    rom = rom_of(words, SEED_DEPTH, name)
+    camera = Camera(*HOUSE_CAMERA)
+    size = (256, 256)
+    frame = render(rom, camera, size, engine="model")
+    pixels = np.random.default_rng(9).choice(size[0] * size[1], 2_000, replace=False)
+    directions = pixel_directions(camera, size).reshape(-1, 3)[pixels]
+    origins = np.broadcast_to(np.array(camera.position), directions.shape)
+    material, face, _ = trace_batch(PointQueries(words, SEED_DEPTH), origins, directions)
+    np.testing.assert_array_equal(frame.material.reshape(-1)[pixels], material)
+    np.testing.assert_array_equal(frame.face.reshape(-1)[pixels], face)
+    assert len(np.unique(frame.material)) > 2 or name != "house"
+
+
+def test_an_empty_memory_frames_its_world():
+    nothing = rom_of(np.array([0xFFFFFF00], np.uint32), 3)
+    whole = rom_of(np.array([0xFFFFFF01], np.uint32), 3)
+    assert frame_scene(nothing, (64, 48)) == frame_scene(whole, (64, 48))
+    assert not np.any(render(nothing, frame_scene(nothing, (64, 48)), (64, 48), engine="model").material)
+
+
+def test_directions_that_overflow_are_refused(rom):
+    camera = Camera((0, 0, 0), (0, 0, 1), (32767, 0, 0), (0, 1, 0))
+    with pytest.raises(SimulatorError, match=r"directions reach 1081311 at the .* not below 2\*\*20"):
+        render(rom, camera, (66, 4), engine="model")
+
+
+@pytest.mark.parametrize("size", [(0, 4), (4, 0), (16385, 1), (-3, 4)])
+def test_sizes_out_of_range_are_refused(rom, size):
+    with pytest.raises(SimulatorError, match=f"{size[0]}x{size[1]} pixels"):
+        render(rom, ALONG_Z, size, engine="model")
+
+
+def test_a_missing_ray_tracer_says_what_to_do(rom, monkeypatch):
+    monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
+    monkeypatch.delattr(voxrt.sim, "_rtl", raising=False)
+    with pytest.raises(SimulatorError, match=r"no verilated ray tracer .*--engine model"):
+        render(rom, ALONG_Z, (4, 4), engine="rtl")
+
+
+@needs_rtl
+def test_the_ray_tracer_refuses_what_it_cannot_hold(rom):
+    with pytest.raises(SimulatorError, match="no ray tracer configuration 'huge'; there are"):
+        render(rom, ALONG_Z, (4, 4), engine="rtl", config="huge")
+    far = Camera((0, 1 << 29, 0), ALONG_Z.look, ALONG_Z.right, ALONG_Z.up)
+    with pytest.raises(SimulatorError, match=r"scene does not fit .*: a camera at \(0.0, 33554432.0, 0.0\)"):
+        render(rom, far, (4, 4), engine="rtl")
+    with pytest.raises(SimulatorError, match=r"4097x4 pixels; it counts to 4095; .*--engine model"):
+        render(rom, ALONG_Z, (4097, 4), engine="rtl")
+    words = np.full(9 + 8 * (1 << 21), 0xFFFFFF00, np.uint32)
+    with pytest.raises(SimulatorError, match=r"16777225 words; it holds \d+"):
+        render(rom_of(words, 5), ALONG_Z, (4, 4), engine="rtl")
+
+
+@needs_rtl
+def test_both_engines_agree(rom):
+    camera = frame_scene(rom, (40, 30))
+    agreement = check(rom, camera, (40, 30))
+    assert agreement.wrong_pixels == 0
+    assert agreement.wrong.shape == (30, 40)
+    assert agreement.rtl.cost.cycles > 1200
+
+
+def test_pictures_are_whole_and_the_same_every_time(rom, tmp_path):
+    frame = render(rom, frame_scene(rom, (50, 40)), (50, 40), engine="model")
+    path = tmp_path / "frame.png"
+    write_png(path, frame.colour)
+    first = path.read_bytes()
+    write_png(path, frame.colour)
+    assert path.read_bytes() == first
+    with Image.open(path) as picture:
+        np.testing.assert_array_equal(np.asarray(picture), frame.colour)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["frame.png"]
+
+
+def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path):
+    (tmp_path / "folder.png").mkdir()
+    with pytest.raises(OSError, match=r"folder\.png"):
+        write_png(tmp_path / "folder.png", np.zeros((2, 2, 3), np.uint8))
+    assert [entry.name for entry in tmp_path.iterdir()] == ["folder.png"]

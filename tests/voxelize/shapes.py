@@ -1,0 +1,67 @@
+"""Meshes and scenes for the tests."""
+
+import numpy as np
+
+from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
+
+MATERIALS = (EMPTY, *(Material(f"m{i}", (i, i, i)) for i in range(1, 256)))
+
+_BOX = np.array(
+    [
+        [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5], [0, 1, 5], [0, 5, 4],
+        [2, 6, 7], [2, 7, 3], [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6],
+    ],
+    np.int32,
+)  # fmt: skip
+
+
+def box_mesh(low, high, material=1, *, inverted=False):
+    unit = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], float)
+    triangles = _BOX[:, ::-1].copy() if inverted else _BOX
+    low, high = np.array(low, float), np.array(high, float)
+    return Mesh(low + unit * (high - low), triangles, np.full(12, material, np.uint8))
+
+
+def icosphere(level, centre=(0, 0, 0), radius=1.0, material=1):
+    g = (1 + 5**0.5) / 2
+    points = [
+        (-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
+        (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1),
+    ]  # fmt: skip
+    points = [np.array(p) / np.linalg.norm(p) for p in points]
+    faces = [
+        (0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6),
+        (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10),
+        (8, 6, 7), (9, 8, 1),
+    ]  # fmt: skip
+    for _ in range(level):
+        middle = {}
+
+        def half(a, b, middle=middle):
+            key = (min(a, b), max(a, b))
+            if key not in middle:
+                p = points[a] + points[b]
+                points.append(p / np.linalg.norm(p))
+                middle[key] = len(points) - 1
+            return middle[key]
+
+        split = []
+        for a, b, c in faces:
+            ab, bc, ca = half(a, b), half(b, c), half(c, a)
+            split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        faces = split
+    positions = np.array(points) * radius + np.array(centre, float)
+    return Mesh(positions, np.array(faces, np.int32), np.full(len(faces), material, np.uint8))
+
+
+def scene_of(*items):
+    objects = [item if isinstance(item, SceneObject) else SceneObject("o", item) for item in items]
+    named = tuple(
+        SceneObject(f"{o.name}{i}", o.mesh, o.transform, o.colliders, o.collider_material)
+        for i, o in enumerate(objects)
+    )
+    return Scene("test", named, MATERIALS)
+
+
+def one_object(mesh, **how):
+    return scene_of(SceneObject("o", mesh, **how))

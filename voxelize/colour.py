@@ -1,0 +1,44 @@
+"""Linear light to sRGB and back, by the exact curve.
+
+Source: IEC 61966-2-1:1999, with its amendment's thresholds 0.0031308 and 0.04045.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+def srgb_from_linear(linear: ArrayLike) -> NDArray[np.uint8]:
+    """Encode linear light as sRGB of 8 bits, rounded to the nearest (halves up), clipped to 0 … 1 before.
+
+    Parameters
+    ----------
+    linear
+        Linear components, any shape, 1 for full.
+
+    Returns
+    -------
+    srgb
+        uint8, of the same shape.
+    """
+    light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
+    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.power(light, 1 / 2.4) - 0.055)
+    return np.floor(encoded * 255.0 + 0.5).astype(np.uint8)
+
+
+def linear_from_srgb(srgb: ArrayLike) -> NDArray[np.float64]:
+    """Decode sRGB of 8 bits (any shape) to linear light, float64, 0 … 1."""
+    return LINEAR_OF_SRGB8[np.asarray(srgb, np.uint8)]
+
+
+def _decode(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(encoded <= 0.04045, encoded / 12.92, np.power((encoded + 0.055) / 1.055, 2.4))
+
+
+LINEAR_OF_SRGB8: NDArray[np.float64] = _decode(np.arange(256) / 255.0)
+"""float64, shape (256,): the linear light of each 8-bit sRGB value."""

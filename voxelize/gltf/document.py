@@ -1,0 +1,153 @@
+"""An open glTF asset: its JSON, the bytes it refers to, what it may cost, and what could not be honoured in it."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+from urllib.parse import unquote, unquote_to_bytes
+
+from voxrt.voxelize.errors import AssetError, SceneWarning
+from voxrt.voxelize.gltf.container import read_container
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from voxrt.voxelize.gltf.schema import Gltf
+
+T = TypeVar("T")
+
+_FREE_BYTES = 128 << 20
+_BYTES_PER_INPUT_BYTE = 128
+
+
+class Document:
+    """One glTF asset while it is being read.
+
+    Memory is bounded by the asset's own size: whatever is made from it is charged with :meth:`charge`, which refuses a
+    small file that asks for much. An accessor may stand for zeros, and many accessors for the same bytes, so the sizes
+    the JSON states are no measure.
+
+    Attributes
+    ----------
+    path
+        The ``.gltf`` or ``.glb`` file.
+    gltf
+        Its JSON.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.gltf: Gltf
+        self.gltf, self._binary = read_container(path)
+        self._buffers: dict[int, bytes] = {}
+        self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
+        self._warnings: Counter[tuple[str, str]] = Counter()
+        self._check_views()
+
+    def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
+        """Return the error that refuses this file for what stands at the JSON path `place`."""
+        return AssetError(self.path, problem, place=place, fix=fix)
+
+    def warn(self, kind: str, message: str, count: int = 1) -> None:
+        """Note something that was not honoured as it stands; equal notes are counted."""
+        self._warnings[kind, message] += count
+
+    @property
+    def warnings(self) -> tuple[SceneWarning, ...]:
+        """What was noted, in order of first occurrence."""
+        return tuple(SceneWarning(kind, message, count) for (kind, message), count in self._warnings.items())
+
+    def charge(self, amount: int, place: str) -> None:
+        """Take `amount` bytes of the memory that an asset of this size may use."""
+        self._allowed -= amount
+        if self._allowed < 0:
+            problem = f"asks for {amount} bytes, more than a file of this size may use in all"
+            raise self.error(place, problem, "check the counts: the file is damaged or hostile")
+
+    def item(self, array: Sequence[T], index: int, place: str, kind: str) -> T:
+        """Return `array[index]`, or refuse the reference that stands at `place` to something called `kind`."""
+        if index >= len(array):
+            raise self.error(place, f"{kind} {index} does not exist, the file has {len(array)}")
+        return array[index]
+
+    def view(self, index: int, place: str) -> memoryview:
+        """Return the bytes of buffer view `index`, to which `place` refers."""
+        view = self.item(self.gltf.buffer_views, index, place, "buffer view")
+        data = self._buffer(view.buffer)
+        return memoryview(data)[view.byte_offset : view.byte_offset + view.byte_length]
+
+    def _check_views(self) -> None:
+        """Refuse the file where a buffer view leaves its buffer, in use or not: it is cut short."""
+        for index, view in enumerate(self.gltf.buffer_views):
+            place = f"bufferViews[{index}]"
+            buffer = self.item(self.gltf.buffers, view.buffer, f"{place}.buffer", "buffer")
+            end = view.byte_offset + view.byte_length
+            if end > buffer.byte_length:
+                raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
+
+    def _buffer(self, index: int) -> bytes:
+        if index in self._buffers:
+            return self._buffers[index]
+        buffer = self.gltf.buffers[index]
+        here = f"buffers[{index}]"
+        if buffer.uri is not None:
+            found = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
+            if found is None:
+                problem = f"no file {buffer.uri[:60]!r} beside the asset"
+                raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
+            data = found
+        elif index == 0 and self._binary is not None:
+            data = self._binary
+        else:
+            raise self.error(here, "has no uri and the file no binary chunk for it")
+        if len(data) < buffer.byte_length:
+            raise self.error(here, f"says {buffer.byte_length} bytes and has {len(data)}")
+        self._buffers[index] = data[: buffer.byte_length]
+        return self._buffers[index]
+
+    def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
+        """Return what `uri` refers to: inline data, or at most `most` bytes of a file in the asset's folder or below.
+
+        A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
+        """
+        if uri.startswith("data:"):
+            return self._inline(uri, place)
+        scheme = uri.partition(":")[0]
+        if ":" in uri and "/" not in scheme:
+            raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
+        folder = self.path.parent.resolve()
+        for name in (unquote(uri), uri):
+            try:
+                target = (folder / Path(name)).resolve()
+                found = target.is_file()
+            except (OSError, ValueError, RuntimeError):  # too long, a NUL, a loop of links
+                continue
+            if not found:
+                continue
+            if not target.is_relative_to(folder):
+                fix = "put the file beside the asset"
+                raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", fix)
+            try:
+                with target.open("rb") as file:
+                    data = file.read(most)
+            except OSError as error:
+                problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
+                raise self.error(place, problem, "check its permissions") from error
+            self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
+            return data
+        return None
+
+    def _inline(self, uri: str, place: str) -> bytes:
+        header, comma, body = uri.partition(",")
+        if not comma:
+            raise self.error(place, "a data URI without a comma")
+        if not header.endswith(";base64"):
+            return unquote_to_bytes(body)
+        text = unquote(body) if "%" in body else body
+        try:
+            return base64.b64decode(text + "=" * (-len(text) % 4), validate=True)
+        except (binascii.Error, ValueError):
+            raise self.error(place, "a data URI that is not base64") from None

@@ -1,0 +1,96 @@
+"""The way from a glTF file to a scene: place the nodes, dress the meshes they show, number the materials."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.gltf.animation import posed
+from voxrt.voxelize.gltf.appearance import dress, find_variant
+from voxrt.voxelize.gltf.colliders import collider_around, collider_points
+from voxrt.voxelize.gltf.document import Document
+from voxrt.voxelize.gltf.extensions import check_required
+from voxrt.voxelize.gltf.nodes import place_nodes
+from voxrt.voxelize.gltf.shown import Stage
+from voxrt.voxelize.gltf.table import finish_meshes
+from voxrt.voxelize.gltf.textures import Textures
+from voxrt.voxelize.scene import Mesh, Scene, SceneObject
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from voxrt.voxelize.gltf.appearance import Look
+    from voxrt.voxelize.gltf.materials import MaterialKey
+    from voxrt.voxelize.gltf.shown import Bend, Shown
+
+_NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
+
+
+def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...] = ()) -> Scene:
+    """Read a ``.gltf`` or ``.glb`` file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    time
+        The second of the file's first animation at which it is shown; None for the pose in which the file stands.
+    variants
+        The name of the material variant to show; none for the materials that its primitives name first.
+
+    Raises
+    ------
+    AssetError
+        The file is malformed, needs an extension that is not known here, refers to what is not there, asks for more
+        memory than a file of its size may use, or has no triangles.
+    DoesNotFitError
+        More than 255 materials are used.
+    """
+    document = Document(path)
+    check_required(document)
+    document.gltf = posed(document, time)
+    stage = Stage(document, place_nodes(document), find_variant(document, variants))
+    shown = list(stage.shown())
+    textures = Textures(document)
+    worn = list(dict.fromkeys(seen.mesh for seen in shown if seen.mesh is not None))
+    dressed = [(stage.surface(bend), dress(document, textures, stage.surface(bend), look)) for bend, look in worn]
+    bare = [seen.material for seen in shown if seen.mesh is None]
+    made, materials, ids = finish_meshes(document, dressed, bare)
+    meshes = dict(zip(worn, made, strict=True))
+    objects = tuple(
+        thing
+        for name, seen in zip(stage.names(shown), shown, strict=True)
+        for thing in _objects(document, name, seen, meshes, ids)
+    )
+    if not objects:
+        raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
+    return Scene(path.stem, objects, materials, document.warnings)
+
+
+def _objects(
+    document: Document,
+    name: str,
+    seen: Shown,
+    meshes: Mapping[tuple[Bend, Look], Mesh],
+    ids: Mapping[MaterialKey, int],
+) -> Iterator[SceneObject]:
+    """Make the objects of what is shown, one an instance; none where it is all air."""
+    if seen.mesh is None:
+        mesh, material = _NO_TRIANGLES, ids[seen.material]
+    else:
+        mesh = meshes[seen.mesh]
+        if not len(mesh.triangles):
+            return
+        material = int(mesh.materials[0])
+    collider = collider_around(mesh, seen.around) if seen.around is not None else seen.collider
+    colliders = () if collider is None else (collider,)
+    farthest = np.abs(np.concatenate([mesh.positions, *map(collider_points, colliders)])).max(axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        reach = np.abs(seen.transforms[:, :3, :3]) @ farthest + np.abs(seen.transforms[:, :3, 3])
+    if not np.isfinite(reach).all():
+        raise document.error(f"nodes[{seen.node}]", "the transform leaves the range of numbers")
+    for at, transform in enumerate(seen.transforms):
+        own = name if len(seen.transforms) == 1 else f"{name} [{at}]"
+        yield SceneObject(own, mesh, transform, colliders, material)

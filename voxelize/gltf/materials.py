@@ -1,0 +1,147 @@
+"""Materials: what the file's mean for colour, and the table of those in use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize.colour import srgb_from_linear
+from voxrt.voxelize.errors import DoesNotFitError
+from voxrt.voxelize.gltf.extensions import SPECULAR_GLOSSINESS, read_extension
+from voxrt.voxelize.gltf.extras import material_extras
+from voxrt.voxelize.gltf.schema import SpecularGlossiness
+from voxrt.voxelize.scene import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from voxrt.voxelize.gltf.document import Document
+    from voxrt.voxelize.gltf.schema import TextureInfo, Vec4
+
+NO_MATERIAL = -1
+"""Stands for the material of faces to which the file gives none."""
+
+BLEND_CUTOFF = 0.5
+"""Surfaces to be blended are air where their alpha is below this."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class MaterialKey:
+    """One of the file's materials, or :data:`NO_MATERIAL`, as it is or made a mirror by a node."""
+
+    index: int
+    mirrored: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Finish:
+    """What a material means for voxels.
+
+    Attributes
+    ----------
+    name
+        The author's name for it.
+    renamed
+        Whether that is a name given for voxrt, which several materials may share to become one.
+    factor
+        Linear red, green, blue and alpha.
+    texture, place
+        The texture of its base colour, or None, and where in the file it stands.
+    cutoff
+        Where alpha is below it there is no surface; 0 for opaque ones.
+    mirror
+        Whether it is a mirror.
+    """
+
+    name: str
+    renamed: bool = False
+    factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
+    texture: TextureInfo | None = None
+    place: str = ""
+    cutoff: float = 0.0
+    mirror: bool = False
+
+
+def finish(document: Document, key: MaterialKey) -> Finish:
+    """Read what `key` means."""
+    if key.index == NO_MATERIAL:
+        return Finish("default", mirror=key.mirrored)
+    material = document.gltf.materials[key.index]
+    place = f"materials[{key.index}]"
+    authored = material_extras(document, key.index)
+    base = material.pbr_metallic_roughness
+    factor, texture, where = base.base_color_factor, base.base_color_texture, "pbrMetallicRoughness.baseColorTexture"
+    glossy = read_extension(document, material, SPECULAR_GLOSSINESS, SpecularGlossiness, place)
+    if glossy is not None:
+        factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
+        where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
+    return Finish(
+        name=authored.voxrt_material or material.name or place,
+        renamed=authored.voxrt_material is not None,
+        factor=factor,
+        texture=texture,
+        place=f"{place}.{where}",
+        cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": BLEND_CUTOFF}[material.alpha_mode],
+        mirror=key.mirrored or bool(authored.voxrt_reflect),
+    )
+
+
+def material_named(document: Document, name: str, place: str) -> int:
+    """Return the index of the file's material that goes by `name`, which `place` asks for."""
+    for index, material in enumerate(document.gltf.materials):
+        if name in (material.name, material_extras(document, index).voxrt_material):
+            return index
+    known = ", ".join(repr(material.name) for material in document.gltf.materials[:8] if material.name)
+    raise document.error(place, f"no material {name!r} in the file", f"it has {known or 'no named materials'}")
+
+
+def make_table(document: Document, used: Iterable[MaterialKey]) -> tuple[list[Material], dict[MaterialKey, int]]:
+    """Give every material in `used` an id: in the order of the file's list, the default material last.
+
+    Returns
+    -------
+    materials, ids
+        The scene's table, entry 0 empty, and the id of each key.
+
+    Raises
+    ------
+    DoesNotFitError
+        More than 255 materials are used.
+    """
+    table = [EMPTY]
+    ids: dict[MaterialKey, int] = {}
+    merged: dict[tuple[str, bool], int] = {}
+    for key in sorted(set(used), key=lambda key: (key.index == NO_MATERIAL, key)):
+        look = finish(document, key)
+        red, green, blue = srgb_from_linear(look.factor[:3]).tolist()
+        material = Material(look.name, (red, green, blue), look.mirror)
+        if key.index == NO_MATERIAL:
+            material = replace(material, colour=DEFAULT_COLOUR, authored=False)
+        group = (look.name, look.mirror)
+        if look.renamed and group in merged:
+            ids[key] = merged[group]
+            if table[ids[key]].colour != material.colour:
+                document.warn("merged-materials", f"materials renamed {look.name!r} take the colour of the first")
+            continue
+        ids[key] = len(table)
+        if look.renamed:
+            merged[group] = ids[key]
+        append_named(table, material, _place(key))
+        if len(table) - 1 > MATERIAL_LIMIT:
+            raise DoesNotFitError(
+                f"{document.path}: uses more than the {MATERIAL_LIMIT} materials that a memory holds; "
+                "give materials that look alike one name in their voxrt_material property"
+            )
+    return table, ids
+
+
+def append_named(table: list[Material], material: Material, which: str) -> None:
+    """Append `material` to `table`, its name made unique by saying `which` where it is taken."""
+    if material.name in {other.name for other in table}:
+        material = replace(material, name=f"{material.name} ({which})")
+    table.append(material)
+
+
+def _place(key: MaterialKey) -> str:
+    where = "none in the file" if key.index == NO_MATERIAL else f"materials[{key.index}]"
+    return f"{where}, mirror" if key.mirrored else where

@@ -1,0 +1,64 @@
+"""Material ids by order of first use."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize.errors import DoesNotFitError
+from voxrt.voxelize.scene import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from voxrt.voxelize.notes import Notes
+
+_DEFAULT_KEY = object()
+
+
+class MaterialTable:
+    """The materials of a scene under construction; entry 0 is empty space."""
+
+    def __init__(self) -> None:
+        self._entries = [EMPTY]
+        self._ids: dict[Hashable, int] = {}
+        self._names: set[str] = set()
+
+    def id_of(self, key: Hashable, name: str, colour: tuple[int, int, int], *, authored: bool = True) -> int:
+        """Return the id of the material known to its file as `key`, given on first use.
+
+        Parameters
+        ----------
+        key
+            What tells it from others in the file: a name, a prim path.
+        name
+            The author's name; a number is appended where another material has it already.
+        colour
+            sRGB, 8 bits a channel.
+        authored
+            False for a stand-in.
+
+        Raises
+        ------
+        DoesNotFitError
+            More than 255 materials.
+        """
+        if key in self._ids:
+            return self._ids[key]
+        if len(self._entries) > MATERIAL_LIMIT:
+            raise DoesNotFitError(f"more than {MATERIAL_LIMIT} materials are in use; merge some in the asset")
+        unique, number = name, 2
+        while unique in self._names:
+            unique, number = f"{name} ({number})", number + 1
+        self._names.add(unique)
+        self._ids[key] = len(self._entries)
+        self._entries.append(Material(unique, colour, authored=authored))
+        return self._ids[key]
+
+    def default(self, notes: Notes, faces: int = 1) -> int:
+        """Return the id of the default material, for `faces` faces that have none; counted in `notes`."""
+        notes.add("default-material", "faces without a material got the default one", faces)
+        return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
+
+    def materials(self) -> tuple[Material, ...]:
+        """Return the table so far, indexed by id."""
+        return tuple(self._entries)

@@ -1,0 +1,76 @@
+"""Many colours to few: the palette of a scene whose surfaces are painted.
+
+The choice is Pillow's, in sRGB, which is near enough to what the eye tells apart: colours as far from each other as can
+be, refined by k-means. (Its median cut misses clusters when entries are few.) Each entry is then the mean, in linear
+light, of the colours it stands for.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image
+
+from voxrt.voxelize.colour import srgb_from_linear
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_PIXELS = 1 << 16
+_UNTIL_CHANGES = 1
+
+
+def quantize(
+    colours: NDArray[np.float64], weights: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+    """Choose at most `count` colours that stand for `colours`, deterministically.
+
+    Where no more than `count` colours of 8 bits are in use, each keeps its own.
+
+    Parameters
+    ----------
+    colours
+        float64, shape (N, 3): linear light.
+    weights
+        float64, shape (N,), not negative: how much of the surface each covers.
+    count
+        How many entries the palette may have, 1 … 255.
+
+    Returns
+    -------
+    palette, rows
+        uint8, shape (K, 3), sRGB, in ascending order; and int32, shape (N,): each colour's entry.
+    """
+    packed, inverse = np.unique(_packed(srgb_from_linear(colours)), return_inverse=True)
+    if len(packed) <= count:
+        return _unpacked(packed), inverse.astype(np.int32)
+    cover = np.bincount(inverse, weights).astype(np.float64)
+    groups = _grouped(_unpacked(packed), cover, count)[inverse]
+    total = np.maximum(np.bincount(groups, weights), np.finfo(np.float64).tiny)
+    means = np.stack([np.bincount(groups, weights * colours[:, channel]) for channel in range(3)], axis=1)
+    entries, merged = np.unique(_packed(srgb_from_linear(means / total[:, None])), return_inverse=True)
+    return _unpacked(entries), merged[groups].astype(np.int32)
+
+
+def _packed(srgb: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Put rows of red, green and blue into one number each, which sorts as they do."""
+    wide = srgb.astype(np.uint32)
+    packed: NDArray[np.uint32] = wide[:, 0] << np.uint32(16) | wide[:, 1] << np.uint32(8) | wide[:, 2]
+    return packed
+
+
+def _unpacked(packed: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    return np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=1).astype(np.uint8)
+
+
+def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+    """Put each of the `distinct` colours into one of at most `count` groups, numbered from 0 without gaps."""
+    share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
+    repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
+    pixels = np.repeat(distinct, repeats, axis=0)[None]
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    reduced = image.quantize(count, Image.Quantize.MAXCOVERAGE, kmeans=_UNTIL_CHANGES, dither=Image.Dither.NONE)
+    first = np.cumsum(repeats) - repeats
+    _, groups = np.unique(np.asarray(reduced)[0, first], return_inverse=True)
+    return groups.reshape(-1)

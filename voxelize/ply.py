@@ -1,0 +1,327 @@
+"""PLY, ASCII and binary of both byte orders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.frames import scene_transform
+from voxrt.voxelize.material_table import MaterialTable
+from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.polygons import triangulate
+from voxrt.voxelize.scene import Mesh, Scene, SceneObject
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_TYPES = {
+    "char": "i1",
+    "uchar": "u1",
+    "short": "i2",
+    "ushort": "u2",
+    "int": "i4",
+    "uint": "u4",
+    "float": "f4",
+    "double": "f8",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "i2",
+    "uint16": "u2",
+    "int32": "i4",
+    "uint32": "u4",
+    "float32": "f4",
+    "float64": "f8",
+}
+_LONGEST_NUMBER = 64
+_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Property:
+    name: str
+    kind: str
+    count_kind: str | None  # None for a plain value, the type of the length for a list
+
+
+@dataclass(frozen=True, slots=True)
+class _Element:
+    name: str
+    count: int
+    properties: tuple[_Property, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _List:
+    """A list property of all rows: their lengths, int64 (N,), and their values end to end."""
+
+    counts: NDArray[np.int64]
+    values: _Column
+
+
+_Column: TypeAlias = "NDArray[np.float64] | NDArray[np.integer]"
+_Table: TypeAlias = "dict[str, _Column | _List]"
+
+
+@dataclass(frozen=True, slots=True)
+class _Binary:
+    """A binary file under reading."""
+
+    path: Path
+    data: bytes
+    order: str
+
+
+def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
+    """Read a PLY file: vertices and polygons.
+
+    Parameters
+    ----------
+    path
+        The file.
+    up
+        The file's up axis; None means y.
+    unit
+        Metres per unit of the file; None means 1.
+
+    Raises
+    ------
+    AssetError
+        The file cannot be read, contradicts its header, or has no faces.
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+    notes = Notes()
+    tables = _read(path, data)
+    positions, counts, corners = _geometry(path, tables, notes)
+    triangles, _ = triangulate(positions, counts, corners)
+    table = MaterialTable()
+    material = table.default(notes, len(counts))
+    mesh = Mesh(positions, triangles, np.full(len(triangles), material, dtype=np.uint8))
+    one = SceneObject(path.stem, mesh, scene_transform(up, unit))
+    return Scene(path.stem, (one,), table.materials(), notes.warnings())
+
+
+def _geometry(
+    path: Path, tables: dict[str, _Table], notes: Notes
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Positions, corners per face and corners."""
+    vertices, faces = tables.get("vertex", {}), tables.get("face", {})
+    if "tristrips" in tables:
+        notes.add("tristrips", "triangle strips are not honoured; export triangles")
+    axes = [vertices.get(axis) for axis in "xyz"]
+    polygons = faces.get("vertex_indices", faces.get("vertex_index"))
+    if not isinstance(polygons, _List) or not len(polygons.counts):
+        raise AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
+    if any(axis is None or isinstance(axis, _List) for axis in axes):
+        raise AssetError(path, "has vertices without x, y and z", fix="export it again")
+    positions = np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1)
+    counts = polygons.counts
+    # Out of range before the cast, for ASCII numbers may be anything; NaN compares false.
+    wrong = np.flatnonzero(~((polygons.values >= 0) & (polygons.values < len(positions))))
+    if len(wrong):
+        face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
+        problem = f"vertex {polygons.values[wrong[0]]} is none of the file's {len(positions)}"
+        raise AssetError(path, problem, place=f"face {face}", fix="export it again")
+    corners = polygons.values.astype(np.int64)
+    if not np.isfinite(positions[corners]).all():
+        raise AssetError(path, "a face has a vertex whose coordinates are no numbers", fix="export it again")
+    keep = counts >= 3
+    notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+    for name, colours in (("vertex", vertices), ("face", faces)):
+        if {"red", "green", "blue"} <= colours.keys():
+            notes.add(
+                "vertex-colours", f"{name} colours are not honoured", len(counts if name == "face" else positions)
+            )
+    corners, counts = corners[np.repeat(keep, counts)], counts[keep]
+    if not len(counts):
+        raise AssetError(path, "has no faces of three corners or more", fix="export it again")
+    return positions, counts, corners
+
+
+def _read(path: Path, data: bytes) -> dict[str, _Table]:
+    order, elements, body = _header(path, data)
+    if order:
+        return _binary(_Binary(path, data, order), body, elements)
+    return _ascii(path, data[body:], elements)
+
+
+def _header(path: Path, data: bytes) -> tuple[str, list[_Element], int]:
+    """Byte order ("" for ASCII), elements, and where the body begins."""
+    end = data.find(b"end_header", 0, 1 << 16)
+    if not data.startswith(b"ply") or end < 0:
+        raise AssetError(path, "is empty" if not data else "has no PLY header", fix="export it again")
+    body = data.find(b"\n", end)
+    body = len(data) if body < 0 else body + 1
+    orders: list[str] = []
+    elements: list[_Element] = []
+    for number, line in enumerate(data[:end].decode("latin-1").splitlines()[1:], start=2):
+        try:
+            _header_line(line.split(), orders, elements)
+        except (KeyError, ValueError, IndexError):
+            problem = f"cannot understand {line!r}"
+            raise AssetError(path, problem, place=f"line {number}", fix="export it again") from None
+    if len(orders) != 1:
+        raise AssetError(path, f"has {len(orders)} format lines", fix="export it again")
+    return orders[0], elements, body
+
+
+def _header_line(words: list[str], orders: list[str], elements: list[_Element]) -> None:
+    match words:
+        case ["format", encoding, _]:
+            orders.append(_ORDERS[encoding])
+        case ["element", name, count]:
+            if int(count) < 0 or any(name == other.name for other in elements):
+                raise ValueError
+            elements.append(_Element(name, int(count), ()))
+        case ["property", "list", count_kind, kind, name] if _TYPES[count_kind][0] != "f":
+            elements[-1] = _with(elements[-1], _Property(name, _TYPES[kind], _TYPES[count_kind]))
+        case ["property", kind, name]:
+            elements[-1] = _with(elements[-1], _Property(name, _TYPES[kind], None))
+        case [] | ["comment", *_] | ["obj_info", *_]:
+            pass
+        case _:
+            raise ValueError
+
+
+def _with(element: _Element, one: _Property) -> _Element:
+    if any(one.name == other.name for other in element.properties):
+        raise ValueError
+    return _Element(element.name, element.count, (*element.properties, one))
+
+
+def _cut_short(path: Path, element: _Element) -> AssetError:
+    return AssetError(path, f"ends before its {element.count} {element.name} rows do", fix="copy or export it again")
+
+
+def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, _Table]:
+    words = body.split()
+    tables: dict[str, _Table] = {}
+    at = 0
+    for element in elements:
+        if not any(one.count_kind for one in element.properties):
+            width = len(element.properties)
+            block = words[at : at + width * element.count]
+            if len(block) < width * element.count:
+                raise _cut_short(path, element)
+            values = _numbers(path, element, block).reshape(element.count, width)
+            tables[element.name] = {one.name: values[:, i] for i, one in enumerate(element.properties)}
+            at += width * element.count
+            continue
+        columns: list[list[bytes]] = [[] for _ in element.properties]
+        counts: list[list[int]] = [[] for _ in element.properties]
+        for _ in range(element.count):
+            for column, lengths, one in zip(columns, counts, element.properties, strict=True):
+                length = 1
+                if one.count_kind:
+                    length = int(words[at]) if at < len(words) and words[at].isdigit() else -1
+                    at += 1
+                if length < 0 or at + length > len(words):
+                    raise _cut_short(path, element)
+                lengths.append(length)
+                column.extend(words[at : at + length])
+                at += length
+        tables[element.name] = {
+            one.name: _List(np.array(lengths, dtype=np.int64), _numbers(path, element, column))
+            if one.count_kind
+            else _numbers(path, element, column)
+            for column, lengths, one in zip(columns, counts, element.properties, strict=True)
+        }
+    return tables
+
+
+def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.float64]:
+    try:
+        if max(map(len, words), default=0) > _LONGEST_NUMBER:  # each word of the array gets the longest one's room
+            raise ValueError(f"a word of more than {_LONGEST_NUMBER} characters is no number")  # noqa: TRY301
+        return np.array(words, dtype=np.bytes_).astype(np.float64) if words else np.zeros(0)
+    except ValueError as error:
+        raise AssetError(path, f"{element.name}: {error}", fix="export it again") from None
+
+
+def _binary(file: _Binary, at: int, elements: list[_Element]) -> dict[str, _Table]:
+    tables: dict[str, _Table] = {}
+    for element in elements:
+        table, at = _binary_element(file, at, element)
+        tables[element.name] = table
+    return tables
+
+
+def _binary_element(file: _Binary, at: int, element: _Element) -> tuple[_Table, int]:
+    if not element.count or not element.properties:
+        empty = np.zeros(0)
+        no_list = _List(np.zeros(0, dtype=np.int64), empty)
+        return {one.name: no_list if one.count_kind else empty for one in element.properties}, at
+    lengths = _first_lengths(file, at, element)
+    row = _row_type(file.order, element, lengths)
+    if at + row.itemsize * element.count <= len(file.data):
+        rows = np.frombuffer(file.data, dtype=row, count=element.count, offset=at)
+        if all((rows[f"{name} count"] == length).all() for name, length in lengths.items()):
+            return {
+                one.name: _List(np.full(element.count, lengths[one.name], dtype=np.int64), rows[one.name].reshape(-1))
+                if one.count_kind
+                else rows[one.name]
+                for one in element.properties
+            }, at + row.itemsize * element.count
+    return _binary_rows(file, at, element)
+
+
+def _first_lengths(file: _Binary, at: int, element: _Element) -> dict[str, int]:
+    """How long each list of the first row is: nearly always all rows are alike."""
+    lengths: dict[str, int] = {}
+    for one in element.properties:
+        if one.count_kind:
+            lengths[one.name], at = _length(file, at, element, one)
+            at += np.dtype(one.kind).itemsize * lengths[one.name]
+        else:
+            at += np.dtype(one.kind).itemsize
+    return lengths
+
+
+def _length(file: _Binary, at: int, element: _Element, one: _Property) -> tuple[int, int]:
+    kind = np.dtype(file.order + str(one.count_kind))
+    if at + kind.itemsize > len(file.data):
+        raise _cut_short(file.path, element)
+    length = int(np.frombuffer(file.data, dtype=kind, count=1, offset=at)[0])
+    if length < 0 or at + kind.itemsize + length * np.dtype(one.kind).itemsize > len(file.data):
+        raise _cut_short(file.path, element)
+    return length, at + kind.itemsize
+
+
+def _row_type(order: str, element: _Element, lengths: dict[str, int]) -> np.dtype[np.void]:
+    fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
+    for one in element.properties:
+        if one.count_kind:
+            fields.append((f"{one.name} count", order + one.count_kind))
+            fields.append((one.name, order + one.kind, (lengths[one.name],)))
+        else:
+            fields.append((one.name, order + one.kind))
+    return np.dtype(fields)
+
+
+def _binary_rows(file: _Binary, at: int, element: _Element) -> tuple[_Table, int]:
+    """Rows whose lists differ in length, one after another."""
+    columns: list[list[bytes]] = [[] for _ in element.properties]
+    counts: list[list[int]] = [[] for _ in element.properties]
+    for _ in range(element.count):
+        for column, lengths, one in zip(columns, counts, element.properties, strict=True):
+            length = 1
+            if one.count_kind:
+                length, at = _length(file, at, element, one)
+            size = np.dtype(one.kind).itemsize * length
+            if at + size > len(file.data):
+                raise _cut_short(file.path, element)
+            column.append(file.data[at : at + size])
+            lengths.append(length)
+            at += size
+    table: _Table = {}
+    for column, lengths, one in zip(columns, counts, element.properties, strict=True):
+        values = np.frombuffer(b"".join(column), dtype=file.order + one.kind)
+        table[one.name] = _List(np.array(lengths, dtype=np.int64), values) if one.count_kind else values
+    return table, at

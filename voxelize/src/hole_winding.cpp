@@ -1,0 +1,149 @@
+#include "hole_winding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace voxrt {
+namespace {
+
+constexpr double kLongestEdge = 16; // voxels; longer caps are cut, so that bounds stay tight near them
+constexpr size_t kMostCaps = 1 << 18;
+constexpr uint32_t kLeafCaps = 4;
+constexpr double kFar = 3; // radii at which a node is a dipole: errors below 1 %, see Barill et al.
+
+Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double length(const Point& a) { return std::sqrt(dot(a, a)); }
+Point cross(const Point& a, const Point& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Point middle(const Point& a, const Point& b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2}; }
+Point centre(const HoleWinding::Cap& cap) {
+    const auto& [a, b, c] = cap.corners;
+    return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
+}
+
+/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
+double solid_angle(const HoleWinding::Cap& cap, const Point& q) {
+    const Point a = minus(cap.corners[0], q), b = minus(cap.corners[1], q), c = minus(cap.corners[2], q);
+    const double la = length(a), lb = length(b), lc = length(c);
+    return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+/// Cuts caps at their longest edges' middles until the edges are short.
+std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps) {
+    for (size_t i = 0; i < caps.size() && caps.size() < kMostCaps;) {
+        auto& [a, b, c] = caps[i].corners;
+        const double lengths[3] = {length(minus(b, a)), length(minus(c, b)), length(minus(a, c))};
+        const int longest = int(std::max_element(lengths, lengths + 3) - lengths);
+        if (!(lengths[longest] > kLongestEdge)) {
+            ++i;
+            continue;
+        }
+        HoleWinding::Cap half = caps[i];
+        const int next = (longest + 1) % 3;
+        const Point m = middle(half.corners[longest], half.corners[next]);
+        half.corners[longest] = m;
+        caps[i].corners[next] = m;
+        caps.push_back(half);
+    }
+    return caps;
+}
+
+} // namespace
+
+HoleWinding::HoleWinding(std::vector<Cap> caps) : caps_(cut(std::move(caps))) {
+    if (!caps_.empty())
+        build(0, uint32_t(caps_.size()));
+}
+
+int32_t HoleWinding::build(uint32_t first, uint32_t last) {
+    Node node;
+    node.first = first;
+    node.last = last;
+    Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300}, weighted{0, 0, 0};
+    for (uint32_t i = first; i < last; ++i) {
+        const Cap& cap = caps_[i];
+        const Point n = cross(minus(cap.corners[1], cap.corners[0]), minus(cap.corners[2], cap.corners[0]));
+        const double area = std::abs(cap.times) * length(n) / 2;
+        const Point at = centre(cap);
+        node.nx += cap.times * n.x / 2;
+        node.ny += cap.times * n.y / 2;
+        node.nz += cap.times * n.z / 2;
+        node.area += area;
+        weighted = {weighted.x + area * at.x, weighted.y + area * at.y, weighted.z + area * at.z};
+        low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    }
+    node.centre = node.area > 0 ? Point{weighted.x / node.area, weighted.y / node.area, weighted.z / node.area}
+                                : middle(low, high);
+    for (uint32_t i = first; i < last; ++i)
+        for (const Point& corner : caps_[i].corners)
+            node.radius = std::max(node.radius, length(minus(corner, node.centre)));
+    const auto index = int32_t(nodes_.size());
+    nodes_.push_back(node);
+    if (last - first > kLeafCaps) {
+        const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+        const auto axis = std::max_element(sides, sides + 3) - sides;
+        const uint32_t half = first + (last - first) / 2;
+        std::nth_element(caps_.begin() + first, caps_.begin() + half, caps_.begin() + last,
+                         [axis](const Cap& a, const Cap& b) {
+                             const Point p = centre(a), q = centre(b);
+                             return axis == 0 ? p.x < q.x : axis == 1 ? p.y < q.y : p.z < q.z;
+                         });
+        const int32_t left = build(first, half), right = build(half, last);
+        nodes_[index].left = left;
+        nodes_[index].right = right;
+    }
+    return index;
+}
+
+double HoleWinding::at(const Point& q) const {
+    double total = 0;
+    int32_t stack[64];
+    int depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
+    while (depth > 0) {
+        const Node& node = nodes_[stack[--depth]];
+        const Point d = minus(node.centre, q);
+        const double square = dot(d, d);
+        if (square > kFar * kFar * node.radius * node.radius) {
+            total += (node.nx * d.x + node.ny * d.y + node.nz * d.z) / (square * std::sqrt(square));
+        } else if (node.left >= 0) {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+        } else {
+            for (uint32_t i = node.first; i < node.last; ++i)
+                total += caps_[i].times * solid_angle(caps_[i], q);
+        }
+    }
+    return total / (4 * std::numbers::pi);
+}
+
+/// Bounds how far the solid angle may differ within `reach` of q: an area seen from d away changes by 2 / d^3 a length.
+double HoleWinding::variation(int32_t index, const Point& q, double reach) const {
+    const Node& node = nodes_[index];
+    const double nearest = length(minus(node.centre, q)) - node.radius - reach;
+    if (nearest > node.radius || (node.left < 0 && nearest > 0))
+        return 2 * node.area * reach / (nearest * nearest * nearest);
+    if (node.left < 0)
+        return node.area > 0 ? std::numeric_limits<double>::infinity() : 0;
+    const double left = variation(node.left, q, reach);
+    return std::isinf(left) ? left : left + variation(node.right, q, reach);
+}
+
+int HoleWinding::settled(const Point& q, double reach) const {
+    if (nodes_.empty())
+        return 0;
+    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.02; // and the dipoles' error
+    if (!(change < 0.5))
+        return kUnsettled;
+    const double value = at(q);
+    const double nearest = std::floor(value + 0.5);
+    return std::abs(value - nearest) + change < 0.5 ? int(nearest) : kUnsettled;
+}
+
+} // namespace voxrt

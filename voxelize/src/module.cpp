@@ -1,0 +1,197 @@
+// voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
+#include "convex_hull.h"
+#include "voxelizer.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+using namespace voxrt;
+
+namespace {
+
+template <typename T> using InputOf = nb::ndarray<const T, nb::numpy, nb::c_contig, nb::device::cpu>;
+using MeshArrays = std::tuple<InputOf<double>, InputOf<int32_t>, InputOf<uint8_t>>;
+
+void require(bool holds, const char* what) {
+    if (!holds)
+        throw nb::value_error(what);
+}
+
+template <typename Array> void require_rows(const Array& array, size_t columns, const char* what) {
+    require(array.ndim() == 2 && array.shape(1) == columns, what);
+}
+
+MeshView view_mesh(const MeshArrays& arrays) {
+    const auto& [positions, triangles, materials] = arrays;
+    require_rows(positions, 3, "positions must have shape (V, 3)");
+    require_rows(triangles, 3, "triangles must have shape (T, 3)");
+    require(materials.ndim() == 1 && (materials.size() == triangles.shape(0) || materials.size() == 0),
+            "materials must have shape (T,)");
+    const auto vertices = static_cast<int64_t>(positions.shape(0));
+    const int32_t* corner = triangles.data();
+    int32_t lowest = 0, highest = -1;
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        lowest = std::min(lowest, corner[i]);
+        highest = std::max(highest, corner[i]);
+    }
+    require(lowest >= 0 && highest < vertices, "triangles must index positions");
+    for (size_t i = 0; i < materials.size(); ++i)
+        require(materials.data()[i] != 0, "material 0 is empty space");
+    return {{positions.data(), positions.size()}, {corner, triangles.size()}, {materials.data(), materials.size()}};
+}
+
+template <typename T> nb::ndarray<nb::numpy, T> give(SparseVoxels::Array<T>& array) {
+    T* data = array.data.release();
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return nb::ndarray<nb::numpy, T>(data, {array.size}, owner);
+}
+
+template <typename T, size_t N> nb::ndarray<nb::numpy, T> give(SparseVoxels::Array<std::array<T, N>>& array) {
+    std::array<T, N>* data = array.data.release();
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<std::array<T, N>*>(p); });
+    return nb::ndarray<nb::numpy, T>(data, {array.size, N}, owner);
+}
+
+nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
+                         InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
+                         InputOf<int32_t> objects_of, int objects, bool fill, int threads) {
+    require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
+    require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024");
+    require(objects >= 0, "objects must not be negative");
+    const size_t count = kinds.size();
+    require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
+                mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
+            "kinds, meshes, materials and objects of the parts must have shape (P,)");
+    require_rows(frames, 12, "frames must have shape (P, 12)");
+    require(frames.shape(0) == count, "frames must have shape (P, 12)");
+
+    std::vector<MeshView> views;
+    views.reserve(meshes.size());
+    for (const MeshArrays& arrays : meshes)
+        views.push_back(view_mesh(arrays));
+    std::vector<PartView> parts;
+    parts.reserve(count);
+    for (size_t p = 0; p < count; ++p) {
+        require(kinds.data()[p] <= 3, "kinds must be 0 … 3");
+        const auto kind = static_cast<PartKind>(kinds.data()[p]);
+        const MeshView* mesh = nullptr;
+        if (kind == PartKind::mesh) {
+            require(mesh_of.data()[p] >= 0 && size_t(mesh_of.data()[p]) < views.size(), "mesh_of must index meshes");
+            mesh = &views[mesh_of.data()[p]];
+        }
+        require(materials.data()[p] != 0 || (mesh != nullptr && (!mesh->materials.empty() || mesh->triangles.empty())),
+                "a part needs a material");
+        require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
+        require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
+        parts.push_back({kind, mesh, frames.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
+    }
+
+    SparseVoxels out;
+    {
+        nb::gil_scoped_release release;
+        Workers workers(threads, [] {
+            nb::gil_scoped_acquire acquire;
+            if (PyErr_CheckSignals() != 0)
+                throw nb::python_error();
+        });
+        out = voxelize(depth, parts, size_t(objects), fill, workers);
+    }
+    return nb::make_tuple(give(out.brick_codes), give(out.brick_masks), give(out.brick_materials), give(out.brick_rows),
+                          give(out.cells), give(out.octant_codes), give(out.octant_levels), give(out.octant_materials),
+                          give(out.object_voxels), give(out.object_modes));
+}
+
+nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<double> frame) {
+    require_rows(positions, 3, "positions must have shape (V, 3)");
+    require(frame.size() == 12, "frame must have shape (3, 4)");
+    const MeshView view{{positions.data(), positions.size()}, {}, {}};
+    const PartView part{PartKind::mesh, &view, frame.data(), 1, 0};
+    SparseVoxels::Array<std::array<int32_t, 3>> out;
+    {
+        nb::gil_scoped_release release;
+        std::vector<Vertex> points(view.vertex_count());
+        for (size_t v = 0; v < points.size(); ++v)
+            points[v] = snap_vertex(part, v);
+        const auto triangles = convex_hull(points);
+        out.allocate(triangles.size());
+        std::copy(triangles.begin(), triangles.end(), out.data.get());
+    }
+    return give(out);
+}
+
+constexpr auto kVoxelizeManual = R"(Voxelize P parts; where they compete, the first keeps the voxel.
+
+Parameters
+----------
+depth
+    The grid's depth, 1 … 16.
+meshes
+    Positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their objects' frames; shared by parts.
+kinds
+    Shape (P,): 0 mesh, 1 axis-aligned box, 2 ball, 3 ellipsoid.
+mesh_of
+    Shape (P,): index into `meshes`, for kind 0.
+frames
+    Shape (P, 12), in 1/4096 voxel. Kinds 0 and 3: rows of the 3x4 affine map to grid space (of the mesh, of the
+    unit ball). Kind 1: minimum and maximum. Kind 2: centre and radius.
+materials
+    Shape (P,): 1 … 255, or 0 where each triangle has its own.
+objects_of
+    Shape (P,): ascending, below `objects`.
+fill
+    Claim what parts enclose, not their shells alone.
+threads
+    0 takes as many as the machine has. The result does not depend on it.
+
+Returns
+-------
+The arrays of :class:`voxrt.voxelize.Voxels` in the order of its attributes, then int64 voxels and uint8 modes
+(0 surface, 1 exact, 2 winding) by object.
+
+Raises
+------
+OutOfReachError
+    See there.
+ValueError
+    An array of the wrong shape or with an index out of range.)";
+
+constexpr auto kHullManual = R"(Triangulate the convex hull of points as they lie in grid space, in exact arithmetic.
+
+Parameters
+----------
+positions
+    Shape (V, 3), in the object's frame.
+frame
+    Shape (3, 4): rows of the affine map to grid space, in 1/4096 voxel.
+
+Returns
+-------
+int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside. Points in one plane give their
+polygon twice, facing both ways; points on one line give nothing.)";
+
+} // namespace
+
+NB_MODULE(_native, m) {
+    static PyObject* out_of_reach = PyErr_NewExceptionWithDoc(
+        "voxrt.voxelize._native.OutOfReachError",
+        "A part reaches beyond 2**18 voxels from the grid's corner, or is not a number; the argument is its object.",
+        PyExc_ValueError, nullptr);
+    m.attr("OutOfReachError") = nb::handle(out_of_reach);
+    nb::register_exception_translator(
+        [](const std::exception_ptr& failure, void*) {
+            try {
+                std::rethrow_exception(failure);
+            } catch (const OutOfReach& e) {
+                PyErr_SetObject(out_of_reach, nb::int_(e.object).ptr());
+            }
+        },
+        nullptr);
+    m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
+          nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
+          nb::arg("threads"), kVoxelizeManual);
+    m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);
+}

@@ -1,0 +1,61 @@
+"""What USD itself has to say: caught, told in one line, never printed."""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from pxr import Tf, UsdUtils
+
+from voxrt.voxelize.errors import AssetError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from voxrt.voxelize.notes import Notes
+
+# A parser's message: FILE:LINE:COLUMN: what is wrong at 'text' in </prim>
+_AT_LINE = re.compile(r"^(?P<file>.*?):(?P<line>\d+):\d+: (?P<problem>.*)", re.DOTALL)
+
+_UNOPENED = re.compile(r"Could not open asset @(?P<asset>[^@]*)@")
+
+
+@contextmanager
+def caught(path: Path, notes: Notes) -> Iterator[None]:
+    """Turn USD's errors into :class:`AssetError` and its warnings into notes while the block runs.
+
+    While a delegate is installed USD prints nothing on its own.
+    """
+    delegate = UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        yield
+    except Tf.ErrorException as error:
+        raise _asset_error(path, error) from None
+    finally:
+        for said in delegate.TakeUncoalescedDiagnostics():
+            notes.add(*_note(said.commentary))
+        del delegate
+
+
+def _note(commentary: str) -> tuple[str, str]:
+    line = " ".join(commentary.split())
+    if "deprecated version" in line:
+        return "deprecated-format", "a layer is stored in a version of the crate format that USD will drop"
+    if match := _UNOPENED.search(line):
+        return "composition", f"asset {match['asset']} could not be opened; what it holds is missing"
+    return ("composition" if line.startswith("In <") else "usd"), f"USD says: {line}"
+
+
+def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
+    messages = [" ".join(one.commentary.split()) for one in error.args if hasattr(one, "commentary")]
+    for message in messages:
+        if match := _AT_LINE.match(message):
+            problem = match["problem"]
+            # PEGTL, USD's parser, names its C++ templates; what it met is told after " at '".
+            if problem.startswith("parse error matching"):
+                problem = "syntax error" + problem[problem.rfind(" at '") :]
+            return AssetError(path, problem, place=f"line {match['line']}", fix="repair the file or export it again")
+    problem = messages[0] if messages else "cannot be read"
+    return AssetError(path, f"USD says: {problem}", fix="check it with usdchecker")

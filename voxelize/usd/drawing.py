@@ -1,0 +1,184 @@
+"""Which prims of a stage are drawn, where, and of what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdPhysics, UsdShade
+
+from voxrt.voxelize.errors import AssetError, DoesNotFitError
+from voxrt.voxelize.material_table import MaterialTable
+from voxrt.voxelize.scene import Mesh, SceneObject
+from voxrt.voxelize.usd.geometry import Surface, surface_of
+from voxrt.voxelize.usd.instancer import placed_copies
+from voxrt.voxelize.usd.materials import Materials
+from voxrt.voxelize.usd.physics import colliders_of
+from voxrt.voxelize.usd.skin import PREDICATE, Deformed, deformed_meshes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.notes import Notes
+
+MOST_OBJECTS = 1_000_000
+"""A few lines of nested instancers may ask for more copies than there is memory."""
+
+# Prims that hold others or describe them, and have no shape themselves.
+_WITHOUT_SHAPE = frozenset(("", "Xform", "Scope", "Material", "Shader", "NodeGraph", "GeomSubset", "SkelRoot"))
+
+# Prototypes may hang below prims that are only spoken of (``over``) or abstract (``class``).
+_PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsLoaded)
+
+
+@dataclass(eq=False, slots=True)
+class Drawing:
+    """A walk over a stage; surfaces and meshes are made once and shared by instances."""
+
+    path: Path
+    stage: Usd.Stage
+    notes: Notes
+    time: Usd.TimeCode
+    materials: Materials = field(init=False)
+    _placed: UsdGeom.XformCache = field(init=False)
+    _deformed: dict[str, Deformed] = field(init=False)
+    _surfaces: dict[str, Surface | None] = field(default_factory=dict)
+    _meshes: dict[tuple[str, bytes], Mesh] = field(default_factory=dict)
+    _within: list[str] = field(default_factory=list)
+    _count: int = 0
+
+    def __post_init__(self) -> None:
+        self.materials = Materials(MaterialTable(), self.notes, self.time)
+        self._placed = UsdGeom.XformCache(self.time)
+        self._deformed = deformed_meshes(self.stage, self.time, self.notes)
+
+    def objects(self, to_scene: NDArray[np.float64]) -> tuple[SceneObject, ...]:
+        """Return everything that is drawn, in the order of the stage's traversal.
+
+        Parameters
+        ----------
+        to_scene
+            float64, shape (4, 4): from the stage's frame to the scene's.
+        """
+        drawn = self._below(self.stage.GetPseudoRoot(), PREDICATE)
+        for one in drawn:
+            if not np.isfinite(one.transform).all():
+                raise AssetError(self.path, "its transform has no finite value", place=one.name)
+        return tuple(replace(one, transform=to_scene @ one.transform) for one in drawn)
+
+    def _below(self, root: Usd.Prim, predicate: object) -> list[SceneObject]:
+        """Draw `root` and what is below it, in the stage's frame."""
+        drawn: list[SceneObject] = []
+        walk = iter(Usd.PrimRange(root, predicate))
+        for prim in walk:
+            if not self._is_drawn(prim):
+                walk.PruneChildren()
+            elif prim.IsA(UsdGeom.PointInstancer):
+                walk.PruneChildren()
+                drawn += self._copies(prim)
+            else:
+                drawn += self._object(prim)
+        return drawn
+
+    def _copies(self, prim: Usd.Prim) -> list[SceneObject]:
+        place = str(prim.GetPath())
+        if place in self._within:
+            raise AssetError(self.path, "the point instancer copies itself", place=place, fix="repair its prototypes")
+        self._within.append(place)
+        prototypes, indices, transforms, numbers = placed_copies(prim, self.path, self.time, self.notes)
+        here = self._to_stage(prim)
+        models: list[list[SceneObject]] = []
+        for index, prototype in enumerate(prototypes):
+            model = self._below(prototype, _PROTOTYPE_PREDICATE) if (indices == index).any() else []
+            back = np.linalg.inv(self._to_stage(prototype)) if model else np.eye(4)
+            models.append([replace(one, transform=back @ one.transform) for one in model])
+        self._within.pop()
+        self._charge(int(sum(len(models[index]) for index in indices)))
+        drawn: list[SceneObject] = []
+        for index, to_instancer, number in zip(indices.tolist(), here @ transforms, numbers.tolist(), strict=True):
+            for one in models[index]:
+                name = f"{place}[{number}]{one.name.removeprefix(str(prototypes[index].GetPath()))}"
+                drawn.append(
+                    SceneObject(name, one.mesh, to_instancer @ one.transform, one.colliders, one.collider_material)
+                )
+        return drawn
+
+    def _charge(self, count: int) -> None:
+        self._count += count
+        if self._count > MOST_OBJECTS:
+            raise DoesNotFitError(f"{self.path}: draws more than {MOST_OBJECTS:,} objects; make its instancers sparser")
+
+    def _to_stage(self, prim: Usd.Prim) -> NDArray[np.float64]:
+        return np.array(self._placed.GetLocalToWorldTransform(prim), dtype=np.float64).T
+
+    def _is_drawn(self, prim: Usd.Prim) -> bool:
+        """Whether the prim and what is below it are drawn, as far as the prim itself says."""
+        imageable = UsdGeom.Imageable(prim)
+        if not imageable:
+            return True
+        if imageable.GetVisibilityAttr().Get(self.time) == UsdGeom.Tokens.invisible:
+            self.notes.add("invisible", "invisible prims were left out, with what is below them")
+            return False
+        purpose = imageable.ComputePurpose()
+        if purpose not in (UsdGeom.Tokens.default_, UsdGeom.Tokens.render):
+            self.notes.add("purpose", f"prims of purpose {purpose} were left out, with what is below them")
+            return False
+        return True
+
+    def _object(self, prim: Usd.Prim) -> list[SceneObject]:
+        """Draw one prim: an object, or none."""
+        name = str(prim.GetPath())
+        # Instances of one prim share its surface, unless each has a pose of its own.
+        source = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
+        deformed = self._deformed.get(name)
+        key = name if deformed else str(source.GetPath())
+        if key not in self._surfaces:
+            self._surfaces[key] = surface_of(source, self.path, self.time, self.notes, deformed)
+        surface = self._surfaces[key]
+        if surface is None:
+            self._note_undrawn(prim)
+            return []
+        materials = self._materials_of_faces(prim, surface)[surface.faces]
+        solid = materials != 0
+        if not solid.any():
+            return []
+        shared = (key, materials.tobytes())
+        if shared not in self._meshes:
+            triangles = surface.triangles if solid.all() else surface.triangles[solid]
+            self._meshes[shared] = Mesh(surface.positions, triangles, materials[solid])
+        self._charge(1)
+        colliders = colliders_of(source, surface, self.time, self.notes)
+        transform = self._to_stage(deformed.frame if deformed else prim)
+        return [SceneObject(name, self._meshes[shared], transform, colliders, int(materials[solid][0]))]
+
+    def _note_undrawn(self, prim: Usd.Prim) -> None:
+        """Count a prim that has no surface."""
+        kind = str(prim.GetTypeName())
+        if prim.HasAPI(UsdPhysics.CollisionAPI):
+            self.notes.add("collider", "colliders on prims that have no shape themselves were ignored")
+        if prim.IsA(UsdGeom.Gprim) and not prim.IsA(UsdGeom.Mesh):
+            self.notes.add("unsupported-prim", f"{kind} prims are not honoured")
+        elif not prim.IsA(UsdGeom.Mesh) and kind not in _WITHOUT_SHAPE and prim.IsA(UsdGeom.Imageable):
+            self.notes.add("no-shape", f"{kind} prims have no shape and were left out")
+
+    def _materials_of_faces(self, prim: Usd.Prim, surface: Surface) -> NDArray[np.uint8]:
+        """Material ids, uint8, a face each; 0 for air."""
+        ids = np.zeros(surface.face_count, dtype=np.uint8)
+        left = np.ones(surface.face_count, dtype=bool)
+        for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
+            indices = np.array(subset.GetIndicesAttr().Get(self.time) or (), dtype=np.int64)
+            inside = indices[(indices >= 0) & (indices < surface.face_count)]
+            if len(inside) != len(indices):
+                problem = f"a face subset names faces beyond the mesh's {surface.face_count}"
+                raise AssetError(self.path, problem, place=str(subset.GetPath()), fix="export the mesh again")
+            number = self.materials.of_subset(subset, len(inside))
+            if number is not None:
+                ids[inside] = number
+                left[inside] = False
+        without = np.unique(surface.faces[left[surface.faces]])
+        if len(without):
+            ids[left] = self.materials.of_prim(prim, len(without))
+        return ids

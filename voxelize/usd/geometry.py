@@ -1,0 +1,144 @@
+"""The surface of one USD prim, in its own frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from voxrt.voxelize import shapes
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.polygons import triangulate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.usd.skin import Deformed
+
+# Positions USD calls legal and no scene has: beyond it, squares overflow.
+_FARTHEST = 1e150
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Surface:
+    """Triangles of one prim.
+
+    Attributes
+    ----------
+    positions
+        float64, shape (V, 3), finite, in the prim's frame.
+    triangles
+        int32, shape (T, 3), counter-clockwise seen from outside.
+    faces
+        int64, shape (T,): the prim's own face that each triangle is of.
+    face_count
+        How many faces the prim has, holes included.
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    faces: NDArray[np.int64]
+    face_count: int
+
+
+def surface_of(
+    prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None = None
+) -> Surface | None:
+    """Return the surface of a Mesh or of one of the solids; None for any other prim and for a mesh without faces.
+
+    Raises
+    ------
+    AssetError
+        A mesh whose topology contradicts itself, or a solid whose measures are no lengths.
+    """
+    if prim.IsA(UsdGeom.Mesh):
+        return _mesh(UsdGeom.Mesh(prim), path, time, notes, deformed)
+    solid = _solid(prim, path, time)
+    if solid is None:
+        return None
+    positions, triangles = solid
+    return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1)
+
+
+def _mesh(
+    mesh: UsdGeom.Mesh, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None
+) -> Surface | None:
+    prim = mesh.GetPrim()
+    place = str(prim.GetPath())
+    points = mesh.GetPointsAttr().Get(time)
+    positions = np.array([] if points is None else points, dtype=np.float64).reshape(-1, 3)
+    if deformed is not None:
+        positions = deformed.positions
+    counts = _integers(mesh.GetFaceVertexCountsAttr(), time)
+    corners = _integers(mesh.GetFaceVertexIndicesAttr(), time)
+    if not len(counts) or not len(positions):
+        notes.add("empty-mesh", "meshes without faces were left out")
+        return None
+    _check_topology(path, place, positions, counts, corners)
+    keep = counts >= 3
+    notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+    holes = _integers(mesh.GetHoleIndicesAttr(), time)
+    keep[holes[(holes >= 0) & (holes < len(counts))]] = False
+    if mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none:
+        notes.add("subdivision", "subdivision surfaces were taken as their control cage")
+    kept = np.flatnonzero(keep)
+    triangles, faces = triangulate(positions, counts[kept], corners[np.repeat(keep, counts)])
+    if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
+        triangles = np.ascontiguousarray(triangles[:, ::-1])
+    return Surface(positions, triangles, kept[faces], len(counts))
+
+
+def _integers(attribute: Usd.Attribute, time: Usd.TimeCode) -> NDArray[np.int64]:
+    value = attribute.Get(time)
+    return np.array([] if value is None else value, dtype=np.int64)
+
+
+def _check_topology(
+    path: Path,
+    place: str,
+    positions: NDArray[np.float64],
+    counts: NDArray[np.int64],
+    corners: NDArray[np.int64],
+) -> None:
+    problem = ""
+    if (counts < 0).any() or int(counts.sum()) != len(corners):
+        problem = f"faceVertexCounts ask for {int(counts.sum())} corners and faceVertexIndices has {len(corners)}"
+    elif len(corners) and (corners.min() < 0 or corners.max() >= len(positions)):
+        problem = f"faceVertexIndices go from {corners.min()} to {corners.max()} and points has {len(positions)}"
+    elif not (np.abs(positions) < _FARTHEST).all():
+        problem = "points has a coordinate that is no number"
+    if problem:
+        raise AssetError(path, problem, place=place, fix="export the mesh again")
+
+
+def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> shapes.Surface | None:
+    def measure(name: str) -> float:
+        value = prim.GetAttribute(name).Get(time)
+        if value is None or not 0 <= value < _FARTHEST:
+            raise AssetError(path, f"{name} {value} is no length", place=str(prim.GetPath()), fix="give a positive one")
+        return float(value)
+
+    def axis() -> str:
+        value = str(prim.GetAttribute("axis").Get(time))
+        if value not in ("X", "Y", "Z"):
+            raise AssetError(path, f"axis {value!r} is none of X, Y, Z", place=str(prim.GetPath()), fix="give one")
+        return value
+
+    make: dict[str, Callable[[], shapes.Surface]] = {
+        "Cube": lambda: shapes.cube(measure("size")),
+        "Sphere": lambda: shapes.sphere(measure("radius")),
+        "Cylinder": lambda: shapes.cylinder(measure("radius"), measure("radius"), measure("height"), axis()),
+        "Cylinder_1": lambda: shapes.cylinder(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
+        "Cone": lambda: shapes.cone(measure("radius"), measure("height"), axis()),
+        "Capsule": lambda: shapes.capsule(measure("radius"), measure("radius"), measure("height"), axis()),
+        "Capsule_1": lambda: shapes.capsule(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
+        "Plane": lambda: shapes.plane(measure("width"), measure("length"), axis()),
+    }
+    kind = str(prim.GetTypeName())
+    return make[kind]() if kind in make else None

@@ -1,0 +1,95 @@
+"""Points of meshes that a skeleton or blend shapes deform."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdSkel, Vt
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.notes import Notes
+
+PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Deformed:
+    """A mesh's points at one time: float64, shape (V, 3), in the frame of the prim `frame`."""
+
+    positions: NDArray[np.float64]
+    frame: Usd.Prim
+
+
+def deformed_meshes(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> dict[str, Deformed]:
+    """Pose every mesh that is bound to a skeleton.
+
+    Joints blend linearly (UsdSkel's ``classicLinear``); a mesh that asks for dual quaternions is counted in `notes`.
+
+    Returns
+    -------
+    The posed points by prim path.
+    """
+    posed: dict[str, Deformed] = {}
+    cache = UsdSkel.Cache()
+    for prim in Usd.PrimRange(stage.GetPseudoRoot(), PREDICATE):
+        if not prim.IsA(UsdSkel.Root):
+            continue
+        root = UsdSkel.Root(prim)
+        cache.Populate(root, PREDICATE)
+        for binding in cache.ComputeSkelBindings(root, PREDICATE):
+            skeleton = cache.GetSkelQuery(binding.GetSkeleton())
+            for skin in binding.GetSkinningTargets():
+                if skin.GetPrim().IsA(UsdGeom.Mesh):
+                    found = _pose(skeleton, skin, time, notes)
+                    if found is not None:
+                        posed[str(skin.GetPrim().GetPath())] = found
+    return posed
+
+
+def _pose(
+    skeleton: UsdSkel.SkeletonQuery, skin: UsdSkel.SkinningQuery, time: Usd.TimeCode, notes: Notes
+) -> Deformed | None:
+    prim = skin.GetPrim()
+    value = UsdGeom.Mesh(prim).GetPointsAttr().Get(time)
+    if value is None:
+        return None
+    points = Vt.Vec3fArray(value)
+    moved = skin.HasBlendShapes() and _blend(skeleton, skin, time, points)
+    frame = prim
+    if skin.HasJointInfluences():
+        joints = skeleton.ComputeSkinningTransforms(time)
+        if joints and skin.ComputeSkinnedPoints(joints, points, time):
+            moved, frame = True, skeleton.GetPrim()
+            if skin.GetSkinningMethod() == UsdSkel.Tokens.dualQuaternion:
+                notes.add("skinning", "dual quaternion skinning was done by linear blending")
+        else:
+            notes.add("skinning", "meshes whose skeleton has no pose were taken at rest")
+    return Deformed(np.array(points, dtype=np.float64).reshape(-1, 3), frame) if moved else None
+
+
+def _blend(
+    skeleton: UsdSkel.SkeletonQuery, skin: UsdSkel.SkinningQuery, time: Usd.TimeCode, points: Vt.Vec3fArray
+) -> bool:
+    """Add the blend shapes to `points` in place; False where no animation weighs them."""
+    animation = skeleton.GetAnimQuery()
+    weights = animation.ComputeBlendShapeWeights(time) if animation else None
+    if not weights:
+        return False
+    by_name = dict(zip(animation.GetBlendShapeOrder(), weights, strict=False))
+    own = Vt.FloatArray([by_name.get(name, 0.0) for name in skin.GetBlendShapeOrder()])
+    shapes = UsdSkel.BlendShapeQuery(UsdSkel.BindingAPI(skin.GetPrim()))
+    sub_weights, shape_indices, sub_indices = shapes.ComputeSubShapeWeights(own)
+    return bool(
+        shapes.ComputeDeformedPoints(
+            sub_weights,
+            shape_indices,
+            sub_indices,
+            shapes.ComputeBlendShapePointIndices(),
+            shapes.ComputeSubShapePointOffsets(),
+            points,
+        )
+    )

@@ -1,0 +1,130 @@
+"""The command line as a whole: which commands there are, what ends them, and what the exit code says."""
+
+from __future__ import annotations
+
+import os
+import platform
+import signal
+import sys
+import traceback
+from enum import IntEnum
+from typing import TYPE_CHECKING, NoReturn
+
+import cyclopts
+
+import voxrt
+from voxrt.cli.arguments import UsageError, bind_preview
+from voxrt.cli.messages import complain
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import FrameType
+
+
+class ExitCode(IntEnum):
+    """What a finished command tells the program that started it."""
+
+    DONE = 0
+    BUG = 1
+    USAGE = 2
+    ASSET = 3
+    DOES_NOT_FIT = 4
+    SIMULATOR = 5
+    INTERRUPTED = 128 + signal.SIGINT
+    PIPE_CLOSED = 128 + signal.SIGPIPE
+    TERMINATED = 128 + signal.SIGTERM
+
+
+class Terminated(BaseException):
+    """SIGTERM arrived: unwind, clean up, leave."""
+
+
+app = cyclopts.App(
+    name="voxrt",
+    version=voxrt.__version__,
+    help="Meshes to voxels to an octree memory to pictures ray-traced by hardware.",
+    help_epilogue="Example: voxrt build courtyard.glb -o out --preview",
+    help_format="plaintext",
+    default_parameter=cyclopts.Parameter(negative=()),
+    result_action="return_value",
+    exit_on_error=False,
+    print_error=False,
+    suppress_keyboard_interrupt=False,
+)
+
+
+def _add_command(name: str, purpose: str, example: str) -> None:
+    # Named by text: a command is imported when it is called.
+    app.command(
+        f"voxrt.cli.{name}:{name}", name=name, help=purpose, help_epilogue=f"Example: {example}", help_format="markdown"
+    )
+
+
+_add_command(
+    "build",
+    "Build an asset's octree memory: NAME.mem, its manifest NAME.json and a preview picture.",
+    "voxrt build courtyard.glb -o out --depth 7 --preview",
+)
+_add_command(
+    "render",
+    "Render a picture of a memory, pixel by pixel what the hardware shows.",
+    "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
+)
+
+
+def run(arguments: Sequence[str]) -> ExitCode:
+    """Run a command line and tell its exit code; an error is one line on standard error."""
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        app(bind_preview(arguments))
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        complain("interrupted: every file is as it was, or complete")
+        return ExitCode.INTERRUPTED
+    except Terminated:
+        complain("terminated: every file is as it was, or complete")
+        return ExitCode.TERMINATED
+    except SystemExit:
+        return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
+    except BrokenPipeError:
+        # Nobody reads standard output any more: let the interpreter's last flush go nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ExitCode.PIPE_CLOSED
+    except Exception as error:  # noqa: BLE001 - the outermost frame: everything becomes a line and an exit code
+        if "--debug" in arguments:
+            traceback.print_exc()
+        return _explain(error, arguments)
+    return ExitCode.DONE
+
+
+def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
+    """Say in one line what went wrong, and in a number whose fault it is."""
+    problem, code = str(error), ExitCode.BUG
+    match error:
+        case ImportError():
+            problem = f"this installation of voxrt is not complete: {problem}; install it again"
+        case cyclopts.CycloptsError() | UsageError():
+            command = [name for name in arguments[:1] if name in app]
+            problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE
+        case voxrt.OutputError() | voxrt.ViewpointError():
+            code = ExitCode.USAGE
+        case voxrt.AssetError() | voxrt.RomError():
+            code = ExitCode.ASSET
+        case voxrt.DoesNotFitError():
+            code = ExitCode.DOES_NOT_FIT
+        case MemoryError():
+            problem, code = "out of memory; use a smaller --depth or a larger --voxel-size", ExitCode.DOES_NOT_FIT
+        case voxrt.SimulatorError():
+            code = ExitCode.SIMULATOR
+        case _:
+            system = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"
+            problem = (
+                f"this is a bug of voxrt: {type(error).__name__}: {problem}; please report it with the command, its "
+                f"files and what --debug adds (voxrt {voxrt.__version__}, {system})"
+            )
+    complain(problem)
+    return code
+
+
+def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise Terminated

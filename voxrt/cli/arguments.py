@@ -1,0 +1,118 @@
+"""What stands on the command line, from text to values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cyclopts import Token
+
+SIZE_LIMIT = 1 << 14
+_REGISTER = range(-(1 << 15), 1 << 15)
+_POSITION_LIMIT = 1 << 31  # in 1/16 voxel
+
+
+class UsageError(Exception):
+    """A command line that makes no sense, in one line."""
+
+
+@dataclass(frozen=True)
+class Reporting:
+    """How a command tells what it did."""
+
+    json: bool = False
+    """Print the result as JSON on standard output."""
+
+    debug: bool = False
+    """Show the traceback of an error."""
+
+
+def bind_preview(arguments: Sequence[str]) -> list[str]:
+    """Join ``--preview`` to its file, or to none: its value is optional, and an asset may stand behind it.
+
+    The argument behind it is its file unless it is an option or has the suffix of an asset.
+    """
+    bound = list(arguments)
+    for place, argument in enumerate(bound):
+        if argument == "--":
+            break
+        if argument == "--preview":
+            value = bound[place + 1] if place + 1 < len(bound) else "-"
+            if value.startswith("-") or _is_asset(value):
+                bound[place] = "--preview="
+            else:
+                bound[place : place + 2] = [f"--preview={value}"]
+    return bound
+
+
+def _is_asset(name: str) -> bool:
+    from voxrt.voxelize.load import SUFFIXES  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    return Path(name).suffix.lower() in SUFFIXES
+
+
+def whole(_type: type, tokens: Sequence[Token]) -> int:
+    """Read a whole number; cyclopts alone would round 3.5."""
+    try:
+        return int(tokens[0].value, 10)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is not a whole number") from None
+
+
+def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
+    """Read a picture's size, ``640x480``."""
+    parts = tokens[0].value.lower().split("x")
+    if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
+        raise ValueError(f"{tokens[0].value!r} is not WIDTHxHEIGHT, such as 640x480")
+    width, height = (int(part) for part in parts)
+    if not (1 <= width <= SIZE_LIMIT and 1 <= height <= SIZE_LIMIT):
+        raise ValueError(f"{tokens[0].value} is not between 1x1 and {SIZE_LIMIT}x{SIZE_LIMIT} pixels")
+    return width, height
+
+
+def place(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
+    """Read a position in voxels, ``10,-2.5,3``, to 1/16 voxel."""
+    x, y, z = (_sixteenths(part) for part in _three(tokens[0].value))
+    return x, y, z
+
+
+def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
+    """Read three register values, ``0,0,-90``."""
+    try:
+        x, y, z = (int(part, 10) for part in _three(tokens[0].value))
+    except ValueError as error:
+        raise ValueError(f"{tokens[0].value!r} is not three whole numbers such as 0,0,-90") from error
+    if not all(value in _REGISTER for value in (x, y, z)):
+        raise ValueError(f"{tokens[0].value} does not fit signed 16 bits: {_REGISTER.start} to {_REGISTER.stop - 1}")
+    return x, y, z
+
+
+def png(path: Path) -> Path:
+    """Refuse a picture's name that does not say what the file will be."""
+    if path.suffix.lower() != ".png":
+        raise UsageError(f"{path}: pictures are PNG files; give it a name that ends in .png")
+    return path
+
+
+def _three(text: str) -> list[str]:
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise ValueError(f"{text!r} is not X,Y,Z: three numbers with commas and no spaces between")
+    return parts
+
+
+def _sixteenths(text: str) -> int:
+    try:
+        value = Decimal(text) * 16
+    except ArithmeticError:
+        raise ValueError(f"{text!r} is not a number of voxels") from None
+    if not value.is_finite() or abs(value) >= _POSITION_LIMIT:
+        raise ValueError(f"{text} voxels is out of range")
+    if value != int(value):
+        raise ValueError(f"{text} is not a multiple of 1/16 voxel (0.0625)")
+    return int(value)

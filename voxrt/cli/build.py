@@ -1,0 +1,117 @@
+"""``voxrt build``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+import voxrt
+from voxrt.cli.arguments import Reporting, UsageError, pixels, png, whole
+from voxrt.cli.messages import picture_cost, stage_bar, summarize, warn
+from voxrt.cli.results import build_report, print_json
+
+Pixels = tuple[int, int]
+
+
+def build(
+    asset: Annotated[Path, Parameter(metavar="ASSET")],
+    /,
+    *,
+    output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
+    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    voxel_size: Annotated[float | None, Parameter(metavar="METRES")] = None,
+    fill: Literal["solid", "surface"] = "solid",
+    geometry: Literal["auto", "render", "collider"] = "auto",
+    pow2: Literal["box", "none"] = "box",
+    up: Literal["x", "y", "z"] | None = None,
+    unit: Annotated[float | None, Parameter(metavar="METRES")] = None,
+    preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
+    size: Annotated[Pixels, Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (640, 480),
+    engine: Literal["rtl", "model"] = "rtl",
+    dialect: Literal["report", "seed-rtl", "msb"] = "report",
+    reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
+) -> None:
+    """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture.
+
+    Parameters
+    ----------
+    asset
+        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file.
+    output
+        Folder to write to; made when it is missing.
+    depth
+        Levels of the octree, 1 to 16: the scene's bounding cube gets 2^N voxels a side. 7 when neither this nor
+        --voxel-size is given.
+    voxel_size
+        Size of a voxel instead of --depth.
+    fill
+        Fill what closed surfaces enclose, or keep the shell only.
+    geometry
+        auto: an object's colliders where it has some, else its triangles; render: always the triangles; collider:
+        always colliders, the bounding box where an object has none.
+    pow2
+        Round box colliders up to powers of two voxels, or never.
+    up
+        The up axis of formats that do not say (OBJ, STL, PLY).
+    unit
+        Metres per unit of formats that do not say.
+    preview
+        Render a picture of the scene, to NAME.preview.png in the output folder or to FILE, a .png.
+    size
+        Width and height of the preview, pixels. [default: 640x480]
+    engine
+        What renders the preview: the verilated hardware, or the exact model of it.
+    dialect
+        How the memory spells a material: report is this project's; seed-rtl is what the published bitstreams read,
+        msb what their C++ program reads.
+    reporting
+        How to tell what was done.
+    """
+    if depth is not None and voxel_size is not None:
+        raise UsageError("--depth and --voxel-size exclude each other; give one of them")
+    if depth is not None and not 1 <= depth <= 16:
+        raise UsageError(f"--depth {depth} is not 1 to 16")
+    for option, value in (("--voxel-size", voxel_size), ("--unit", unit)):
+        if value is not None and not 0 < value < float("inf"):
+            raise UsageError(f"{option} {value} is not a positive number of metres")
+    with stage_bar(5 if preview is None else 6) as progress:
+        result = voxrt.build(
+            asset,
+            output,
+            depth=depth,
+            voxel_size=voxel_size,
+            fill=fill,
+            geometry=geometry,
+            pow2=pow2,
+            up=up,
+            unit=unit,
+            dialect=dialect,
+            preview=png(Path(preview)) if preview else preview is not None,
+            size=size,
+            engine=engine,
+            progress=progress,
+        )
+    warn(result.warnings)
+    if reporting.json:
+        print_json(build_report(result))
+    else:
+        summarize(f"{asset.name}:", _rows(result))
+
+
+def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
+    rom, total = result.rom, sum(result.seconds.values())
+    words, shown = len(rom.octree.words), rom.materials[1:5]
+    voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
+    names = ", ".join(material.name for material in shown) + (", ..." if len(rom.materials) > 5 else "")
+    stages = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in result.seconds.items() if seconds >= 0.005)
+    return [
+        ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
+        ("solid", f"{result.solid_voxels:,} voxels"),
+        ("memory", f"{words:,} words, {words * 4 / 1024:,.1f} KiB"),
+        ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
+        *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
+        ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
+        *(("wrote", str(path)) for path in result.outputs.values()),
+    ]

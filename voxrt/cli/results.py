@@ -1,0 +1,149 @@
+"""What ``--json`` prints: the shape of each command's result.
+
+The field names are a promise to programs: they may gain company, never change. ``schema()`` describes them to
+validators.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from voxrt.cli.messages import name_file
+from voxrt.outputs import OutputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from voxrt.pipeline import BuildResult, Picture
+
+
+class MaterialEntry(msgspec.Struct, frozen=True):
+    """A row of the material table."""
+
+    id: int
+    name: str
+    colour: tuple[int, int, int]
+    """sRGB, 8 bits a channel."""
+    authored: bool
+    """False for the default material that stands in where the asset gave none."""
+
+
+class WarningEntry(msgspec.Struct, frozen=True):
+    """Something that the asset said and that was not honoured as it stands."""
+
+    kind: str
+    """A stable name for programs."""
+    message: str
+    count: int
+
+
+class CameraEntry(msgspec.Struct, frozen=True):
+    """The camera of a picture."""
+
+    position: tuple[float, float, float]
+    """Voxels."""
+    look: tuple[int, int, int]
+    right: tuple[int, int, int]
+    up: tuple[int, int, int]
+
+
+class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
+    """``voxrt render --json``, and `render` in ``voxrt build --json``."""
+
+    engine: str
+    size: tuple[int, int]
+    rays: int
+    cycles: int | None
+    """Clocks of the ray tracer; null from the model, which has no clock."""
+    words_read: int
+    cycles_per_pixel: float | None
+    words_per_ray: float
+    seconds: float
+    camera: CameraEntry
+    outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
+    """Files written, by kind: `picture`. In a build they stand with the build's."""
+    wrong_pixels: int | msgspec.UnsetType = msgspec.UNSET
+    """With ``--check``: pixels on which the two engines differ."""
+
+
+class BuildReport(msgspec.Struct, frozen=True):
+    """``voxrt build --json``."""
+
+    outputs: dict[str, str]
+    """Files written, by kind: `mem`, `manifest`, `preview`."""
+    depth: int
+    words: int
+    blocks: int
+    voxels: int
+    materials: list[MaterialEntry]
+    warnings: list[WarningEntry]
+    seconds: dict[str, float]
+    """Wall seconds a stage, in order."""
+    render: RenderResult | None
+    """The preview; null when none was asked for."""
+
+
+def schema() -> dict[str, Any]:
+    """Give the JSON schemas of the results, by the definitions' names."""
+    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult))
+    return definitions
+
+
+def build_report(result: BuildResult) -> BuildReport:
+    """Tell programs what a build made."""
+    rom = result.rom
+    return BuildReport(
+        outputs={kind: name_file(path) for kind, path in result.outputs.items()},
+        depth=rom.octree.depth,
+        words=len(rom.octree.words),
+        blocks=rom.octree.blocks,
+        voxels=result.solid_voxels,
+        materials=[
+            MaterialEntry(number, material.name, material.colour, material.authored)
+            for number, material in enumerate(rom.materials)
+        ],
+        warnings=[WarningEntry(warning.kind, warning.message, warning.count) for warning in result.warnings],
+        seconds=result.seconds,
+        render=None if result.preview is None else render_result(result.preview),
+    )
+
+
+def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int | None = None) -> RenderResult:
+    """Tell programs what a picture shows and cost."""
+    cost, camera = picture.frame.cost, picture.camera
+    height, width = picture.frame.material.shape
+    x, y, z = camera.position
+    return RenderResult(
+        engine=picture.engine,
+        size=(width, height),
+        rays=cost.rays,
+        cycles=cost.cycles,
+        words_read=cost.words_read,
+        cycles_per_pixel=None if cost.cycles is None else cost.cycles / cost.rays,
+        words_per_ray=cost.words_read / cost.rays,
+        seconds=cost.seconds,
+        camera=CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up),
+        outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
+        wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
+    )
+
+
+def print_json(result: msgspec.Struct) -> None:
+    """Print a result on standard output.
+
+    Raises
+    ------
+    OutputError
+        Standard output cannot be written to, other than because nobody reads it any more.
+    """
+    text = msgspec.json.format(msgspec.json.encode(result), indent=2)
+    try:
+        sys.stdout.buffer.write(text + b"\n")
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OutputError(f"standard output: {error.strerror}") from error

@@ -1,0 +1,245 @@
+"""From an asset file to files for the hardware, in one call: load, fit, voxelize, build, write, preview."""
+
+from __future__ import annotations
+
+import os
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from voxrt import export, octree, sim, voxelize
+from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
+from voxrt.viewpoint import aim_camera
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from voxrt.octree import Dialect, Rom
+    from voxrt.sim import Camera, Engine, Frame
+    from voxrt.voxelize import ObjectReport, SceneWarning
+    from voxrt.voxelize.colliders import Geometry, Pow2
+    from voxrt.voxelize.load import UpAxis
+
+DEFAULT_DEPTH = 7
+"""Levels of the octree when neither they nor the voxels' size are given."""
+
+PREVIEW_SIZE = (640, 480)
+"""Width and height of a picture when nobody says, pixels."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Picture:
+    """A frame, the camera that saw it and the engine that rendered it."""
+
+    frame: Frame
+    camera: Camera
+    engine: Engine
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BuildResult:
+    """What a build made.
+
+    Attributes
+    ----------
+    rom
+        The octree memory with its materials and its place in the scene.
+    objects
+        How each object was voxelized, in authored order.
+    warnings
+        What the asset said and was not honoured as it stands.
+    outputs
+        The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
+    preview
+        The rendered picture, None when none was asked for.
+    seconds
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"write"``, ``"preview"``.
+    """
+
+    rom: Rom
+    objects: tuple[ObjectReport, ...]
+    warnings: tuple[SceneWarning, ...]
+    outputs: dict[str, Path] = field(default_factory=dict)
+    preview: Picture | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def solid_voxels(self) -> int:
+        """How many voxels are not empty."""
+        return octree.census(self.rom.octree).solid_voxels
+
+
+def build(
+    asset: str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
+    *,
+    depth: int | None = None,
+    voxel_size: float | None = None,
+    fill: Literal["solid", "surface"] = "solid",
+    geometry: Geometry = "auto",
+    pow2: Pow2 = "box",
+    up: UpAxis | None = None,
+    unit: float | None = None,
+    dialect: Dialect = "report",
+    preview: str | os.PathLike[str] | bool = False,
+    size: tuple[int, int] = PREVIEW_SIZE,
+    engine: Engine = "rtl",
+    threads: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> BuildResult:
+    """Build the octree memory of an asset, and write it with its manifest and its preview.
+
+    Parameters
+    ----------
+    asset
+        A glTF, OBJ, USD, STL or PLY file.
+    output
+        Folder for ``NAME.mem`` and ``NAME.json``, made when it is missing; None writes neither.
+    depth
+        Levels of the octree, 1 … 16: the scene's bounding cube gets 2**depth voxels a side. 7 when neither this nor
+        `voxel_size` is given.
+    voxel_size
+        Metres a voxel.
+    fill
+        ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps the shell.
+    geometry
+        ``"auto"`` takes an object's colliders where it has some, else its triangles; ``"render"`` always the
+        triangles; ``"collider"`` always colliders, the bounding box where an object has none.
+    pow2
+        ``"box"`` rounds box colliders up to powers of two voxels, ``"none"`` never.
+    up, unit
+        The up axis and the metres per unit, for formats that do not say.
+    dialect
+        How the memory's words spell a material.
+    preview
+        PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
+        ``NAME.preview.png`` in `output`.
+    threads
+        Threads for the native stages, 0 for one a core. The result does not depend on it.
+    progress
+        Called with each stage's name as it begins.
+
+    Raises
+    ------
+    AssetError
+        The asset cannot be honoured.
+    DoesNotFitError
+        The asset is sound but too large.
+    OutputError
+        A file cannot be written where it was asked for. Old files stay as they were.
+    SimulatorError
+        The preview cannot be rendered. The memory and the manifest are complete by then.
+    """
+    asset = Path(asset)
+    seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(name: str) -> Iterator[None]:
+        if progress is not None:
+            progress(name)
+        start = time.perf_counter()
+        yield
+        seconds[name] = time.perf_counter() - start
+
+    if output is not None:
+        check_folder(Path(output))
+    name = _text(asset.stem)
+    picture_file = None
+    if preview:
+        picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
+        check_folder(picture_file.parent)
+    with stage("load"):
+        scene = voxelize.load(asset, up=up, unit=unit)
+    with stage("fit"):
+        if depth is None and voxel_size is None:
+            depth = DEFAULT_DEPTH
+        grid = voxelize.fit_grid(scene, depth=depth, voxel_size=voxel_size, geometry=geometry, pow2=pow2)
+    with stage("voxelize"):
+        voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
+    with stage("octree"):
+        rom = octree.Rom(name, octree.build(voxelization.voxels), scene.materials, grid)
+    warnings = scene.warnings + voxelization.warnings
+    outputs: dict[str, Path] = {}
+    if output is not None:
+        settings: dict[str, str | int | float | bool | None] = {
+            "fill": fill,
+            "geometry": geometry,
+            "pow2": pow2,
+            "up": up,
+            "unit": unit,
+        }
+        with stage("write"), writing(Path(output)), uninterrupted():
+            files = export.write_rom(
+                Path(output),
+                rom,
+                dialect=dialect,
+                objects=voxelization.objects,
+                warnings=warnings,
+                seconds=seconds,
+                source=export.Source(_text(asset.name), settings),
+            )
+        outputs |= {"mem": files.mem, "manifest": files.manifest}
+    picture = None
+    if picture_file is not None:
+        with stage("preview"):
+            camera = aim_camera(rom, size)
+            picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
+            save_picture(picture.frame, picture_file)
+            outputs["preview"] = picture_file
+    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
+
+
+def _text(name: str) -> str:
+    """Give a file's name as text that can name other files: what is no text, or a backslash, becomes ``_``."""
+    text = os.fsencode(name).decode("utf-8", "replace")
+    return text.translate({0xFFFD: "_", ord("\\"): "_"})
+
+
+def render(
+    rom: Rom,
+    camera: Camera | None = None,
+    *,
+    size: tuple[int, int] = PREVIEW_SIZE,
+    engine: Engine = "rtl",
+    threads: int = 0,
+) -> Frame:
+    """Render a memory.
+
+    Parameters
+    ----------
+    rom
+        The memory and its materials.
+    camera
+        Where from; None for a three-quarter view of the whole scene.
+    size
+        Width and height, pixels.
+    engine
+        ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact model. Both give the same
+        pixels.
+    threads
+        Threads of the model, 0 for one a core.
+
+    Raises
+    ------
+    SimulatorError
+        The engine is not in this installation, or cannot hold the memory or the camera.
+    """
+    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, threads=threads)
+
+
+def save_picture(frame: Frame, path: Path) -> None:
+    """Write a frame as a PNG file, all of it or nothing.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+    """
+    check_folder(path.parent)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        sim.write_png(path, frame.colour)

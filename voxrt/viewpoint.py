@@ -1,0 +1,158 @@
+"""Where a camera stands when nobody says, or says only in part.
+
+All cameras made here are right-handed, right = look x up, so that text in a scene reads correctly. Registers are small
+integers; the camera is placed by the integers that the hardware will use, not by the real numbers they came from, so
+that the picture is framed as promised.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.octree import solid_bounds
+from voxrt.sim import Camera, frame_scene
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from voxrt.octree import Rom
+    from voxrt.sim.camera import Triple
+
+    Vector = NDArray[np.float64]
+
+_THREE_QUARTER = np.array((-0.62, -0.55, -1.0))
+"""The look of a camera in front of a scene (its front faces +z), a little to its right and above."""
+
+_SPREAD = 0.42
+"""Tangent of half the angle of view along the longer side of the picture."""
+
+_MARGIN = 0.92
+"""The part of the picture that the scene may fill."""
+
+_REGISTER = 2**15 - 1
+_DIRECTION = 2**20 - 1
+_UP = np.array((0.0, 1.0, 0.0))
+_BACK = np.array((0.0, 0.0, -1.0))
+
+
+class ViewpointError(ValueError):
+    """Camera registers that no camera can be derived from."""
+
+
+def aim_camera(
+    rom: Rom,
+    size: tuple[int, int],
+    *,
+    position: Triple | None = None,
+    look: Triple | None = None,
+    right: Triple | None = None,
+    up: Triple | None = None,
+) -> Camera:
+    """Complete a camera: what is given is kept, the rest frames the whole scene, upright and right-handed.
+
+    Parameters
+    ----------
+    rom
+        The scene.
+    size
+        Width and height of the picture, pixels.
+    position
+        1/16 voxel; without it the camera stands where the scene fills the picture.
+    look, right, up
+        Registers. `look` given alone is a direction, whose scale is chosen so that the angle of view is the default
+        one; given with `right` or `up` it is kept as it is. Without `look` a given position looks at the scene's
+        centre, and no position at all at the scene's front from a three-quarter view.
+
+    Raises
+    ------
+    ViewpointError
+        A register is zero where a direction is needed, or the registers lie in a plane and no position is given.
+    """
+    if position is None and (look, right, up) == (None, None, None):
+        return frame_scene(rom, size)
+    lowest, highest = np.array(solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3))
+    if look is None or right is None or up is None:
+        sight = _THREE_QUARTER
+        if position is not None:
+            towards = (lowest + highest) / 2 - np.array(position) / 16
+            sight = towards if towards.any() else sight
+        look, right, up = _complete(_sight(sight, look, right, up), size, look, right, up)
+    if position is None:
+        corners = np.array([[(lowest, highest)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
+        position = _stand_back(16 * corners, size, np.array((look, right, up), np.float64))
+    return Camera(position, look, right, up)
+
+
+def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:
+    """Tell the unit direction to look in: the given one, else the preferred one made square to what is given."""
+    if look is not None:
+        return _unit(look, "look")
+    if right is not None and up is not None:
+        return _unit(np.cross(up, right), "up x right")
+    given = up if right is None else right
+    axis = np.zeros(3) if given is None else _unit(given, "up" if right is None else "right")
+    return _unit(preferred - preferred @ axis * axis, "look")
+
+
+def _complete(
+    sight: Vector, size: tuple[int, int], look: Triple | None, right: Triple | None, up: Triple | None
+) -> tuple[Triple, Triple, Triple]:
+    """Give the missing registers the values of an upright right-handed camera that looks along `sight`."""
+    if right is not None:
+        across = _unit(right, "right")
+    elif up is not None:
+        across = _unit(np.cross(sight, up), "look x up")
+    else:
+        across = np.cross(sight, _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1]))
+        across = _unit(across, "look")
+    above = np.cross(across, sight)
+    pixel = _SPREAD / (max(size) / 2)  # the sine of one pixel, nearly
+    scale = min(_REGISTER / np.abs(sight).max(), _DIRECTION / (1 + 2 * _SPREAD))
+    given = up if right is None else right
+    if given is None:
+        step = pixel * scale
+        look = None  # alone it is a direction
+    else:
+        step = float(np.linalg.norm(given))
+        scale = min(scale, step / pixel)
+    return (
+        look or _register(sight * scale),
+        right or _register(across * step),
+        up or _register(above * step),
+    )
+
+
+def _stand_back(corners: Vector, size: tuple[int, int], registers: Vector) -> Triple:
+    """Place the camera (1/16 voxel) so that all `corners` (8, 3) are in the picture and touch its margin.
+
+    In the frame of the registers a corner p seen from q lies at (depth, column, row) = (p - q) R^-1, and is in the
+    picture when |column| <= W/2 depth and |row| <= H/2 depth: linear in q, solved side by side.
+    """
+    if abs(np.linalg.det(registers)) < 1e-9:
+        raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
+    depths, columns, rows = np.linalg.solve(registers.T, corners.T)
+    stand = []
+    for half, sides in ((size[0] / 2, columns), (size[1] / 2, rows)):
+        half_seen = _MARGIN * max(half, 0.5)
+        low, high = np.min(half_seen * depths - sides), np.min(half_seen * depths + sides)
+        stand.append(((low + high) / (2 * half_seen), (high - low) / 2))
+    (depth_x, column), (depth_y, row) = stand
+    x, y, z = np.floor(np.array((min(depth_x, depth_y), column, row)) @ registers + 0.5).astype(np.int64).tolist()
+    return (x, y, z)
+
+
+def _unit(vector: ArrayLike, name: str) -> Vector:
+    vector = np.asarray(vector, np.float64)
+    length = float(np.linalg.norm(vector))
+    if length < 1e-12:
+        raise ViewpointError(f"{name} has no direction; give registers that are not zero and not parallel")
+    return vector / length
+
+
+def _register(vector: Vector) -> Triple:
+    x, y, z = np.clip(np.floor(vector + 0.5), -_REGISTER, _REGISTER).astype(np.int64).tolist()
+    if x == y == z == 0:
+        raise ViewpointError("the given registers are too small or parallel to derive the others from; give all three")
+    return (x, y, z)
