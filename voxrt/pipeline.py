@@ -19,6 +19,8 @@ from voxrt.voxelize import AssetError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from numpy.typing import NDArray
+
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
     from voxrt.voxelize import ObjectReport, SceneWarning
@@ -234,7 +236,7 @@ def build(
         with stage("preview"):
             camera = aim_camera(rom, size)
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
-            save_picture(picture.frame, picture_file)
+            save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
     return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
 
@@ -298,8 +300,8 @@ def render(
     return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
 
 
-def save_picture(frame: Frame, path: Path) -> None:
-    """Write a frame as a PNG file, all of it or nothing.
+def save_picture(colour: NDArray[np.uint8], path: Path) -> None:
+    """Write a picture (uint8, shape (H, W, 3), sRGB) as a PNG file, all of it or nothing.
 
     Raises
     ------
@@ -311,4 +313,4 @@ def save_picture(frame: Frame, path: Path) -> None:
         raise OutputError(f"{path}: is a folder; name a file")
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        sim.write_png(path, frame.colour)
+        sim.write_png(path, colour)

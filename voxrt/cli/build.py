@@ -8,11 +8,9 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, pixels, png, whole
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, png, whole
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, warn
 from voxrt.cli.results import build_report, print_json
-
-Pixels = tuple[int, int]
 
 
 def build(
@@ -30,9 +28,9 @@ def build(
     time: Annotated[float | None, Parameter(metavar="SECONDS")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
     budget: Annotated[int | None, Parameter(converter=whole, metavar="WORDS")] = None,
-    board: Literal["pynq-z1"] | None = None,
+    board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
-    size: Annotated[Pixels, Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (640, 480),
+    size: Pixels = (640, 480),
     engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
@@ -93,6 +91,8 @@ def build(
             raise UsageError(f"{option} {value} is not a positive number of metres")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
+    if board is not None and board not in voxrt.BOARDS:
+        raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
     if budget is not None and budget < 1:
         raise UsageError(f"--budget {budget} is not a number of words")
     if time is not None and not abs(time) < float("inf"):

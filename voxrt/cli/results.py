@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Rom
     from voxrt.pipeline import BudgetFit, BuildResult, Picture
+    from voxrt.sim import Likeness
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -166,9 +168,24 @@ class DiffResult(msgspec.Struct, frozen=True):
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
 
 
+class CompareResult(msgspec.Struct, frozen=True):
+    """``voxrt compare --json``; null where nothing is seen that could be compared."""
+
+    silhouette_iou: float | None
+    depth_mean: float | None
+    depth_median: float | None
+    depth_95: float | None
+    """Depths in voxels."""
+    normal_cosine: float | None
+    normal_agreement: float | None
+    psnr: float | None
+    ssim: float | None
+    outputs: dict[str, str]
+
+
 def schema() -> dict[str, Any]:
     """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, RomInfo, DiffResult))
+    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, RomInfo, DiffResult, CompareResult))
     return definitions
 
 
@@ -246,6 +263,12 @@ def rom_info(rom: Rom) -> RomInfo:
             for number, material in enumerate(rom.materials)
         ],
     )
+
+
+def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
+    """Tell programs how like two pictures are."""
+    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
+    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})
 
 
 def print_json(result: msgspec.Struct) -> None:
