@@ -60,7 +60,7 @@ def test_usage(voxrt, arguments, said):
         (["build", "nothing.glb"], "nothing.glb: no such file"),
         (["build", "."], "unknown kind of file"),
         (["build", "folder.glb"], "folder.glb: is a folder"),
-        (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz, .obj, .stl, .ply"),
+        (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz"),
         (["build", "notes"], "unknown kind of file"),
         (["build", "broken.glb"], "broken.glb"),
         (["build", "broken.usda"], "broken.usda"),

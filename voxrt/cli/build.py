@@ -41,7 +41,7 @@ def build(
     Parameters
     ----------
     asset
-        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file.
+        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file, or a scene of some (.toml).
     output
         Folder to write to; made when it is missing.
     depth
