@@ -15,7 +15,7 @@ def public(names):
 
 
 def stubbed(body):
-    """Public names a stub's body defines, classes with what they hold; what exists for the type checker alone is not."""
+    """Public names of a stub, classes with what they hold, without those that only a type checker knows."""
     names = {}
     for node in body:
         if isinstance(node, ast.ClassDef) and "TypedDict" not in map(ast.unparse, node.bases):
