@@ -138,7 +138,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "use the exact model (--engine model)"
+            "render with --engine model"
         ) from error
     if config not in _rtl.CONFIGS:
         raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
@@ -155,8 +155,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
     ):
         if misfit:
             raise SimulatorError(
-                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; "
-                "use the exact model (--engine model)"
+                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
             )
     tracer.load(rom.octree.words)
     pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom))

@@ -190,7 +190,7 @@ int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool
         ColumnSpan spans[64];
         int lowest = INT_MAX, highest = INT_MIN, full_lo = 0, full_hi = w.top;
         for (int bit = 0; bit < 64; ++bit) {
-            const int x = cx + (bit & 7), y = cy + (bit >> 3);
+            const int x = cx + column_x(bit), y = cy + column_y(bit);
             ColumnSpan& span = spans[bit];
             if (x <= w.x1 && y <= w.y1)
                 span = solid.column(x, y);

@@ -28,65 +28,67 @@ struct TileResult {
 
 class TileOrder {
 public:
-    TileOrder() {
-        for (uint32_t i = 0; i < kBrickVoxels; ++i) {
-            x_[i] = uint8_t(compact(i));
-            y_[i] = uint8_t(compact(i >> 1));
-            z_[i] = uint8_t(compact(i >> 2));
-        }
-    }
-
     /// Orders the content of a tile (number `index`, at (tile_x, tile_y) in tiles).
     void order(const TileVoxels& tile, uint32_t index, int tile_x, int tile_y, TileResult& out) {
         for (int cube = 0; cube * kTileBricks < tile.height(); ++cube) {
             CubeRun run{morton(tile_x, tile_y, cube),      index, uint32_t(out.brick_codes.size()), 0,
                         uint32_t(out.octant_codes.size()), 0};
-            order_cube(tile, cube, run.code, out);
+            if (!read_cube(tile, cube * kTileBricks))
+                continue;
+            emit(tile, 3, 0, run.code, out);
             run.bricks_to = uint32_t(out.brick_codes.size());
             run.octants_to = uint32_t(out.octant_codes.size());
-            if (run.bricks_to > run.bricks_from || run.octants_to > run.octants_from)
-                out.runs.push_back(run);
+            out.runs.push_back(run);
         }
     }
 
 private:
-    static constexpr uint32_t compact(uint32_t i) { return (i & 1) | (i >> 2 & 2) | (i >> 4 & 4); }
-
-    void order_cube(const TileVoxels& tile, int cube, uint64_t code, TileResult& out) {
-        // full_[l]: for each octant of 8 << l voxels the material that fills it, else 0
-        bool any = false;
-        for (int i = 0; i < kBrickVoxels; ++i) {
-            const int column = y_[i] * kTileBricks + x_[i], k = cube * kTileBricks + z_[i];
-            const bool there = k < tile.height() && tile.column_used(column);
-            bricks_[i] = there ? tile.brick(column, k) : nullptr;
-            full_[0][i] = there ? tile.full(column, k) : 0;
-            any = any || bricks_[i] != nullptr || full_[0][i] != 0;
+    /// Reads the places of a cube in Morton order; false where it is empty.
+    bool read_cube(const TileVoxels& tile, int k) {
+        const int levels = std::min(kTileBricks, tile.height() - k);
+        uint32_t any = 0;
+        places_[0].fill(0);
+        for (int column = 0; column < kTileColumns; ++column) {
+            const uint32_t* places = tile.places(column, k);
+            uint32_t found = 0;
+            for (int z = 0; z < levels; ++z)
+                found |= places[z];
+            if (found == 0)
+                continue;
+            any |= found;
+            const size_t base = morton(column % kTileBricks, column / kTileBricks, 0);
+            for (int z = 0; z < levels; ++z)
+                places_[0][base | kAlongZ[z]] = places[z];
         }
-        if (!any)
-            return;
+        if (any == 0)
+            return false;
         for (int level = 1; level <= 3; ++level)
             for (int i = 0; i < kBrickVoxels >> 3 * level; ++i) {
-                const uint8_t* children = &full_[level - 1][8 * i];
-                bool equal = true;
+                const uint32_t* children = &places_[level - 1][8 * i];
+                uint32_t differ = 0;
                 for (int c = 1; c < 8; ++c)
-                    equal = equal && children[c] == children[0];
-                full_[level][i] = equal ? children[0] : 0;
+                    differ |= children[c] ^ children[0];
+                places_[level][i] = differ == 0 ? children[0] : kMixed;
             }
-        emit(tile, 3, 0, code, out);
+        return true;
     }
 
     void emit(const TileVoxels& tile, int level, int i, uint64_t code, TileResult& out) {
-        if (full_[level][i] != 0) {
+        const uint32_t place = places_[level][i];
+        if (place == 0)
+            return;
+        if (place < TileVoxels::kFirstBrick) {
             out.octant_codes.push_back(code);
             out.octant_levels.push_back(uint8_t(level + kBrickBits));
-            out.octant_materials.push_back(full_[level][i]);
+            out.octant_materials.push_back(uint8_t(place));
         } else if (level > 0) {
             for (int c = 0; c < 8; ++c)
                 emit(tile, level - 1, 8 * i + c, code << 3 | uint64_t(c), out);
-        } else if (bricks_[i] != nullptr) {
+        } else {
+            const OwnedBrick& brick = tile.brick(place);
             out.brick_codes.push_back(code);
-            out.brick_masks.push_back(morton_order(bricks_[i]->mask));
-            emit_materials(tile, *bricks_[i], out);
+            out.brick_masks.push_back(morton_order(brick.mask));
+            emit_materials(tile, brick, out);
         }
     }
 
@@ -111,13 +113,16 @@ private:
         out.brick_materials.push_back(0);
         out.brick_rows.push_back(int32_t(out.cells.size()));
         Cells& row = out.cells.emplace_back();
-        for (int i = 0; i < kBrickVoxels; ++i)
-            row[i] = cells[x_[i] + 8 * y_[i] + 64 * z_[i]];
+        for (int z = 0; z < kBrickSide; ++z)
+            for (int bit = 0; bit < 64; ++bit)
+                row[morton(column_x(bit), column_y(bit), z)] = cells[z * 64 + bit];
     }
 
-    uint8_t x_[kBrickVoxels], y_[kBrickVoxels], z_[kBrickVoxels]; // place of each Morton index
-    const OwnedBrick* bricks_[kBrickVoxels];
-    uint8_t full_[4][kBrickVoxels];
+    static constexpr std::array<uint16_t, 8> kAlongZ = {0, 4, 32, 36, 256, 260, 288, 292}; // morton(0, 0, z)
+    static constexpr uint32_t kMixed = 0xFFFF'FFFF; // stands for no single brick, and is not below kFirstBrick
+
+    /// By level, in Morton order: the place of a brick, and of 8, 64, 512 where they are all alike.
+    std::array<std::array<uint32_t, kBrickVoxels>, 4> places_;
 };
 
 } // namespace voxrt

@@ -72,24 +72,17 @@ public:
         return count(mask);
     }
 
-    /// The material that fills a place wholly, or 0.
-    uint8_t full(int column, int k) const {
-        const uint32_t place = table_[size_t(column) * height_ + k];
-        return place < kFirstBrick ? uint8_t(place) : 0;
-    }
+    /// What stands at the places of a column from place `k` on: a material below kFirstBrick (0 is empty), else
+    /// kFirstBrick plus the number of a brick.
+    const uint32_t* places(int column, int k) const { return &table_[size_t(column) * height_ + k]; }
+    const OwnedBrick& brick(uint32_t place) const { return bricks_[place - kFirstBrick]; }
 
-    /// The brick at a place, or null.
-    const OwnedBrick* brick(int column, int k) const {
-        const uint32_t place = table_[size_t(column) * height_ + k];
-        return place < kFirstBrick ? nullptr : &bricks_[place - kFirstBrick];
-    }
+    static constexpr uint32_t kFirstBrick = 256;
 
     bool column_used(int column) const { return used_ >> column & 1; }
     const Cells& cells(uint32_t row) const { return cells_[row]; }
 
 private:
-    static constexpr uint32_t kFirstBrick = 256;
-
     int64_t claim_in(uint32_t& place, const Slices& mask, uint8_t material, const Cells* cells) {
         OwnedBrick& brick = bricks_[place - kFirstBrick];
         Slices fresh;
