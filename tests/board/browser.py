@@ -75,7 +75,9 @@ class Browser:
             {"type": "pointerMove", "x": end[0], "y": end[1], "duration": 100},
             {"type": "pointerUp", "button": 0},
         ]
-        self._call("POST", f"{self._session}/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]})
+        self._call(
+            "POST", f"{self._session}/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]}
+        )
 
     def give_files(self, selector: str, paths: list[str]) -> None:
         found = self._call("POST", f"{self._session}/element", {"using": "css selector", "value": selector})
