@@ -70,6 +70,16 @@ _add_command(
     "Render a picture of a memory, pixel by pixel what the hardware shows.",
     "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
 )
+_add_command(
+    "serve",
+    "Show scenes live in the browser, until interrupted.",
+    "voxrt serve courtyard.mem dog.usda",
+)
+_add_command(
+    "upload",
+    "Let a running board show another scene.",
+    "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
+)
 
 
 def run(arguments: Sequence[str]) -> ExitCode:

@@ -86,9 +86,30 @@ class BuildReport(msgspec.Struct, frozen=True):
     """The preview; null when none was asked for."""
 
 
+class ServeResult(msgspec.Struct, frozen=True):
+    """``voxrt serve --json``, printed when the server listens."""
+
+    url: str
+    """The page's address, with the token where there is one."""
+    port: int
+    legacy_port: int | None
+
+
+class UploadResult(msgspec.Struct, frozen=True):
+    """``voxrt upload --json``."""
+
+    name: str
+    depth: int
+    words: int
+    crc32: int
+    """Of the words as the board read them back, little-endian bytes."""
+    written: bool
+    """False for a dry run."""
+
+
 def schema() -> dict[str, Any]:
     """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult))
+    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, ServeResult, UploadResult))
     return definitions
 
 
