@@ -131,8 +131,8 @@ def test_options_reach_their_stage(voxrt, folder):
     assert json.loads((folder / "house.json").read_bytes())["source"]["settings"]["up"] == "z"
     built("--unit", "0.01")
     assert json.loads((folder / "house.json").read_bytes())["world"]["voxel_size"] == pytest.approx(0.0775 / 32)
-    rounded = json.loads(voxrt("build", "dog.usda", "--depth", "7", "--json").out)
-    exact = json.loads(voxrt("build", "dog.usda", "--depth", "7", "--json", "--pow2", "none").out)
+    rounded = json.loads(voxrt("build", "dog.usda", "--json").out)
+    exact = json.loads(voxrt("build", "dog.usda", "--json", "--pow2", "none").out)
     assert rounded["voxels"] > exact["voxels"]
     assert rounded["words"] < exact["words"]
 
@@ -182,3 +182,12 @@ def test_a_target_that_is_a_folder(voxrt, folder):
     finished = voxrt("build", "house.obj", "--depth", "3")
     assert finished.code == 2
     assert "cannot be written" in finished.error
+
+
+def test_strict_makes_warnings_errors(voxrt, folder):
+    before = sorted(folder.iterdir())
+    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--strict")
+    assert finished.code == 3
+    assert finished.error.startswith("voxrt: error: dog.usda: ")
+    assert sorted(folder.iterdir()) == before
+    assert voxrt("build", "dog.usda", "--depth", "5", "--strict").code == 0

@@ -80,6 +80,8 @@ _add_command(
     "Let a running board show another scene.",
     "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
 )
+_add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
+_add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")
 
 
 def run(arguments: Sequence[str]) -> ExitCode:

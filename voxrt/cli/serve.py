@@ -13,8 +13,9 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.board_results import ServeResult
 from voxrt.cli.messages import summarize
-from voxrt.cli.results import ServeResult, print_json
+from voxrt.cli.results import print_json
 
 if TYPE_CHECKING:
     from voxrt.board.device import Device
