@@ -10,6 +10,7 @@ from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.render import Engine, EngineCheck, check, render
+from voxrt.sim.shading import Light, Shading
 
 __all__ = [
     "FACE_NONE",
@@ -18,8 +19,10 @@ __all__ = [
     "Engine",
     "EngineCheck",
     "Frame",
+    "Light",
     "Likeness",
     "RenderCost",
+    "Shading",
     "SimulatorError",
     "View",
     "camera_from_registers",
