@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.voxels import UNIT, dense
-from voxelize.shapes import MATERIALS, box_mesh, icosphere, scene_of
 
+from voxelize.shapes import MATERIALS, box_mesh, icosphere, scene_of
 from voxrt.voxelize import (
     BoxCollider,
     Grid,

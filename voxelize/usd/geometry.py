@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from voxrt.voxelize import shapes
+from voxrt.voxelize import primitives
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate_corners
 
@@ -126,7 +126,7 @@ def _check_topology(
         raise AssetError(path, problem, place=place, fix="export the mesh again")
 
 
-def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> shapes.Surface | None:
+def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitives.Surface | None:
     def measure(name: str) -> float:
         value = prim.GetAttribute(name).Get(time)
         if value is None or not 0 <= value < _FARTHEST:
@@ -139,15 +139,19 @@ def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> shapes.Surface | N
             raise AssetError(path, f"axis {value!r} is none of X, Y, Z", place=str(prim.GetPath()), fix="give one")
         return value
 
-    make: dict[str, Callable[[], shapes.Surface]] = {
-        "Cube": lambda: shapes.cube(measure("size")),
-        "Sphere": lambda: shapes.sphere(measure("radius")),
-        "Cylinder": lambda: shapes.cylinder(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Cylinder_1": lambda: shapes.cylinder(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Cone": lambda: shapes.cone(measure("radius"), measure("height"), axis()),
-        "Capsule": lambda: shapes.capsule(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Capsule_1": lambda: shapes.capsule(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Plane": lambda: shapes.plane(measure("width"), measure("length"), axis()),
+    make: dict[str, Callable[[], primitives.Surface]] = {
+        "Cube": lambda: primitives.cube(measure("size")),
+        "Sphere": lambda: primitives.sphere(measure("radius")),
+        "Cylinder": lambda: primitives.cylinder(measure("radius"), measure("radius"), measure("height"), axis()),
+        "Cylinder_1": lambda: primitives.cylinder(
+            measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()
+        ),
+        "Cone": lambda: primitives.cone(measure("radius"), measure("height"), axis()),
+        "Capsule": lambda: primitives.capsule(measure("radius"), measure("radius"), measure("height"), axis()),
+        "Capsule_1": lambda: primitives.capsule(
+            measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()
+        ),
+        "Plane": lambda: primitives.plane(measure("width"), measure("length"), axis()),
     }
     kind = str(prim.GetTypeName())
     return make[kind]() if kind in make else None
