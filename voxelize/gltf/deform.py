@@ -53,8 +53,9 @@ def morphed(
         moved = read_floats(document, target["POSITION"], here, {"VEC3"})
         if len(moved) != len(positions):
             raise document.error(here, f"moves {len(moved)} of {len(positions)} vertices")
-        positions = positions + weight * moved
-    return _finite(document, positions, place)
+        with np.errstate(over="ignore", invalid="ignore"):
+            positions = _finite(document, positions + weight * moved, place)
+    return positions
 
 
 def skinned(

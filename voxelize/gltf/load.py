@@ -86,9 +86,10 @@ def _objects(
         material = int(mesh.materials[0])
     collider = collider_around(mesh, seen.around) if seen.around is not None else seen.collider
     colliders = () if collider is None else (collider,)
-    farthest = np.abs(np.concatenate([mesh.positions, *map(collider_points, colliders)])).max(axis=0)
+    clouds = (mesh.positions, *map(collider_points, colliders))
+    farthest = max(float(max(-points.min(), points.max())) for points in clouds if len(points))
     with np.errstate(over="ignore", invalid="ignore"):
-        reach = np.abs(seen.transforms[:, :3, :3]) @ farthest + np.abs(seen.transforms[:, :3, 3])
+        reach = np.abs(seen.transforms[:, :3, :3]).sum(axis=2) * farthest + np.abs(seen.transforms[:, :3, 3])
     if not np.isfinite(reach).all():
         raise document.error(f"nodes[{seen.node}]", "the transform leaves the range of numbers")
     for at, transform in enumerate(seen.transforms):

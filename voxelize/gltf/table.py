@@ -52,7 +52,7 @@ def finish_meshes(
     used = {
         wears.keys[row]
         for (_, wears), faces in zip(dressed, plain, strict=True)
-        for row in np.unique(wears.rows[faces]).tolist()
+        for row in np.flatnonzero(np.bincount(wears.rows[faces])).tolist()
     }
     table, ids = make_table(document, used.union(others))
     chosen = _palette(document, dressed, painted, table)
