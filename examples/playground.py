@@ -1,4 +1,4 @@
-"""The scene of playground.toml, made in Python: ``python examples/playground.py`` builds it and saves its picture."""
+"""The scene of playground.toml, made in Python: ``python examples/playground.py`` builds and renders it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from functools import reduce
 
 import numpy as np
 
+import voxrt
+from voxrt import octree, voxelize
 from voxrt.voxelize import Scene, author
 from voxrt.voxelize.author import Solid, box, box_between, extrude, sphere
 
@@ -83,4 +85,8 @@ def playground() -> Scene:
 
 if __name__ == "__main__":
     scene = playground()
-    print(f"{len(scene.objects)} objects, {len(scene.materials) - 1} materials")
+    grid = voxelize.fit_grid(scene, depth=7)
+    voxels = voxelize.voxelize(scene, grid).voxels
+    rom = octree.Rom(scene.name, octree.build(voxels), scene.materials, grid)
+    frame = voxrt.render(rom, size=(640, 480))
+    print(f"{len(scene.objects)} objects, {rom.octree.blocks} blocks, {frame.cost.cycles:,} clocks a frame")
