@@ -112,28 +112,48 @@ def _palette(
         return [np.zeros(0, dtype=np.uint8) for _ in sizes]
     colours = np.concatenate([mean[0][faces] for mean, faces in zip(means, painted, strict=True) if mean is not None])
     areas = np.concatenate([_areas(one, faces) for one, faces in zip(unfinished, painted, strict=True)])
-    names: dict[str, int] = {}
+    labels: dict[tuple[str, bool], int] = {}
     owners = np.concatenate(
         [
-            np.array([names.setdefault(paint.name, len(names)) for paint in one.coat.paints])[one.coat.rows[faces]]
+            np.array([labels.setdefault((paint.name, paint.mirror), len(labels)) for paint in one.coat.paints])[
+                one.coat.rows[faces]
+            ]
             for one, faces in zip(unfinished, painted, strict=True)
             if one.coat is not None
         ]
     )
-    free = MATERIAL_LIMIT - (len(table.materials()) - 1)
+    ids = np.zeros(len(colours), dtype=np.uint8)
+    for mirror in sorted({mirror for _, mirror in labels}):
+        names = [name if kind == mirror else "" for name, kind in labels]
+        faces = np.array([kind == mirror for _, kind in labels])[owners]
+        ids[faces] = _entries(colours[faces], areas[faces], owners[faces], names, table, mirror=mirror)
+    return np.split(ids, np.cumsum(sizes)[:-1])
+
+
+def _entries(
+    colours: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    owners: NDArray[np.int64],
+    names: list[str],
+    table: MaterialTable,
+    *,
+    mirror: bool,
+) -> NDArray[np.uint8]:
+    """Append a palette of `colours` to `table`, each named after the paint it covers most of; return their ids."""
+    free = MATERIAL_LIMIT - (len(table) - 1)
     if free < 1:
         raise DoesNotFitError(
             f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
         )
     palette, rows = quantize(colours, areas, min(PALETTE_SIZE, free))
     by_row = np.zeros(len(palette), dtype=np.uint8)
-    labels = list(names)
     for row, (red, green, blue) in enumerate(palette.tolist()):
         here = rows == row
-        cover = np.bincount(owners[here], areas[here], minlength=len(labels))
-        name = f"{labels[int(cover.argmax())]} #{red:02x}{green:02x}{blue:02x}"
-        by_row[row] = table.id_of(("palette", red, green, blue), name, (red, green, blue))
-    return np.split(by_row[rows], np.cumsum(sizes)[:-1])
+        cover = np.bincount(owners[here], areas[here], minlength=len(names))
+        name = f"{names[int(cover.argmax())]} #{red:02x}{green:02x}{blue:02x}"
+        key = ("palette", red, green, blue, mirror)
+        by_row[row] = table.id_of(key, name, (red, green, blue), mirror=mirror)
+    return by_row[rows]
 
 
 def _areas(one: Unfinished, faces: NDArray[np.bool_]) -> NDArray[np.float64]:

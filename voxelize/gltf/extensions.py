@@ -88,4 +88,4 @@ def check_required(document: Document) -> None:
             raise document.error(f"extensionsRequired[{at}]", f"the extension {name[:60]} is not supported", fix)
     for name in dict.fromkeys(gltf.extensions_used):
         if name not in known:
-            document.warn("unknown-extension", f"the extension {name[:60]} was ignored")
+            document.notes.add("unknown-extension", f"the extension {name[:60]} was ignored")

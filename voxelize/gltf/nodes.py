@@ -115,25 +115,25 @@ def _roots(document: Document, parents: dict[int, int]) -> list[int]:
     gltf = document.gltf
     if gltf.scene is None and not gltf.scenes:
         if gltf.nodes:
-            document.warn("no-scene", "the file has no scene: all its root nodes are shown")
+            document.notes.add("no-scene", "the file has no scene: all its root nodes are shown")
         return [index for index in range(len(gltf.nodes)) if index not in parents]
     number = gltf.scene or 0
     scene = document.item(gltf.scenes, number, "scene", "scene")
     others = len(gltf.scenes) - 1
     if others:
         which = "the default scene" if gltf.scene is not None else "the first scene, as the file names no default,"
-        document.warn("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
+        document.notes.add("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
     for at, root in enumerate(scene.nodes):
         document.item(gltf.nodes, root, f"scenes[{number}].nodes[{at}]", "node")
     listed = dict.fromkeys(scene.nodes)
     if len(listed) != len(scene.nodes):
-        document.warn("repeated-root", "nodes that the scene lists twice are shown once")
+        document.notes.add("repeated-root", "nodes that the scene lists twice are shown once")
     # glTF allows roots only, but some exporters list the child of a helper node.
     inner = sum(root in parents for root in listed)
     if not inner:
         return list(listed)
     message = "nodes that the scene lists although they have a parent are shown where it puts them"
-    document.warn("not-a-root", message, inner)
+    document.notes.add("not-a-root", message, inner)
     below: set[int] = set()
     for index in _descendants(document, [index for index in range(len(gltf.nodes)) if index not in parents]):
         if index in parents and (parents[index] in listed or parents[index] in below):
@@ -172,7 +172,7 @@ def compose(
         raise document.error(f"{place}.rotation", f"a quaternion of length {length[wrong][0]:g}, it must be 1")
     uneven = np.abs(length - 1.0) > 1e-3
     if uneven.any():
-        document.warn("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
+        document.notes.add("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
     x, y, z, w = (rotation / length[:, None]).T
     transforms = np.tile(np.eye(4), (len(length), 1, 1))
     turn = [
