@@ -146,11 +146,11 @@ def _entries(
             f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
         )
     palette, rows = quantize(colours, areas, min(PALETTE_SIZE, free))
+    cover = np.bincount(rows.astype(np.int64) * len(names) + owners, areas, minlength=len(palette) * len(names))
+    most = cover.reshape(len(palette), len(names)).argmax(axis=1).tolist()
     by_row = np.zeros(len(palette), dtype=np.uint8)
     for row, (red, green, blue) in enumerate(palette.tolist()):
-        here = rows == row
-        cover = np.bincount(owners[here], areas[here], minlength=len(names))
-        name = f"{names[int(cover.argmax())]} #{red:02x}{green:02x}{blue:02x}"
+        name = f"{names[most[row]]} #{red:02x}{green:02x}{blue:02x}"
         key = ("palette", red, green, blue, mirror)
         by_row[row] = table.id_of(key, name, (red, green, blue), mirror=mirror)
     return by_row[rows]
@@ -159,6 +159,8 @@ def _entries(
 def _areas(one: Unfinished, faces: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Return the areas of some triangles, scaled to the mesh so that nothing leaves the range of numbers."""
     scale = float(np.abs(one.positions).max(initial=0.0)) or 1.0
-    a, b, c = (one.positions[one.triangles[faces, corner]] / scale for corner in range(3))
-    areas: NDArray[np.float64] = np.linalg.norm(np.cross(b - a, c - a), axis=1) * min(scale, 1e100) ** 2
+    corners = one.positions[one.triangles[faces]] / scale
+    along, across = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    dots = [np.einsum("ti,ti->t", p, q) for p, q in ((along, along), (across, across), (along, across))]
+    areas: NDArray[np.float64] = np.sqrt(np.maximum(dots[0] * dots[1] - dots[2] ** 2, 0.0)) * min(scale, 1e100) ** 2
     return areas
