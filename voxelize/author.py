@@ -127,7 +127,7 @@ class Author:
         if name in self._ids:
             raise AuthoringError(f"material {name!r} is declared twice")
         if number is not None and (not 1 <= number <= MATERIAL_LIMIT or number in self._materials):
-            taken = f", which is {self._materials[number].name!r}'s" if number in self._materials else ""
+            taken = f", which belongs to {self._materials[number].name!r}" if number in self._materials else ""
             raise AuthoringError(f"material {name!r} cannot have the id {number}{taken}; ids are 1 to {MATERIAL_LIMIT}")
         self._ids[name] = self._enter(Material(name, parse_colour(colour), mirror), number)
         return name

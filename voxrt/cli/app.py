@@ -70,6 +70,8 @@ _add_command(
     "Render a picture of a memory, pixel by pixel what the hardware shows.",
     "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
 )
+_add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
+_add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")
 
 
 def run(arguments: Sequence[str]) -> ExitCode:

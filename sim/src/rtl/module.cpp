@@ -6,8 +6,9 @@
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, through_port=False)
-//                             uint32, 1-D, report dialect. Through the design's load port, one word a clock, or
+//                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
 //                             straight into the simulated memory: the outcome is the same
+//     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
@@ -99,6 +100,20 @@ public:
         design_->load({words.data(), words.size()}, through_port);
     }
 
+    nb::object read_back(std::size_t count) {
+        if (count > memory_words())
+            throw std::invalid_argument("the memory has " + std::to_string(memory_words()) + " words, not " +
+                                        std::to_string(count));
+        auto* words = new std::vector<uint32_t>;
+        nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
+        {
+            Busy busy(*this);
+            nb::gil_scoped_release released;
+            *words = design_->read_back(count);
+        }
+        return nb::cast(nb::ndarray<nb::numpy, uint32_t>(words->data(), {words->size()}, owner));
+    }
+
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     uint32_t stall_seed) {
         const Limits& limits = design_->limits();
@@ -180,6 +195,7 @@ NB_MODULE(_rtl, m) {
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
+        .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "stall_seed"_a = 0);
 }

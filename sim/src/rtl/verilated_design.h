@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace voxrt::rtl {
 
@@ -33,22 +34,49 @@ public:
     void load(std::span<const uint32_t> words, bool through_port) override {
         enter();
         if (through_port) {
-            model_->load_valid_i = 1;
+            model_->access_i = 1;
+            model_->access_write_i = 1;
             for (std::size_t address = 0; address < words.size(); ++address) {
-                model_->load_address_i = static_cast<uint32_t>(address);
-                model_->load_word_i = words[address];
+                model_->access_address_i = static_cast<uint32_t>(address);
+                model_->access_word_i = words[address];
                 clock();
             }
-            model_->load_valid_i = 0;
+            model_->access_i = 0;
+            model_->access_write_i = 0;
             return;
         }
-        *variable<uint32_t>("TOP.voxrt_rtu.u_memory", "root_q") = memory_word(words[0]);
-        for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
-            const std::string scope = "TOP.voxrt_rtu.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram";
-            uint32_t* rows = variable<uint32_t>(scope, "data_q");
+        const std::string memory = "TOP.voxrt_rtu.u_memory";
+        *variable(memory, "root_q") = memory_word(words[0]);
+        if (limits_.banked) {
+            uint32_t* banks[8];
+            for (unsigned bank = 0; bank < 8; ++bank)
+                banks[bank] =
+                    variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
             for (std::size_t row = 0; row + 1 < words.size(); ++row)
-                rows[row] = memory_word(words[row + 1]);
+                banks[(row ^ row >> 3) & 7][row >> 3] = memory_word(words[row + 1]);
+        } else {
+            for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
+                uint32_t* rows =
+                    variable(memory + ".gen_private.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram", "data_q");
+                for (std::size_t row = 0; row + 1 < words.size(); ++row)
+                    rows[row] = memory_word(words[row + 1]);
+            }
         }
+    }
+
+    std::vector<uint32_t> read_back(std::size_t count) override {
+        enter();
+        std::vector<uint32_t> words;
+        model_->access_i = 1;
+        for (std::size_t address = 0; words.size() < count; ++address) {
+            model_->access_i = address < count;
+            model_->access_address_i = static_cast<uint32_t>(address);
+            clock();
+            if (model_->access_valid_o)
+                words.push_back(model_->access_word_o);
+        }
+        model_->access_i = 0;
+        return words;
     }
 
     FrameCost render(const FrameRequest& request, const FrameImage& image, const std::function<void()>& poll) override {
@@ -173,12 +201,13 @@ private:
         return word >> 3;
     }
 
-    template <class Value> Value* variable(const std::string& scope_name, const char* name) {
+    // A variable that the design marks public, wherever Verilator put it.
+    uint32_t* variable(const std::string& scope_name, const char* name) {
         const VerilatedScope* scope = context_.scopeFind(scope_name.c_str());
         VerilatedVar* found = scope ? scope->varFind(name) : nullptr;
-        if (!found)
-            throw std::logic_error("the verilated design has no " + scope_name + "." + name);
-        return static_cast<Value*>(found->datap());
+        if (!found || found->vltype() != VLVT_UINT32)
+            throw std::logic_error("the verilated design has no 32-bit variable " + scope_name + "." + name);
+        return static_cast<uint32_t*>(found->datap());
     }
 
     Limits limits_;
