@@ -136,7 +136,8 @@ class Document:
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
         folder = self.path.parent.resolve()
-        for name in (unquote(uri), uri):
+        # Some exporters forget to encode names, or write paths as Windows does.
+        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
             try:
                 target = (folder / Path(name)).resolve()
                 found = target.is_file()

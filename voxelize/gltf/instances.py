@@ -49,5 +49,5 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         parts.get("TRANSLATION", np.zeros((count, 3))),
         parts.get("ROTATION", np.tile((0.0, 0.0, 0.0, 1.0), (count, 1))),
         parts.get("SCALE", np.ones((count, 3))),
-        here,
+        f"{here}.ROTATION[{{}}]",
     )

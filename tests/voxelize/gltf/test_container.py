@@ -32,7 +32,13 @@ def test_a_glb_and_a_gltf_with_inline_data_are_the_same(suffix, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("uri", "file"), [("data.bin", "data.bin"), ("a%20b/c.bin", "a b/c.bin"), ("x%41.bin", "x%41.bin")]
+    ("uri", "file"),
+    [
+        ("data.bin", "data.bin"),
+        ("a%20b/c.bin", "a b/c.bin"),
+        ("x%41.bin", "x%41.bin"),
+        ("folder\\data.bin", "folder/data.bin"),
+    ],
 )
 def test_files_beside_the_asset_are_read(uri, file, tmp_path):
     path, data = with_uri(tmp_path, uri)
