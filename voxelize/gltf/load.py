@@ -96,6 +96,8 @@ def _objects(
         material = int(mesh.materials[0])
     collider = collider_around(mesh, seen.around) if seen.around is not None else seen.collider
     colliders = () if collider is None else (collider,)
+    if colliders and (mesh.materials != material).any():
+        document.notes.add("collider-material", "colliders of objects with several materials took the first of them")
     clouds = (mesh.positions, *map(collider_points, colliders))
     farthest = max(float(max(-points.min(), points.max())) for points in clouds if len(points))
     with np.errstate(over="ignore", invalid="ignore"):

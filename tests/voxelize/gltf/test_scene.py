@@ -227,6 +227,7 @@ def test_voxrt_collider_stands_in_for_the_mesh(tmp_path):
     assert isinstance(mesh, MeshCollider)
     assert mesh.triangles.tolist() == [[0, 1, 2], [1, 2, 3], [3, 4, 5]]
     assert {scene.materials[thing.collider_material].name for thing in scene.objects} == {"red"}
+    assert kinds(scene)["collider-material"] == 4
 
 
 @pytest.mark.parametrize(
