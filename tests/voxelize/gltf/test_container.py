@@ -113,7 +113,7 @@ JSON = b'{"asset":{"version":"2.0"}}     '
         (b'{"a', r"input data was truncated"),
         (b'{"asset":{"version":"2.0","generator":"\xa1"}}', r"byte 39: the JSON is not UTF-8"),
         (b'{"asset":{"version":"2.0"},"nodes":[{"name":"\xa1"}]}', r"byte 45: the JSON is not UTF-8"),
-        (b'{"asset":{"version":"2.0"},"nodes":[{"name":"\\ud800"}]}', r"JSON is malformed"),
+        (b'{"asset":{"version":"2.0"},"nodes":[{"name":"\\ud800"}]}', r"truncated|malformed"),
         (b"\x00\x01", r"JSON is malformed"),
         (b"", r"input data was truncated"),
         (b"\xef\xbb\xbf" + JSON, r"has no triangles to voxelize"),
