@@ -11,6 +11,7 @@ from voxrt.voxelize.gltf.appearance import dress, find_variant
 from voxrt.voxelize.gltf.colliders import collider_around, collider_points
 from voxrt.voxelize.gltf.document import Document
 from voxrt.voxelize.gltf.extensions import check_required
+from voxrt.voxelize.gltf.extras import refuse_misplaced
 from voxrt.voxelize.gltf.materials import number_materials
 from voxrt.voxelize.gltf.nodes import place_nodes
 from voxrt.voxelize.gltf.shown import Stage
@@ -53,6 +54,7 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     """
     document = Document(path)
     check_required(document)
+    refuse_misplaced(document)
     document.gltf = posed(document, time)
     stage = Stage(document, place_nodes(document), find_variant(document, variants))
     shown = list(stage.shown())

@@ -258,6 +258,17 @@ def test_properties_in_the_wrong_place_are_refused(tmp_path):
         load(writer.save(tmp_path / "a.gltf"))
 
 
+@pytest.mark.parametrize("array", ["scenes", "meshes"])
+def test_properties_on_scenes_and_meshes_are_refused(array, tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json[array][0]["extras"] = {"voxrt_collider": "box"}
+    with pytest.raises(
+        AssetError, match=rf"{array}\[0\]\.extras: voxrt's properties belong on nodes and materials; move"
+    ):
+        load(writer.save(tmp_path / "a.gltf"))
+
+
 @pytest.mark.parametrize("extras", [None, 3, "voxrt_", ["voxrt_collider"], {"other": {"voxrt_collider": 3}}])
 def test_extras_of_others_are_left_alone(extras, tmp_path):
     writer = two_coloured()
