@@ -41,23 +41,36 @@ HOUSE = [
         ),
     ),
 ]
-DOG_PALETTE = {"fur": (214, 150, 84), "ears": (120, 72, 40), "nose": (40, 36, 40), "collar": (220, 50, 50)}
-# Name, material, centre, size: x to the right, y away, z up; the dog looks at the viewer (-y).
+DOG_PALETTE = {
+    "fur": (236, 170, 92),
+    "ears": (150, 92, 56),
+    "nose": (48, 42, 48),
+    "paws": (255, 244, 226),
+    "collar": (240, 60, 70),
+}
+# Name, material, lowest and highest corner: x to the right, y away, z up; the dog looks at the viewer (-y). Most
+# sides are a little short of powers of two.
 DOG = [
-    ("nose", "nose", (0, -58, 62), (7, 5, 7)),
-    ("left_eye", "nose", (-9, -44, 74), (5, 5, 5)),
-    ("right_eye", "nose", (9, -44, 74), (5, 5, 5)),
-    ("collar", "collar", (0, -24, 54), (28, 8, 22)),
-    ("snout", "fur", (0, -50, 60), (14, 14, 13)),
-    ("head", "fur", (0, -31, 68), (30, 25, 27)),
-    ("left_ear", "ears", (-17, -29, 73), (6, 12, 25)),
-    ("right_ear", "ears", (17, -29, 73), (6, 12, 25)),
-    ("body", "fur", (0, 6, 42), (31, 60, 27)),
-    ("left_fore_leg", "fur", (-11, -17, 15), (9, 11, 30)),
-    ("right_fore_leg", "fur", (11, -17, 15), (9, 11, 30)),
-    ("left_hind_leg", "fur", (-11, 29, 15), (9, 12, 30)),
-    ("right_hind_leg", "fur", (11, 29, 15), (9, 12, 30)),
-    ("tail", "ears", (0, 40, 60), (7, 7, 30)),
+    ("nose", "nose", (-2, -32, 28), (1.5, -30.25, 31.5)),
+    ("left_eye", "nose", (-6, -24, 33), (-4.25, -22.25, 34.75)),
+    ("right_eye", "nose", (4, -24, 33), (5.75, -22.25, 34.75)),
+    ("collar", "collar", (-8, -10, 24), (7.5, -8.25, 31.5)),
+    ("snout", "paws", (-4, -32, 24), (3.5, -24.5, 31.5)),
+    ("head", "fur", (-8, -24, 24), (7.5, -8.5, 39.5)),
+    ("left_ear", "ears", (-8, -16, 40), (-4.5, -12.5, 47.5)),
+    ("right_ear", "ears", (4, -16, 40), (7.5, -12.5, 47.5)),
+    ("body", "fur", (-8, -8, 16), (7.5, 23.5, 31.5)),
+    *(
+        part
+        for side, x in (("left", -8), ("right", 4))
+        for end, y in (("fore", -8), ("hind", 20))
+        for part in (
+            (f"{side}_{end}_paw", "paws", (x, y, 0), (x + 3.5, y + 3.5, 3.5)),
+            (f"{side}_{end}_leg", "fur", (x, y, 0), (x + 3.5, y + 3.5, 15.5)),
+        )
+    ),
+    ("tail", "fur", (-2, 24, 28), (1.5, 27.5, 31.5)),
+    ("tail_tip", "ears", (-2, 28, 28), (1.5, 32, 43.5)),
 ]
 PLANET_PALETTE = {
     "cream": (250, 224, 176),

@@ -90,7 +90,7 @@ def write_obj(path: Path, parts: list[Part], palette: Palette) -> None:
 def write_usda(
     path: Path, boxes: list[tuple[str, str, tuple[float, ...], tuple[float, ...]]], palette: Palette
 ) -> None:
-    """Write USD text, centimetres and z up: cubes (name, material, centre, size) that are physics box colliders."""
+    """Write USD text, centimetres and z up: cubes from corner to corner, physics box colliders."""
     lines = [
         "#usda 1.0",
         "(",
@@ -121,7 +121,9 @@ def write_usda(
             "        }",
         ]
     lines += ["    }"]
-    for name, material, centre, size in boxes:
+    for name, material, lowest, highest in boxes:
+        centre = [(low + high) / 2 for low, high in zip(lowest, highest, strict=True)]
+        size = [high - low for low, high in zip(lowest, highest, strict=True)]
         lines += [
             "",
             f'    def Cube "{name}" (',

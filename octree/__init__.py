@@ -4,7 +4,8 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.octree.build import build, from_dense
+from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
+from voxrt.octree.build import build, from_dense, from_points
 from voxrt.octree.census import Census, census
 from voxrt.octree.decode import decode
 from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
@@ -14,27 +15,35 @@ from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
+from voxrt.octree.vox import read_vox
 
 __all__ = [
+    "BOARDS",
     "DIALECTS",
     "MAX_DEPTH",
     "Census",
     "Dialect",
     "Difference",
+    "Fit",
     "Leaves",
     "Octree",
     "Rom",
     "RomError",
     "build",
     "census",
+    "coarsen",
     "count_in_box",
     "decode",
     "detect_dialect",
     "diff",
     "encode",
+    "fit",
     "from_dense",
+    "from_points",
     "leaves",
     "material_at",
+    "read_vox",
+    "share",
     "solid_bounds",
     "to_dense",
 ]

@@ -1,5 +1,5 @@
 // Follows rays through the octree: a ring of eight stages that holds eight rays; every clock one of them reads one
-// octree word.
+// octree word. A memory that takes longer than two clocks adds a stage and a ray a clock, before stage 1.
 //
 //   stage     work                                                                          state kept by slot
 //   0 fetch   the memory takes the address; far planes of the cell                          corner, size
@@ -27,7 +27,8 @@ module voxrt_lane
   parameter  int unsigned MaxDepth     = 10,
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned BlockBits    = 12,
-  parameter  int unsigned TagBits      = 6,
+  parameter  int unsigned TagBits      = 8,
+  parameter  int unsigned MemoryClocks = 2,
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
   localparam int unsigned TimeBits     = DistanceBits + WeightBits,
   localparam int unsigned PayloadBits  = payload_bits(BlockBits)
@@ -67,31 +68,36 @@ module voxrt_lane
   output logic                           bad_pointer_o,
   output logic                           step_limit_o
 );
-  localparam int unsigned Stages = 8;
-  localparam int unsigned SlotBits = $clog2(Stages);
+  // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
+  localparam int unsigned Extra = MemoryClocks - 2;
+  localparam int unsigned Slots = 8 + Extra;
+  localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
 
-  // The ray in stage s has slot first_slot_q - s.
-  logic [SlotBits-1:0] first_slot_q;
-  logic [SlotBits-1:0] slot[Stages];
+  // Which slot is in which stage.
+  logic [SlotBits-1:0] slot[8];
+  logic [SlotBits-1:0] slot_q[Slots];
 
-  always_comb for (int unsigned s = 0; s < Stages; s++) slot[s] = first_slot_q - SlotBits'(s);
+  always_ff @(posedge clk_i) begin
+    for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= slot_q[(s+Slots-1)%Slots];
+    if (!rst_ni) for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= SlotBits'(s);
+  end
 
-  always_ff @(posedge clk_i) first_slot_q <= rst_ni ? first_slot_q + 1'b1 : '0;
+  always_comb for (int unsigned s = 0; s < 8; s++) slot[s] = slot_q[s+Extra];
 
   // State by slot.
-  logic        [  WeightBits-1:0] weight_x_q[Stages], weight_y_q[Stages], weight_z_q[Stages];
-  logic        [             2:0] mirrored_q[Stages];
-  logic        [             2:0] dead_q    [Stages];
-  logic        [     TagBits-1:0] tag_q     [Stages];
-  logic signed [    TimeBits-1:0] key_time_q[Stages];
-  face_e                          key_face_q[Stages];
-  logic        [    MaxDepth-1:0] corner_x_q[Stages], corner_y_q[Stages], corner_z_q[Stages];
-  logic        [    MaxDepth-1:0] size_q    [Stages];
-  logic        [   BlockBits-1:0] stack_q   [Stages * 2 ** LevelBits];
+  logic        [  WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
+  logic        [             2:0] mirrored_q[Slots];
+  logic        [             2:0] dead_q    [Slots];
+  logic        [     TagBits-1:0] tag_q     [Slots];
+  logic signed [    TimeBits-1:0] key_time_q[Slots];
+  face_e                          key_face_q[Slots];
+  logic        [    MaxDepth-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
+  logic        [    MaxDepth-1:0] size_q    [Slots];
+  logic        [   BlockBits-1:0] stack_q   [2 ** (SlotBits + LevelBits)];
 
   // There is a ray in this stage that has not ended.
-  logic [Stages-1:0] active_q;
+  logic [Slots-1:0] active_q;
 
   // 0 fetch, 1 wait: far planes.
   logic [BlockBits-1:0] block0_q;
@@ -168,8 +174,8 @@ module voxrt_lane
     block3_q       <= mem_word_i[BlockBits-1:0];
     material3_q    <= leaf && !bad_pointer ? mem_word_i[7:0] : '0;
     child_level3_q <= level_of(size2_q >> 1);
-    bad_pointer_q  <= active_q[2] && mem_ack_i && bad_pointer;
-    step_limit_q   <= active_q[2] && mem_ack_i && step_limit;
+    bad_pointer_q  <= active_q[2+Extra] && mem_ack_i && bad_pointer;
+    step_limit_q   <= active_q[2+Extra] && mem_ack_i && step_limit;
   end
 
   assign bad_pointer_o = bad_pointer_q;
@@ -292,8 +298,8 @@ module voxrt_lane
   logic [BlockBits-1:0] block7;
   logic [2:0]           octant7;
 
-  assign ends     = active_q[7] && ended7_q;
-  assign starts   = ray_valid_i && !ray_resolved_i && take_ready_i && (ends || !active_q[7]);
+  assign ends     = active_q[7+Extra] && ended7_q;
+  assign starts   = ray_valid_i && !ray_resolved_i && take_ready_i && (ends || !active_q[7+Extra]);
   assign resolves = ray_valid_i && ray_resolved_i && take_ready_i && !ends;
   assign top_size = world_i[MaxDepth:1];
 
@@ -314,7 +320,7 @@ module voxrt_lane
   end
 
   always_ff @(posedge clk_i) begin
-    active_q  <= rst_ni ? {active_q[6:0], starts || (active_q[7] && !ends)} : '0;
+    active_q  <= rst_ni ? {active_q[Slots-2:0], starts || (active_q[7+Extra] && !ends)} : '0;
     block0_q  <= block7;
     octant0_q <= octant7;
 

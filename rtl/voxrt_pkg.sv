@@ -61,4 +61,9 @@ package voxrt_pkg;
     return block_bits > 9 ? block_bits : 9;
   endfunction
 
+  // From an octree address to its word.
+  function automatic int unsigned memory_clocks(bit banked);
+    return banked ? 5 : 2;
+  endfunction
+
 endpackage

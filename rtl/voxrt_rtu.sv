@@ -14,6 +14,7 @@ module voxrt_rtu
   parameter  int unsigned MaxDepth     = 10,
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned BlockBits    = 12,
+  parameter  bit          Banked       = 1'b0,
   localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
 ) (
   input  logic                           clk_i,
@@ -29,9 +30,12 @@ module voxrt_rtu
   input  logic        [    SizeBits-1:0] height_i,
   input  logic        [   DepthBits-1:0] depth_i,             // 1 .. MaxDepth
   // Octree memory, see voxrt_octree_memory.
-  input  logic                           load_valid_i,
-  input  logic        [            31:0] load_address_i,
-  input  logic        [            31:0] load_word_i,
+  input  logic                           access_i,
+  input  logic                           access_write_i,
+  input  logic        [            31:0] access_address_i,
+  input  logic        [            31:0] access_word_i,
+  output logic                           access_valid_o,
+  output logic        [            31:0] access_word_o,
   // Material table, see voxrt_shader.
   input  logic                           table_write_i,
   input  material_t                      table_material_i,
@@ -216,7 +220,8 @@ module voxrt_rtu
       .MaxDepth    (MaxDepth),
       .PositionBits(PositionBits),
       .BlockBits   (BlockBits),
-      .TagBits     (TagBits)
+      .TagBits     (TagBits),
+      .MemoryClocks(memory_clocks(Banked))
     ) u_lane (
       .clk_i,
       .rst_ni,
@@ -268,12 +273,17 @@ module voxrt_rtu
 
   voxrt_octree_memory #(
     .Lanes    (Lanes),
-    .BlockBits(BlockBits)
+    .BlockBits(BlockBits),
+    .Banked   (Banked)
   ) u_memory (
     .clk_i,
-    .load_valid_i,
-    .load_address_i,
-    .load_word_i,
+    .rst_ni,
+    .access_i,
+    .access_write_i,
+    .access_address_i,
+    .access_word_i,
+    .access_valid_o,
+    .access_word_o,
     .root_o  (root),
     .read_i  (read),
     .block_i (block),

@@ -4,8 +4,8 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.sim.bounds import solid_bounds
 from voxrt.sim.camera import Camera, camera_from_registers, frame_box, frame_scene, look_at, pixel_directions
+from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
@@ -14,18 +14,22 @@ from voxrt.sim.render import Engine, EngineCheck, check, render
 __all__ = [
     "FACE_NONE",
     "Camera",
+    "Comparison",
     "Engine",
     "EngineCheck",
     "Frame",
+    "Likeness",
     "RenderCost",
     "SimulatorError",
+    "View",
     "camera_from_registers",
     "check",
+    "compare",
+    "comparison_sheet",
     "frame_box",
     "frame_scene",
     "look_at",
     "pixel_directions",
     "render",
-    "solid_bounds",
     "write_png",
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim.bounds import solid_bounds
+from voxrt.octree import solid_bounds
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -113,8 +113,7 @@ def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
     size
         Columns and rows of the frame.
     """
-    side = 1 << rom.octree.depth
-    minimum, maximum = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, side))
+    minimum, maximum = solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3)
     return frame_box(minimum, maximum, size)
 
 

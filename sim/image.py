@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PIL import Image
 
+from voxrt.export.atomic import write_atomically
+
 if TYPE_CHECKING:
+    import os
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -29,15 +32,6 @@ def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
     OSError
         The file cannot be written.
     """
-    target = Path(path)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".tmp")
-    unfinished = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            Image.fromarray(colour, "RGB").save(file, format="PNG")
-        umask = os.umask(0)
-        os.umask(umask)
-        unfinished.chmod(0o666 & ~umask)  # mkstemp makes files that only their owner reads
-        unfinished.replace(target)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    encoded = io.BytesIO()
+    Image.fromarray(colour, "RGB").save(encoded, format="PNG")
+    write_atomically(Path(path), encoded.getvalue())

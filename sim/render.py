@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT
+from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 
@@ -22,10 +21,8 @@ if TYPE_CHECKING:
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
-RTL_POSITION_LIMIT = 1 << 16
-"""Camera positions of the ray tracer lie below this, in 1/16 voxel, on either side of zero."""
-
 _FRAME_LIMIT = 1 << 14
+_RTL_FRAME_LIMIT = (1 << 12) - 1
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -103,7 +100,7 @@ def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
-        _palette(rom), _registers(camera), size[0], size[1], threads
+        palette_of(rom), _registers(camera), size[0], size[1], threads
     )
     return Frame(
         colour=pixels["colour"],
@@ -115,27 +112,33 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int,
 
 def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, started: float) -> Frame:
     try:
-        _rtl = import_module("voxrt.sim._rtl")
+        from voxrt.sim import _rtl  # noqa: PLC0415 - not built on every platform
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "use the engine 'model'"
+            "render with --engine model"
         ) from error
     if config not in _rtl.CONFIGS:
         raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
-    if max(abs(value) for value in camera.position) >= RTL_POSITION_LIMIT:
-        raise SimulatorError(
-            f"the camera at {tuple(value / 16 for value in camera.position)} voxels is outside the ray tracer's "
-            f"range of ±{RTL_POSITION_LIMIT // 16}; move it closer or use the engine 'model'"
-        )
     tracer = _rtl.Tracer(config)
-    if len(rom.octree.words) > tracer.memory_words:
-        raise SimulatorError(
-            f"{rom.name} has {len(rom.octree.words)} words and does not fit the {tracer.memory_words} of "
-            f"configuration {config!r}; build it with a smaller depth or use the engine 'model'"
-        )
+    place = tuple(value / POSITION_UNITS for value in camera.position)
+    for misfit, problem in (
+        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
+        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
+        (
+            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
+            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
+        ),
+        (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
+    ):
+        if misfit:
+            raise SimulatorError(
+                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
+            )
     tracer.load(rom.octree.words)
-    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, _palette(rom))
+    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom))
+    if pixels["errors"]:
+        raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
     return Frame(
         colour=pixels["colour"],
         material=pixels["material"],
@@ -163,7 +166,8 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
     return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
 
 
-def _palette(rom: Rom) -> NDArray[np.uint8]:
+def palette_of(rom: Rom) -> NDArray[np.uint8]:
+    """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
     palette = np.zeros((256, 3), dtype=np.uint8)
     palette[: len(rom.materials)] = [material.colour for material in rom.materials]
     return palette

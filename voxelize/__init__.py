@@ -17,9 +17,11 @@ from voxrt.voxelize.scene import (
     Material,
     Mesh,
     MeshCollider,
+    PointLight,
     Scene,
     SceneObject,
     SphereCollider,
+    Viewpoint,
 )
 from voxrt.voxelize.voxelize import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
@@ -38,10 +40,12 @@ __all__ = [
     "Mesh",
     "MeshCollider",
     "ObjectReport",
+    "PointLight",
     "Scene",
     "SceneObject",
     "SceneWarning",
     "SphereCollider",
+    "Viewpoint",
     "Voxelization",
     "Voxels",
     "fit_grid",

@@ -23,6 +23,7 @@ _LOADERS = {
     ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
     ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
     ".usdz": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".toml": ("voxrt.voxelize.scene_toml", "load_scene_toml", set()),
     ".obj": ("voxrt.voxelize.obj", "load_obj", {"up", "unit"}),
     ".stl": ("voxrt.voxelize.stl", "load_stl", {"up", "unit"}),
     ".ply": ("voxrt.voxelize.ply", "load_ply", {"up", "unit"}),
@@ -52,8 +53,8 @@ def load(
     Parameters
     ----------
     path
-        A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file; the case
-        of the suffix does not matter.
+        A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
+        scene written by hand, ``.toml``; the case of the suffix does not matter.
     up
         The file's up axis, for formats that do not say (OBJ, STL, PLY).
     unit

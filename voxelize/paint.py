@@ -6,7 +6,7 @@ gives each triangle one colour.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
 
 _FINEST = 32
-_MOST_SAMPLES = 1 << 23
+_MOST_SAMPLES = 1 << 21
+_MANY_PARTS = 4
 _CHUNK = 1 << 16
 
 
@@ -136,6 +137,7 @@ def mean_colours(coat: Coat) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     while int((parts.astype(np.int64) ** 2).sum()) > _MOST_SAMPLES and parts.max() > 1:
         parts = np.minimum(parts, parts.max() // 2)
     cutoffs = np.array([paint.cutoff for paint in coat.paints])
+    rough = replace(coat, paints=tuple(_unfiltered(paint) for paint in coat.paints))
     for n in np.unique(parts[parts > 0]).tolist():
         weights = _centroids(n)
         members = np.flatnonzero(parts == n)
@@ -143,12 +145,21 @@ def mean_colours(coat: Coat) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         for start in range(0, len(members), step):
             some = members[start : start + step]
             every = np.repeat(some, len(weights))
-            found = sample(coat, every, np.tile(weights, (len(some), 1))).reshape(len(some), len(weights), 4)
+            found = sample(coat if n < _MANY_PARTS else rough, every, np.tile(weights, (len(some), 1))).reshape(
+                len(some), len(weights), 4
+            )
             kept = found[:, :, 3] >= cutoffs[coat.rows[some]][:, None]
             solid[some] = kept.any(axis=1)
             share = kept / np.maximum(kept.sum(axis=1, keepdims=True), 1)
             colours[some] = np.einsum("ns,nsc->nc", share, found[:, :, :3])
     return colours, solid
+
+
+def _unfiltered(paint: Paint) -> Paint:
+    """Return `paint` without filtering, which the mean of many samples does not need."""
+    if paint.texture is None:
+        return paint
+    return replace(paint, texture=replace(paint.texture, nearest=True))
 
 
 def _parts(coat: Coat) -> NDArray[np.int32]:

@@ -1,7 +1,8 @@
 """Many colours to few: the palette of a scene whose surfaces are painted.
 
-The choice is made by Pillow's median cut in sRGB, which is near enough to what the eye tells apart, and refined by
-k-means; each entry is then the mean, in linear light, of the colours it stands for.
+The choice is Pillow's, in sRGB, which is near enough to what the eye tells apart: colours as far from each other as can
+be, refined by k-means. (Its median cut misses clusters when entries are few.) Each entry is then the mean, in linear
+light, of the colours it stands for.
 """
 
 from __future__ import annotations
@@ -16,8 +17,11 @@ from voxrt.voxelize.colour import srgb_from_linear
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_PIXELS = 1 << 16
-_ROUNDS = 8
+_PIXELS = 1 << 14
+_UNTIL_CHANGES = 1
+# Beyond this many colours, k-means sees them at 5 bits a channel: it is slow, and entries lie farther apart than that.
+_DISTINCT = 1 << 13
+_COARSE, _MIDDLE = np.uint32(0xF8F8F8), np.uint32(0x040404)
 
 
 def quantize(
@@ -41,9 +45,12 @@ def quantize(
     palette, rows
         uint8, shape (K, 3), sRGB, in ascending order; and int32, shape (N,): each colour's entry.
     """
-    packed, inverse = np.unique(_packed(srgb_from_linear(colours)), return_inverse=True)
+    every = _packed(srgb_from_linear(colours))
+    packed, inverse = np.unique(every, return_inverse=True)
     if len(packed) <= count:
         return _unpacked(packed), inverse.astype(np.int32)
+    if len(packed) > _DISTINCT:
+        packed, inverse = np.unique(every & _COARSE | _MIDDLE, return_inverse=True)
     cover = np.bincount(inverse, weights).astype(np.float64)
     groups = _grouped(_unpacked(packed), cover, count)[inverse]
     total = np.maximum(np.bincount(groups, weights), np.finfo(np.float64).tiny)
@@ -68,8 +75,8 @@ def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: i
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]
-    image = Image.fromarray(np.ascontiguousarray(pixels), "RGB")
-    reduced = image.quantize(count, Image.Quantize.MEDIANCUT, kmeans=_ROUNDS, dither=Image.Dither.NONE)
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    reduced = image.quantize(count, Image.Quantize.MAXCOVERAGE, kmeans=_UNTIL_CHANGES, dither=Image.Dither.NONE)
     first = np.cumsum(repeats) - repeats
     _, groups = np.unique(np.asarray(reduced)[0, first], return_inverse=True)
     return groups.reshape(-1)

@@ -135,6 +135,30 @@ class SceneObject:
     collider_material: int = 1
 
 
+@dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """Where an author wants the scene seen from.
+
+    Attributes
+    ----------
+    eye, target
+        Metres, scene frame: where the camera stands and what is in the middle of its picture.
+    field_of_view
+        Degrees from the picture's top to its bottom; None where the author does not say.
+    """
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    field_of_view: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PointLight:
+    """Where an author wants light to come from: `position` in metres, scene frame."""
+
+    position: tuple[float, float, float]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
     """Everything an asset file said, in the scene frame.
@@ -149,9 +173,15 @@ class Scene:
         Indexed by material id; entry 0 is :data:`EMPTY`; at most 256 entries.
     warnings
         What was said by the file and not honoured as it stands.
+    viewpoint
+        The author's camera, for pictures for which no other is asked; None where the author gave none.
+    light
+        The author's light, likewise.
     """
 
     name: str
     objects: tuple[SceneObject, ...]
     materials: tuple[Material, ...]
     warnings: tuple[SceneWarning, ...] = ()
+    viewpoint: Viewpoint | None = None
+    light: PointLight | None = None

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import read_rom
-    from voxrt.octree import Octree, Rom, RomError
+    from voxrt.octree import Octree, Rom, RomError, census, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check
@@ -49,7 +49,9 @@ __all__ = [
     "ViewpointError",
     "aim_camera",
     "build",
+    "census",
     "check",
+    "diff",
     "fit_grid",
     "load",
     "read_rom",
@@ -59,7 +61,7 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("read_rom",),
-    "voxrt.octree": ("Octree", "Rom", "RomError"),
+    "voxrt.octree": ("Octree", "Rom", "RomError", "census", "diff"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),

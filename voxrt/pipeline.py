@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from voxrt import export, octree, sim, voxelize
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.viewpoint import aim_camera
+from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -86,6 +87,7 @@ def build(
     preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
+    strict: bool = False,
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> BuildResult:
@@ -116,6 +118,8 @@ def build(
     preview
         PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
         ``NAME.preview.png`` in `output`.
+    strict
+        Refuse an asset of which something is not honoured as it stands, where it would be a warning.
     threads
         Threads for the native stages, 0 for one a core. The result does not depend on it.
     progress
@@ -124,7 +128,7 @@ def build(
     Raises
     ------
     AssetError
-        The asset cannot be honoured.
+        The asset cannot be honoured, or not to the letter and `strict` is set.
     DoesNotFitError
         The asset is sound but too large.
     OutputError
@@ -152,6 +156,8 @@ def build(
         check_folder(picture_file.parent)
     with stage("load"):
         scene = voxelize.load(asset, up=up, unit=unit)
+    if strict:
+        _refuse(asset, scene.warnings)
     with stage("fit"):
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
@@ -161,9 +167,17 @@ def build(
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels), scene.materials, grid)
     warnings = scene.warnings + voxelization.warnings
+    if strict:
+        _refuse(asset, warnings)
     outputs: dict[str, Path] = {}
     if output is not None:
-        settings = {"fill": fill, "geometry": geometry, "pow2": pow2, "up": up, "unit": unit}
+        settings: dict[str, str | int | float | bool | None] = {
+            "fill": fill,
+            "geometry": geometry,
+            "pow2": pow2,
+            "up": up,
+            "unit": unit,
+        }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(
                 Path(output),
@@ -185,6 +199,14 @@ def build(
     return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
 
 
+def _refuse(asset: Path, warnings: tuple[SceneWarning, ...]) -> None:
+    if warnings:
+        first, *others = warnings
+        kinds = sorted({warning.kind for warning in others})
+        more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
+        raise AssetError(asset, f"{first.message}{more}", fix="mend the asset, or build without strict")
+
+
 def _text(name: str) -> str:
     """Give a file's name as text that can name other files: what is no text, or a backslash, becomes ``_``."""
     text = os.fsencode(name).decode("utf-8", "replace")
@@ -197,6 +219,7 @@ def render(
     *,
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
+    config: str = "tiny",
     threads: int = 0,
 ) -> Frame:
     """Render a memory.
@@ -212,6 +235,8 @@ def render(
     engine
         ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact model. Both give the same
         pixels.
+    config
+        The configuration of the ray tracer that ``"rtl"`` runs.
     threads
         Threads of the model, 0 for one a core.
 
@@ -220,7 +245,7 @@ def render(
     SimulatorError
         The engine is not in this installation, or cannot hold the memory or the camera.
     """
-    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, threads=threads)
+    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
 
 
 def save_picture(frame: Frame, path: Path) -> None:

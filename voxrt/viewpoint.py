@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim import Camera, frame_scene, solid_bounds
+from voxrt.octree import solid_bounds
+from voxrt.sim import Camera, frame_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -71,7 +72,7 @@ def aim_camera(
     """
     if position is None and (look, right, up) == (None, None, None):
         return frame_scene(rom, size)
-    lowest, highest = solid_bounds(rom.octree) or (np.zeros(3), np.full(3, 1 << rom.octree.depth))
+    lowest, highest = np.array(solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3))
     if look is None or right is None or up is None:
         sight = _THREE_QUARTER
         if position is not None:

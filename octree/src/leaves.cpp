@@ -29,11 +29,8 @@ std::vector<Leaf> LeafWalk::next(std::size_t limit) {
             continue;
         }
         for (unsigned octant = 8; octant-- > 0;)
-            stack_.push_back(
-                {memory_.child(step.word, octant, step.level),
-                 static_cast<std::uint8_t>(step.level - 1),
-                 {step.corner[0] + (octant & 1) * (side / 2), step.corner[1] + (octant >> 1 & 1) * (side / 2),
-                  step.corner[2] + (octant >> 2) * (side / 2)}});
+            stack_.push_back({memory_.child(step.word, octant, step.level), static_cast<std::uint8_t>(step.level - 1),
+                              child_corner(step.corner, octant, side / 2)});
     }
     return leaves;
 }

@@ -11,11 +11,15 @@
 #include <string>
 #include <tuple>
 
+#include "breadth_first.h"
+#include "budget.h"
 #include "build.h"
+#include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
 #include "leaves.h"
 #include "query.h"
+#include "surface.h"
 #include "validate.h"
 
 namespace nb = nanobind;
@@ -107,6 +111,17 @@ auto bind_build_dense(const Volume& cells, unsigned depth) {
     {
         nb::gil_scoped_release release;
         words = build_dense(cells.data(), cells.shape(0), cells.shape(1), cells.shape(2), depth);
+    }
+    return words_to_numpy(std::move(words));
+}
+
+auto bind_build_points(const Vector<std::uint64_t>& codes, const Vector<std::uint8_t>& materials, unsigned depth) {
+    require_depth(depth);
+    require(codes.shape(0) == materials.shape(0), "codes and materials differ in length");
+    std::vector<Word> words;
+    {
+        nb::gil_scoped_release release;
+        words = build_points(codes.data(), materials.data(), codes.shape(0), depth);
     }
     return words_to_numpy(std::move(words));
 }
@@ -205,6 +220,43 @@ bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth)
     return {found.appeared, found.vanished, found.recoloured, bounds};
 }
 
+auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
+    const Memory memory = memory_of(words, depth);
+    std::vector<Word> coarse;
+    {
+        nb::gil_scoped_release release;
+        BlockPool pool;
+        const Node root = coarsen(memory, level, pool);
+        coarse = breadth_first_words(pool, root);
+    }
+    return words_to_numpy(std::move(coarse));
+}
+
+auto bind_merge_blocks(
+    const Vector<Word>& words, unsigned depth, unsigned finest,
+    const nb::ndarray<const std::uint16_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>& costs,
+    std::uint64_t fine_price, std::uint64_t coarse_price) {
+    const Memory memory = memory_of(words, depth);
+    require(std::max(fine_price, coarse_price) <= std::uint64_t{1} << 60, "the price is above 2**60");
+    auto recolour = std::make_unique<RecolourCosts>();
+    std::copy_n(costs.data(), 256 * 256, (*recolour)[0].data());
+    std::vector<Word> merged;
+    {
+        nb::gil_scoped_release release;
+        merged = merge_blocks(memory, finest, *recolour, fine_price, coarse_price);
+    }
+    return words_to_numpy(std::move(merged));
+}
+
+std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& first, const Vector<Word>& second,
+                                                            unsigned depth) {
+    const Memory a = memory_of(first, depth);
+    const Memory b = memory_of(second, depth);
+    nb::gil_scoped_release release;
+    const SurfaceChange change = surface_change(a, b);
+    return {change.surface, change.changed};
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -244,6 +296,7 @@ NB_MODULE(_native, m) {
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
           "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
     m.def("build_dense", &bind_build_dense, "cells"_a.noconvert(), "depth"_a);
+    m.def("build_points", &bind_build_points, "codes"_a.noconvert(), "materials"_a.noconvert(), "depth"_a);
     m.def("validate", &bind_validate, "words"_a.noconvert(), "depth"_a);
     m.def("materials_at", &bind_materials_at, "words"_a.noconvert(), "depth"_a, "points"_a.noconvert());
     m.def("leaf_counts", &bind_leaf_counts, "words"_a.noconvert(), "depth"_a);
@@ -251,6 +304,10 @@ NB_MODULE(_native, m) {
     m.def("solid_bounds", &bind_solid_bounds, "words"_a.noconvert(), "depth"_a);
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
+    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "depth"_a, "finest"_a, "costs"_a.noconvert(),
+          "fine_price"_a, "coarse_price"_a);
+    m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

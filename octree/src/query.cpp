@@ -9,12 +9,6 @@
 namespace voxrt::octree {
 namespace {
 
-// Octant `octant` of the octant at `corner`, whose children have the side `half`.
-std::array<std::int64_t, 3> child_corner(const std::array<std::int64_t, 3>& corner, unsigned octant,
-                                         std::int64_t half) {
-    return {corner[0] + (octant & 1) * half, corner[1] + (octant >> 1 & 1) * half, corner[2] + (octant >> 2) * half};
-}
-
 // Voxels by material in a box, each block once for each way in which the box cuts it.
 class BoxCounter {
 public:

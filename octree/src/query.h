@@ -17,6 +17,12 @@ struct Box {
     std::array<std::int64_t, 3> high;
 };
 
+/// The corner of octant `octant` of the octant at `corner`, whose children have the side `half`.
+constexpr std::array<std::int64_t, 3> child_corner(const std::array<std::int64_t, 3>& corner, unsigned octant,
+                                                   std::int64_t half) {
+    return {corner[0] + (octant & 1) * half, corner[1] + (octant >> 1 & 1) * half, corner[2] + (octant >> 2) * half};
+}
+
 /// The material of each of `count` voxels, (x, y, z) each; outside the world is empty.
 void materials_at(const Memory& memory, const std::int64_t* points, std::size_t count, std::uint8_t* materials);
 

@@ -58,11 +58,11 @@ for moment in count(1):
 IN_NATIVE_CODE = """
 import os, signal, sys, threading
 from voxrt.sim import _model
-render = _model.render
-def render_interrupted(*arguments):
-    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-    return render(*arguments)
-_model.render = render_interrupted
+class Memory(_model.Memory):
+    def render(self, *arguments):
+        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        return super().render(*arguments)
+_model.Memory = Memory
 from voxrt.cli import main
 main()
 """

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 from assets import asset
 from PIL import Image
+
+import voxrt
 
 REAL = [
     "gltf/bevy/CornellBox/CornellBox.glb",
@@ -34,15 +34,16 @@ REAL = [
 
 
 @pytest.mark.parametrize("name", REAL)
-def test_builds_and_previews(voxrt, folder, name):
-    arguments = ("build", asset(name), "-o", "out", "--depth", "6", "--preview", "out/picture.png", "--size", "96x72")
-    finished = voxrt(*arguments, "--engine", "model", "--json")
-    assert finished.code == 0, finished.err
-    result = json.loads(finished.out)
-    assert result["voxels"] > 100
-    assert result["words"] == 1 + 8 * result["blocks"] > 9
-    with Image.open(folder / "out/picture.png") as picture:
+def test_builds_and_previews(name, tmp_path):
+    result = voxrt.build(asset(name), tmp_path, depth=6, preview=True, size=(96, 72), engine="model")
+    assert result.solid_voxels > 100
+    assert sorted(result.outputs) == ["manifest", "mem", "preview"]
+    rom, warnings = voxrt.read_rom(result.outputs["mem"])
+    assert warnings == ()
+    assert (rom.octree.words == result.rom.octree.words).all()
+    assert rom.materials == result.rom.materials
+    with Image.open(result.outputs["preview"]) as picture:
         pixels = np.asarray(picture)
     drawn = (pixels != pixels[0, 0]).any(axis=2)
     assert drawn.mean() > 0.02
-    assert drawn.any(axis=0).mean() > 0.7 or drawn.any(axis=1).mean() > 0.7
+    assert drawn.any(axis=0).mean() > 0.5 or drawn.any(axis=1).mean() > 0.5

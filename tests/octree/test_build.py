@@ -185,3 +185,30 @@ def test_arrays_that_are_no_materials_are_refused(array, message):
 def test_an_array_beyond_the_largest_depth_is_refused():
     with pytest.raises(DoesNotFitError, match="65537 voxels a side do not fit depth 16"):
         octree.from_dense(np.zeros((65537, 1, 1), np.uint8))
+
+
+@given(dense_cubes(), st.randoms())
+def test_from_points_is_the_reference_recursion_in_any_order(cube, rng):
+    points = np.argwhere(cube)
+    order = list(range(len(points)))
+    rng.shuffle(order)
+    materials = cube[tuple(points.T)][order]
+    twice = np.concatenate([points[order], points[order]])
+    tree = octree.from_points(twice, np.concatenate([materials, 255 - materials // 2]), len(cube).bit_length() - 1)
+    np.testing.assert_array_equal(tree.words, reference_words(cube))
+
+
+@pytest.mark.parametrize(
+    ("points", "materials", "message"),
+    [
+        ([[0, 0]], [1], r"must be \(N, 3\) and \(N,\)"),
+        ([[0, 0, 0]], [1, 2], r"must be \(N, 3\) and \(N,\)"),
+        ([[0, 0, 8]], [1], r"points must lie in 0 \.\.\. 7, not 0 \.\.\. 8"),
+        ([[0, -1, 0]], [1], r"points must lie in 0 \.\.\. 7, not -1 \.\.\. 0"),
+        ([[0, 0, 0]], [0], r"materials must be 1 \.\.\. 255, not 0 \.\.\. 0"),
+        ([[0, 0, 0]], [256], r"materials must be 1 \.\.\. 255, not 256"),
+    ],
+)
+def test_points_that_are_none_are_refused(points, materials, message):
+    with pytest.raises(ValueError, match=message):
+        octree.from_points(np.array(points), np.array(materials), 3)

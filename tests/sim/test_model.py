@@ -136,9 +136,9 @@ def shades(colours, directions, face):
 
 
 def test_an_instruction_set_that_is_not_there_is_refused():
+    memory = _model.Memory(np.array([0xFFFFFF00], np.uint32), 1)
     with pytest.raises(ValueError, match="no instruction set 'mmx'"):
-        _model.Memory(np.array([0xFFFFFF00], np.uint32), 1).render(np.zeros((256, 3), np.uint8), np.ones((4, 3), np.int32),
-                      4, 4, 1, "mmx")  # fmt: skip
+        memory.render(np.zeros((256, 3), np.uint8), np.ones((4, 3), np.int32), 4, 4, 1, "mmx")
 
 
 @settings(max_examples=300, deadline=None)

@@ -1,6 +1,7 @@
 """Frames by way of a Rom: both engines, what they refuse, the published memories, picture files."""
 
 import importlib.util
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from oracles.ray_batch import trace_batch
 from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, PointQueries, seed_words
 from PIL import Image
 
+import voxrt.sim
 from voxrt.octree import Octree, Rom
 from voxrt.sim import (
     FACE_NONE,
@@ -26,6 +28,9 @@ from voxrt.voxelize import Material
 needs_rtl = pytest.mark.skipif(
     importlib.util.find_spec("voxrt.sim._rtl") is None, reason="this build has no verilated ray tracer"
 )
+
+
+ALONG_Z = Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0))
 
 
 def rom_of(words, depth, name="scene"):
@@ -88,25 +93,28 @@ def test_directions_that_overflow_are_refused(rom):
 @pytest.mark.parametrize("size", [(0, 4), (4, 0), (16385, 1), (-3, 4)])
 def test_sizes_out_of_range_are_refused(rom, size):
     with pytest.raises(SimulatorError, match=f"{size[0]}x{size[1]} pixels"):
-        render(rom, Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)), size, engine="model")
+        render(rom, ALONG_Z, size, engine="model")
 
 
-@pytest.mark.skipif(importlib.util.find_spec("voxrt.sim._rtl") is not None, reason="this build has the ray tracer")
-def test_a_missing_ray_tracer_says_what_to_do(rom):
+def test_a_missing_ray_tracer_says_what_to_do(rom, monkeypatch):
+    monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
+    monkeypatch.delattr(voxrt.sim, "_rtl", raising=False)
     with pytest.raises(SimulatorError, match=r"no verilated ray tracer .*--engine model"):
-        render(rom, Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0)), (4, 4), engine="rtl")
+        render(rom, ALONG_Z, (4, 4), engine="rtl")
 
 
 @needs_rtl
 def test_the_ray_tracer_refuses_what_it_cannot_hold(rom):
-    camera = Camera((0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0))
     with pytest.raises(SimulatorError, match="no ray tracer configuration 'huge'; there are"):
-        render(rom, camera, (4, 4), engine="rtl", config="huge")
-    with pytest.raises(SimulatorError, match="outside the ray tracer's range of ±4096"):
-        render(rom, Camera((0, 1 << 16, 0), camera.look, camera.right, camera.up), (4, 4), engine="rtl")
-    words = np.full(1 + 8 * 200_000, 0xFFFFFF00, np.uint32)
-    with pytest.raises(SimulatorError, match="scene has 1600001 words and does not fit"):
-        render(rom_of(words, 5), camera, (4, 4), engine="rtl")
+        render(rom, ALONG_Z, (4, 4), engine="rtl", config="huge")
+    far = Camera((0, 1 << 29, 0), ALONG_Z.look, ALONG_Z.right, ALONG_Z.up)
+    with pytest.raises(SimulatorError, match=r"scene does not fit .*: a camera at \(0.0, 33554432.0, 0.0\)"):
+        render(rom, far, (4, 4), engine="rtl")
+    with pytest.raises(SimulatorError, match=r"4097x4 pixels; it counts to 4095; .*--engine model"):
+        render(rom, ALONG_Z, (4097, 4), engine="rtl")
+    words = np.full(9 + 8 * (1 << 21), 0xFFFFFF00, np.uint32)
+    with pytest.raises(SimulatorError, match=r"16777225 words; it holds \d+"):
+        render(rom_of(words, 5), ALONG_Z, (4, 4), engine="rtl")
 
 
 @needs_rtl

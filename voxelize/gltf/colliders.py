@@ -9,6 +9,8 @@ import numpy as np
 from voxrt.voxelize.scene import BoxCollider, HullCollider, MeshCollider, SphereCollider
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from voxrt.voxelize.gltf.extras import ColliderKind
     from voxrt.voxelize.scene import Collider, Mesh
 
@@ -24,3 +26,12 @@ def collider_around(mesh: Mesh, kind: ColliderKind) -> Collider:
         return BoxCollider(minimum, maximum)
     centre = minimum + (maximum - minimum) / 2
     return SphereCollider(centre, float(np.sqrt(((mesh.positions - centre) ** 2).sum(axis=1).max())))
+
+
+def collider_points(collider: Collider) -> NDArray[np.float64]:
+    """Return points, shape (N, 3), between which `collider` lies."""
+    if isinstance(collider, BoxCollider):
+        return np.stack([collider.minimum, collider.maximum])
+    if isinstance(collider, SphereCollider):
+        return np.stack([collider.centre - collider.radius, collider.centre + collider.radius])
+    return collider.positions

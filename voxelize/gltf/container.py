@@ -23,7 +23,7 @@ _RE_EXPORT = "the file is damaged: export or download it again"
 _decoder = msgspec.json.Decoder(Gltf)
 
 
-def read_container(path: Path) -> tuple[Gltf, bytes | None]:
+def read_container(path: Path) -> tuple[Gltf, memoryview | None]:
     """Read `path`, as GLB where it starts like one, else as JSON.
 
     Returns
@@ -43,11 +43,11 @@ def read_container(path: Path) -> tuple[Gltf, bytes | None]:
     if data[:4] == _MAGIC:
         text, binary = _split_glb(path, data)
     else:
-        text, binary = data, None
-    return _parse(path, text), binary
+        text, binary = memoryview(data), None
+    return _parse(path, bytes(text)), binary
 
 
-def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
+def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     if len(data) < 20:
         raise AssetError(path, f"a GLB of {len(data)} bytes ends before its JSON chunk", fix=_RE_EXPORT)
     version, length = struct.unpack_from("<II", data, 4)
@@ -55,7 +55,8 @@ def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
         raise AssetError(path, f"GLB version {version} is unknown", fix="export as glTF 2.0")
     if length != len(data):
         raise AssetError(path, f"the GLB says it has {length} bytes and has {len(data)}", fix=_RE_EXPORT)
-    chunks: dict[int, bytes] = {}
+    chunks: dict[int, memoryview] = {}
+    whole = memoryview(data)
     at = 12
     while at < length:
         if length - at < 8:
@@ -71,7 +72,7 @@ def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
             raise AssetError(path, "the JSON chunk is not the first", place=f"byte {at}", fix=_RE_EXPORT)
         if kind == _BINARY_CHUNK and len(chunks) != 1:
             raise AssetError(path, "the binary chunk is not the second", place=f"byte {at}", fix=_RE_EXPORT)
-        chunks[kind] = data[at + 8 : at + 8 + size]
+        chunks[kind] = whole[at + 8 : at + 8 + size]
         at += 8 + size
     return chunks[_JSON_CHUNK], chunks.get(_BINARY_CHUNK)
 

@@ -53,8 +53,9 @@ def morphed(
         moved = read_floats(document, target["POSITION"], here, {"VEC3"})
         if len(moved) != len(positions):
             raise document.error(here, f"moves {len(moved)} of {len(positions)} vertices")
-        positions = positions + weight * moved
-    return _finite(document, positions, place)
+        with np.errstate(over="ignore", invalid="ignore"):
+            positions = _finite(document, positions + weight * moved, place)
+    return positions
 
 
 def skinned(
@@ -75,10 +76,7 @@ def skinned(
     number = 0
     with np.errstate(over="ignore", invalid="ignore"):
         while f"JOINTS_{number}" in attributes and f"WEIGHTS_{number}" in attributes:
-            joints, weights = _influences(document, attributes, number, len(pose.joints))
-            if len(joints) != len(positions) or len(weights) != len(positions):
-                problem = f"{len(joints)} joints and {len(weights)} weights for {len(positions)} vertices"
-                raise document.error(f"{place}.attributes.JOINTS_{number}", problem)
+            joints, weights = _influences(document, attributes, number, (len(positions), len(pose.joints)))
             for column in range(4):
                 matrices = pose.joints[joints[:, column]]
                 moved = np.einsum("vij,vj->vi", matrices[:, :3, :3], positions) + matrices[:, :3, 3]
@@ -95,11 +93,16 @@ def skinned(
 
 
 def _influences(
-    document: Document, attributes: Attributes, number: int, limit: int
+    document: Document, attributes: Attributes, number: int, counts: tuple[int, int]
 ) -> tuple[NDArray[Any], NDArray[np.float64]]:
+    """Read set `number` of joints and weights, shape (V, 4) each, of a primitive; `counts` has vertices and joints."""
     joints = attributes.stored(f"JOINTS_{number}", {"VEC4"})
     weights = attributes.stored(f"WEIGHTS_{number}", {"VEC4"})
     here = f"{attributes.place}.attributes"
+    vertices, limit = counts
+    if len(joints) != vertices or len(weights) != vertices:
+        problem = f"{len(joints)} joints and {len(weights)} weights for {vertices} vertices"
+        raise document.error(f"{here}.JOINTS_{number}", problem)
     share = as_unit_floats(weights)
     if not (np.isfinite(share).all() and (share >= 0).all()):
         raise document.error(f"{here}.WEIGHTS_{number}", "a weight is negative or not a number")

@@ -11,11 +11,13 @@ from urllib.parse import unquote, unquote_to_bytes
 
 from voxrt.voxelize.errors import AssetError, SceneWarning
 from voxrt.voxelize.gltf.container import read_container
+from voxrt.voxelize.gltf.extensions import MESHOPT, read_extension
+from voxrt.voxelize.gltf.meshopt import BadStreamError, CompressedView, decode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voxrt.voxelize.gltf.schema import Gltf
+    from voxrt.voxelize.gltf.schema import BufferView, Gltf
 
 T = TypeVar("T")
 
@@ -42,7 +44,8 @@ class Document:
         self.path = path
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
-        self._buffers: dict[int, bytes] = {}
+        self._buffers: dict[int, memoryview] = {}
+        self._unpacked: dict[int, bytes] = {}
         self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
         self._warnings: Counter[tuple[str, str]] = Counter()
         self._check_views()
@@ -76,8 +79,29 @@ class Document:
     def view(self, index: int, place: str) -> memoryview:
         """Return the bytes of buffer view `index`, to which `place` refers."""
         view = self.item(self.gltf.buffer_views, index, place, "buffer view")
-        data = self._buffer(view.buffer)
-        return memoryview(data)[view.byte_offset : view.byte_offset + view.byte_length]
+        if index in self._unpacked:
+            return memoryview(self._unpacked[index])
+        compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
+        if compressed is None:
+            return self._buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
+        self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
+        return memoryview(self._unpacked[index])
+
+    def _decompressed(self, compressed: CompressedView, view: BufferView, place: str) -> bytes:
+        here = f"{place}.extensions.{MESHOPT}"
+        size = compressed.count * compressed.byte_stride
+        self.charge(size * 4, here)
+        buffer = self.item(self.gltf.buffers, compressed.buffer, f"{here}.buffer", "buffer")
+        end = compressed.byte_offset + compressed.byte_length
+        if end > buffer.byte_length:
+            raise self.error(here, f"ends at byte {end} of a buffer of {buffer.byte_length}")
+        if size != view.byte_length:
+            raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
+        data = self._buffer(compressed.buffer)[compressed.byte_offset : end]
+        try:
+            return decode(compressed, bytes(data))
+        except BadStreamError as error:
+            raise self.error(here, f"the compressed data is damaged: {error}") from None
 
     def _check_views(self) -> None:
         """Refuse the file where a buffer view leaves its buffer, in use or not: it is cut short."""
@@ -88,7 +112,7 @@ class Document:
             if end > buffer.byte_length:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
-    def _buffer(self, index: int) -> bytes:
+    def _buffer(self, index: int) -> memoryview:
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -98,7 +122,7 @@ class Document:
             if found is None:
                 problem = f"no file {buffer.uri[:60]!r} beside the asset"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
-            data = found
+            data = memoryview(found)
         elif index == 0 and self._binary is not None:
             data = self._binary
         else:

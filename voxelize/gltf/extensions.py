@@ -12,17 +12,25 @@ if TYPE_CHECKING:
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
+MESHOPT = "EXT_meshopt_compression"
+PHYSICS = "KHR_physics_rigid_bodies"
+SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
 TEXTURE_TRANSFORM = "KHR_texture_transform"
 VARIANTS = "KHR_materials_variants"
+VISIBILITY = "KHR_node_visibility"
 
 HONOURED = frozenset(
     {
         DRACO,
         INSTANCING,
+        MESHOPT,
+        PHYSICS,
+        SHAPES,
         SPECULAR_GLOSSINESS,
         TEXTURE_TRANSFORM,
         VARIANTS,
+        VISIBILITY,
         "EXT_texture_webp",
         "KHR_materials_unlit",
         "KHR_mesh_quantization",

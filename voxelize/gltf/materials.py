@@ -86,13 +86,14 @@ def finish(document: Document, key: MaterialKey) -> Finish:
     )
 
 
-def material_named(document: Document, name: str, place: str) -> int:
-    """Return the index of the file's material that goes by `name`, which `place` asks for."""
+def material_names(document: Document) -> dict[str, int]:
+    """Map the names by which nodes may ask for the file's materials to their indices, the first of a name winning."""
+    named: dict[str, int] = {}
     for index, material in enumerate(document.gltf.materials):
-        if name in (material.name, material_extras(document, index).voxrt_material):
-            return index
-    known = ", ".join(repr(material.name) for material in document.gltf.materials[:8] if material.name)
-    raise document.error(place, f"no material {name!r} in the file", f"it has {known or 'no named materials'}")
+        for name in (material.name, material_extras(document, index).voxrt_material):
+            if name:
+                named.setdefault(name, index)
+    return named
 
 
 def make_table(document: Document, used: Iterable[MaterialKey]) -> tuple[list[Material], dict[MaterialKey, int]]:
@@ -127,11 +128,11 @@ def make_table(document: Document, used: Iterable[MaterialKey]) -> tuple[list[Ma
         if look.renamed:
             merged[group] = ids[key]
         append_named(table, material, _place(key))
-    if len(table) - 1 > MATERIAL_LIMIT:
-        raise DoesNotFitError(
-            f"{document.path}: uses {len(table) - 1} materials, a memory holds {MATERIAL_LIMIT}; "
-            "give materials that look alike one name in their voxrt_material property"
-        )
+        if len(table) - 1 > MATERIAL_LIMIT:
+            raise DoesNotFitError(
+                f"{document.path}: uses more than the {MATERIAL_LIMIT} materials that a memory holds; "
+                "give materials that look alike one name in their voxrt_material property"
+            )
     return table, ids
 
 

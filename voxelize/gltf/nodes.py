@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.gltf.extensions import VISIBILITY, read_extension
+from voxrt.voxelize.gltf.schema import Visibility
+
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
 
@@ -57,16 +60,28 @@ def place_nodes(document: Document) -> Hierarchy:
         if not np.isfinite(transform).all():
             raise document.error(f"nodes[{index}]", "the transform leaves the range of numbers")
         transforms[index] = transform
-    return Hierarchy(tuple(_descendants(document, _roots(document, parents))), tuple(transforms))
+    hidden = {index for index in range(len(nodes)) if _is_hidden(document, index)}
+    shown = _descendants(document, _roots(document, parents), hidden)
+    return Hierarchy(tuple(shown), tuple(transforms))
 
 
-def _descendants(document: Document, roots: list[int]) -> Iterator[int]:
-    """Go through `roots` and what hangs below them, parents before children, in authored order."""
+def _descendants(document: Document, roots: list[int], hidden: Container[int] = ()) -> Iterator[int]:
+    """Go through `roots` and what hangs below them, parents before children, in authored order.
+
+    Nodes that are `hidden` are left out with what hangs below them.
+    """
     pending = roots[::-1]
     while pending:
         index = pending.pop()
-        yield index
-        pending.extend(reversed(document.gltf.nodes[index].children))
+        if index not in hidden:
+            yield index
+            pending.extend(reversed(document.gltf.nodes[index].children))
+
+
+def _is_hidden(document: Document, index: int) -> bool:
+    node = document.gltf.nodes[index]
+    visibility = read_extension(document, node, VISIBILITY, Visibility, f"nodes[{index}]")
+    return visibility is not None and not visibility.visible
 
 
 def _parents(document: Document) -> dict[int, int]:
@@ -113,23 +128,17 @@ def _roots(document: Document, parents: dict[int, int]) -> list[int]:
     listed = dict.fromkeys(scene.nodes)
     if len(listed) != len(scene.nodes):
         document.warn("repeated-root", "nodes that the scene lists twice are shown once")
-    return [root for root in listed if not _shown_by_ancestor(document, root, listed, parents)]
-
-
-def _shown_by_ancestor(document: Document, root: int, listed: Container[int], parents: dict[int, int]) -> bool:
-    """Tell whether the scene shows `root` already as a descendant of another node that it lists.
-
-    glTF allows roots only, but some exporters list the child of a helper node.
-    """
-    if root not in parents:
-        return False
-    document.warn("not-a-root", "nodes that the scene lists although they have a parent are shown where it puts them")
-    ancestor = root
-    while ancestor in parents:
-        ancestor = parents[ancestor]
-        if ancestor in listed:
-            return True
-    return False
+    # glTF allows roots only, but some exporters list the child of a helper node.
+    inner = sum(root in parents for root in listed)
+    if not inner:
+        return list(listed)
+    message = "nodes that the scene lists although they have a parent are shown where it puts them"
+    document.warn("not-a-root", message, inner)
+    below: set[int] = set()
+    for index in _descendants(document, [index for index in range(len(gltf.nodes)) if index not in parents]):
+        if index in parents and (parents[index] in listed or parents[index] in below):
+            below.add(index)
+    return [root for root in listed if root not in below]
 
 
 def local_transform(document: Document, node: Node, place: str) -> NDArray[np.float64]:

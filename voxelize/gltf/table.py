@@ -14,33 +14,47 @@ from voxrt.voxelize.palette import quantize
 from voxrt.voxelize.scene import MATERIAL_LIMIT, Material, Mesh
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.appearance import Dress
     from voxrt.voxelize.gltf.document import Document
+    from voxrt.voxelize.gltf.materials import MaterialKey
     from voxrt.voxelize.gltf.meshes import Surface
 
 PALETTE_SIZE = 64
 """How many colours painted surfaces get, where the materials leave as many."""
 
 
-def finish_meshes(document: Document, dressed: list[tuple[Surface, Dress]]) -> tuple[list[Mesh], tuple[Material, ...]]:
+def finish_meshes(
+    document: Document, dressed: list[tuple[Surface, Dress]], others: Iterable[MaterialKey]
+) -> tuple[list[Mesh], tuple[Material, ...], dict[MaterialKey, int]]:
     """Give every triangle its material id and leave out those that are air.
+
+    Parameters
+    ----------
+    document
+        The open asset.
+    dressed
+        Surfaces and what they wear.
+    others
+        Materials in use beside them.
 
     Returns
     -------
-    meshes, materials
-        A mesh for each pair of `dressed`, and the scene's materials: the file's in authored order, the default
-        material, then the palette of the painted triangles.
+    meshes, materials, ids
+        A mesh for each pair of `dressed`; the scene's materials: the file's in authored order, the default material,
+        then the palette of the painted triangles; and the id of each material in use.
     """
     painted = [wears.solid & _painted(wears) for _, wears in dressed]
     plain = [wears.solid & ~paint for (_, wears), paint in zip(dressed, painted, strict=True)]
     used = {
         wears.keys[row]
         for (_, wears), faces in zip(dressed, plain, strict=True)
-        for row in np.unique(wears.rows[faces]).tolist()
+        for row in np.flatnonzero(np.bincount(wears.rows[faces])).tolist()
     }
-    table, ids = make_table(document, used)
+    table, ids = make_table(document, used.union(others))
     chosen = _palette(document, dressed, painted, table)
     meshes = []
     for (surface, wears), faces, paint, colours in zip(dressed, plain, painted, chosen, strict=True):
@@ -49,7 +63,7 @@ def finish_meshes(document: Document, dressed: list[tuple[Surface, Dress]]) -> t
         by_row = np.array([ids.get(key, 0) for key in wears.keys], np.uint8)
         materials[faces] = by_row[wears.rows[faces]]
         meshes.append(_mesh(surface, wears, materials))
-    return meshes, tuple(table)
+    return meshes, tuple(table), ids
 
 
 def _painted(wears: Dress) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""OBJ statements to a scene: objects, materials, triangles."""
+"""OBJ statements to a scene."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
 from voxrt.voxelize.material_table import MaterialTable
 from voxrt.voxelize.notes import Notes
-from voxrt.voxelize.obj.mtl import MtlMaterial, find_companion, read_mtl
-from voxrt.voxelize.obj.objects import split_objects
-from voxrt.voxelize.obj.statements import Statements, read_statements
+from voxrt.voxelize.obj.appearance import coat_of, look_at_faces
+from voxrt.voxelize.obj.objects import compact, split_objects
+from voxrt.voxelize.obj.statements import Statements, read_statements, texture_coordinates
 from voxrt.voxelize.obj.text import Text, read_text
-from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.scene import DEFAULT_COLOUR, Scene, SceneObject
+from voxrt.voxelize.painted import Unfinished, finish
+from voxrt.voxelize.polygons import triangulate_corners
+from voxrt.voxelize.scene import Scene, SceneObject
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Sequence
 
-OPAQUE_FROM = 0.5
-"""A material of lower opacity is air."""
+    from numpy.typing import NDArray
 
 
 def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
-    """Read a Wavefront OBJ file and its material libraries.
+    """Read a Wavefront OBJ file, its material libraries and textures.
 
     ``o`` statements make the objects; in a file without them ``g`` statements do, except that groups which share
-    vertices are patches of one surface and stay one object. ``Kd`` is taken as sRGB, as most programs show it
-    (the format does not say). A material less opaque than :data:`OPAQUE_FROM` is air. Names of materials survive
-    a missing library.
+    vertices are patches of one surface and stay one object. ``Kd`` and vertex colours are taken as sRGB, as most
+    programs show them (the format does not say). A texture takes the place of ``Kd``, vertex colours are multiplied
+    with it. A material of an opacity below a half is air. Names of materials survive a missing library.
 
     Parameters
     ----------
     path
-        The file. Material libraries are looked for in its folder and below.
+        The file. Material libraries and textures are looked for in its folder and below.
     up
         The file's up axis; None means y.
     unit
@@ -45,12 +45,12 @@ def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = No
     Returns
     -------
     Scene
-        Objects and materials in order of first use.
+        Objects and materials in order of first use; the palette of painted surfaces after them.
 
     Raises
     ------
     AssetError
-        The file cannot be read, or a face cannot be honoured.
+        The file or an image is broken, or a face cannot be honoured.
     DoesNotFitError
         More than 255 materials.
     """
@@ -58,22 +58,48 @@ def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = No
     notes = Notes()
     text = read_text(path)
     said = read_statements(text, notes)
-    notes.add("vertex-colours", "vertex colours are not honoured; materials are", said.coloured)
     _refuse_unreadable_positions(text, said, notes)
-    triangles, faces = triangulate(said.positions, said.counts, said.corners)
     table = MaterialTable()
-    material_of_face = _materials(text, said, table, notes)
-    materials = material_of_face[faces]
-    solid = materials != 0
-    if not solid.all():
-        triangles, faces, materials = triangles[solid], faces[solid], materials[solid]
-    if not len(triangles):
+    seen = look_at_faces(text, said, table, notes)
+    uv = None
+    if any(layout is not None for layout in seen.layouts):
+        uv, given = texture_coordinates(text, said)
+        notes.add(
+            "texture",
+            "textured faces without texture coordinates took the texture's corner",
+            int((~given & (seen.rows >= 0) & _textured(seen.rows, seen.layouts)).sum()),
+        )
+    corners, faces = triangulate_corners(said.positions, said.counts, said.corners)
+    shown = (seen.materials[faces] != 0) | (seen.rows[faces] >= 0)
+    if not shown.all():
+        corners, faces = corners[shown], faces[shown]
+    if not len(faces):
         raise AssetError(path, "has no faces that can be seen", fix="make its materials opaque or export its polygons")
+    triangles = said.corners[corners].astype(np.int32)
+    parts = list(split_objects(path.stem, said, triangles, faces))
+    unfinished = [
+        Unfinished(
+            *compact(said.positions, triangles[chosen]),
+            seen.materials[faces[chosen]],
+            coat_of(said, seen, uv, corners[chosen], faces[chosen]),
+        )
+        for _, chosen in parts
+    ]
     transform = scene_transform(up, unit)
     objects = tuple(
-        SceneObject(name, mesh, transform) for name, mesh in split_objects(path.stem, said, triangles, faces, materials)
+        SceneObject(name, mesh, transform)
+        for (name, _), mesh in zip(parts, finish(unfinished, table, notes), strict=True)
+        if len(mesh.triangles)
     )
+    if not objects:
+        raise AssetError(path, "has no faces that can be seen", fix="make its textures opaque")
     return Scene(path.stem, objects, table.materials(), notes.warnings())
+
+
+def _textured(rows: NDArray[np.int32], layouts: Sequence[object]) -> NDArray[np.bool_]:
+    """Whether each face's paint is a texture."""
+    by_row = np.array([layout is not None for layout in layouts], dtype=np.bool_)
+    return by_row[rows]
 
 
 def _refuse_unreadable_positions(text: Text, said: Statements, notes: Notes) -> None:
@@ -90,55 +116,3 @@ def _refuse_unreadable_positions(text: Text, said: Statements, notes: Notes) -> 
             fix="export it again",
         )
     notes.add("unused-vertex", "vertices with a coordinate that is no number are in no face", int(broken.sum()))
-
-
-def _materials(text: Text, said: Statements, table: MaterialTable, notes: Notes) -> NDArray[np.uint8]:
-    """Material ids, a face each; 0 where the material lets light through."""
-    library = _libraries(text, said, notes)
-    lines = np.array([line for line, _ in said.materials], dtype=np.int64)
-    turn = np.searchsorted(lines, said.face_lines) - 1  # which usemtl each face is under; -1 before the first
-    ids = np.zeros(len(said.materials) + 1, dtype=np.uint8)
-    turns, faces = np.unique(turn, return_counts=True)
-    for index, count in zip(turns.tolist(), faces.tolist(), strict=True):
-        name = said.materials[index][1] if index >= 0 else ""
-        ids[index] = _material_id(name, library, table, notes, count)
-    return ids[turn]
-
-
-def _material_id(name: str, library: dict[str, MtlMaterial], table: MaterialTable, notes: Notes, faces: int) -> int:
-    if not name:
-        return table.default(notes, faces)
-    if name not in library:
-        notes.add("missing-material", "materials that no library describes got the default colour", faces)
-        return table.id_of(name, name, DEFAULT_COLOUR)
-    material = library[name]
-    if material.opacity < OPAQUE_FROM:
-        notes.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were taken as air", faces)
-        return 0
-    if material.texture is not None:
-        notes.add("texture", "textures are not honoured; the material's own colour stands in", faces)
-    if material.colour is None:
-        notes.add("material-colour", "materials without Kd got the default colour", faces)
-        return table.id_of(name, name, DEFAULT_COLOUR)
-    red, green, blue = (round(255 * min(max(value, 0.0), 1.0)) for value in material.colour)
-    return table.id_of(name, name, (red, green, blue))
-
-
-def _libraries(text: Text, said: Statements, notes: Notes) -> dict[str, MtlMaterial]:
-    """Return the materials of all libraries by name; the library named last wins, as if read in order."""
-    library: dict[str, MtlMaterial] = {}
-    seen: set[Path] = set()
-    for _, argument in said.libraries:
-        # One name may hold blanks, or several names may stand in one line.
-        whole = find_companion(text.path.parent, argument)
-        for found, name in (
-            [(whole, argument)]
-            if whole
-            else [(find_companion(text.path.parent, word), word) for word in argument.split()]
-        ):
-            if found is None:
-                notes.add("missing-library", f"material library {name!r} is not beside the file")
-            elif found not in seen:
-                seen.add(found)
-                library |= read_mtl(found, notes)
-    return library

@@ -22,6 +22,37 @@ _WITHOUT_BEARING = frozenset(
     }
 )
 
+# How many values each option of a texture takes: at least, at most.
+_OPTIONS = {
+    "-s": (1, 3),
+    "-o": (1, 3),
+    "-t": (1, 3),
+    "-mm": (2, 2),
+    "-clamp": (1, 1),
+    "-blendu": (1, 1),
+    "-blendv": (1, 1),
+    "-cc": (1, 1),
+    "-bm": (1, 1),
+    "-boost": (1, 1),
+    "-texres": (1, 1),
+    "-imfchan": (1, 1),
+    "-type": (1, 1),
+    "-colorspace": (1, 1),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MtlTexture:
+    """What ``map_Kd`` says: a file's name, where the image lies, and whether it ends at its edges.
+
+    A surface's coordinates are multiplied by `scale` and `offset` is added.
+    """
+
+    name: str
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+    clamp: bool = False
+
 
 @dataclass(slots=True)
 class MtlMaterial:
@@ -36,13 +67,13 @@ class MtlMaterial:
     opacity
         ``d``, or 1 - ``Tr``.
     texture
-        The arguments of ``map_Kd``, or None.
+        ``map_Kd``, or None.
     """
 
     name: str
     colour: tuple[float, float, float] | None = None
     opacity: float = 1.0
-    texture: str | None = None
+    texture: MtlTexture | None = None
 
 
 def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
@@ -88,7 +119,7 @@ def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> N
         if material.opacity == 1.0:  # exporters that write both mean d
             material.opacity = 1.0 - transparency
     elif keyword == "map_kd":
-        material.texture = argument
+        material.texture = _texture(argument, place)
     elif keyword == "map_d":
         place.notes.add("opacity-texture", "map_d is not honoured: the surface is opaque throughout")
     elif keyword not in _WITHOUT_BEARING:
@@ -107,6 +138,44 @@ def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
     if len(values) != 3:
         raise AssetError(place.path, "Kd needs three numbers", place=place.line, fix="repair the line")
     return values[0], values[1], values[2]
+
+
+def _texture(argument: str, place: _Place) -> MtlTexture | None:
+    """Read the options that stand before a file's name, which may hold blanks."""
+    rest = argument
+    scale, offset, clamp = (1.0, 1.0), (0.0, 0.0), False
+    while rest.startswith("-"):
+        option, _, rest = rest.partition(" ")
+        rest = rest.lstrip()
+        fewest, most = _OPTIONS.get(option.lower(), (0, 0))
+        if not most:
+            place.notes.add("unknown-statement", f"{place.path.name}: map_Kd option {option!r} was not understood")
+        values: list[str] = []
+        while len(values) < most:
+            word, _, after = rest.partition(" ")
+            if len(values) >= fewest and not _is_number(word):
+                break
+            values.append(word)
+            rest = after.lstrip()
+        if option in ("-s", "-o"):
+            numbers = [_real([word], place) for word in values]
+            if option == "-s":
+                scale = numbers[0], numbers[1] if len(numbers) > 1 else 1.0
+            else:
+                offset = numbers[0], numbers[1] if len(numbers) > 1 else 0.0
+        elif option == "-clamp":
+            clamp = values == ["on"]
+        elif option in ("-mm", "-t"):
+            place.notes.add("texture", f"{place.path.name}: map_Kd option {option!r} is not honoured")
+    return MtlTexture(rest, scale, offset, clamp) if rest else None
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _real(words: list[str], place: _Place) -> float:

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.scene import Mesh
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -21,8 +19,7 @@ def split_objects(
     said: Statements,
     triangles: NDArray[np.int32],
     faces: NDArray[np.int64],
-    materials: NDArray[np.uint8],
-) -> Iterator[tuple[str, Mesh]]:
+) -> Iterator[tuple[str, NDArray[np.int64]]]:
     """Split a file's triangles into objects, in order of their first faces.
 
     ``o`` starts an object each time; ``g`` names a set that may be added to later, so its name tells groups apart.
@@ -37,12 +34,10 @@ def split_objects(
         int32, shape (T, 3): rows of the positions.
     faces
         int64, shape (T,): the face each is of.
-    materials
-        uint8, shape (T,).
 
     Yields
     ------
-    Names, each once, and meshes.
+    Names, each once, and int64: the triangles of each, ascending.
     """
     if said.objects:
         part, names = _parts(said.objects, said.face_lines[faces])
@@ -57,13 +52,11 @@ def split_objects(
     for index, begin, end in sorted(
         zip(present.tolist(), begins.tolist(), ends.tolist(), strict=True), key=lambda piece: order[piece[1]]
     ):
-        chosen = order[begin:end]
         name, number = names[index] or stem, 2
         while name in used:
             name, number = f"{names[index] or stem} ({number})", number + 1
         used.add(name)
-        whole = len(present) == 1
-        yield name, _compact(said.positions, triangles if whole else triangles[chosen], materials[chosen])
+        yield name, order[begin:end]
 
 
 def _parts(statements: tuple[tuple[int, str], ...], lines: NDArray[np.int64]) -> tuple[NDArray[np.int64], list[str]]:
@@ -103,12 +96,14 @@ def _by_shared_vertices(
     return np.array([root(item) for item in range(parts)])[part]
 
 
-def _compact(positions: NDArray[np.float64], triangles: NDArray[np.int32], materials: NDArray[np.uint8]) -> Mesh:
-    """Return a mesh with only the vertices that its triangles use, in the file's order."""
+def compact(
+    positions: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return only the vertices that `triangles` use, in the file's order, and the triangles in their terms."""
     low, high = int(triangles.min()), int(triangles.max()) + 1
     used = np.zeros(high - low, dtype=bool)
     used[triangles - low] = True
     if used.all():
-        return Mesh(positions[low:high], triangles - np.int32(low), materials)
+        return positions[low:high], triangles - np.int32(low)
     row = np.cumsum(used, dtype=np.int32) - np.int32(1)
-    return Mesh(positions[low:high][used], row[triangles - low], materials)
+    return positions[low:high][used], row[triangles - low]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import codecs
+import math
+import re
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -16,7 +18,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-Numbers: TypeAlias = "NDArray[np.float64] | NDArray[np.int64]"
+_Number = TypeVar("_Number", np.float64, np.int64)
+
+# Longer ones are beyond any file's vertices, and beyond 64 bits.
+_INDEX = re.compile(rb"[+-]?\d{1,18}")
 
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -124,10 +129,8 @@ def _to_ascii_compatible(path: Path, data: bytes) -> bytes:
         ) from None
 
 
-def number_rows(
-    text: Text, lines: NDArray[np.int64], keyword: int, *, integers: bool
-) -> tuple[Numbers, NDArray[np.int64]]:
-    """Return the numbers of many lines at once.
+def real_rows(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read the reals of many lines at once.
 
     Parameters
     ----------
@@ -135,24 +138,64 @@ def number_rows(
         The lines to read, ascending indices.
     keyword
         Length of the keyword that each begins with.
-    integers
-        Read integers, each up to its first slash (``12/7/3`` is 12), instead of reals.
 
     Returns
     -------
     values
-        float64 or int64, flat. A real that is none is NaN.
+        float64, flat; NaN for what is no number.
     counts
         int64, shape (len(lines),): numbers per line.
+    """
+    if not len(lines):
+        return np.zeros(0), np.zeros(0, dtype=np.int64)
+    characters, counts = _gathered(text, lines, keyword)
+    values = _parsed(characters, int(counts.sum()), np.float64)
+    if values is None:
+        words = (word for row in characters.tobytes().split(b"\n") for word in row.split())
+        values = np.array([_real(word) for word in words])
+    return values, counts
+
+
+def index_rows(
+    text: Text, lines: NDArray[np.int64], keyword: int, field: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Read one field of the corners of many faces at once: ``12/7/3`` is 12 in field 0 and 7 in field 1.
+
+    Parameters
+    ----------
+    text, lines, keyword
+        As in :func:`real_rows`.
+    field
+        0 or 1. A corner without field 1 gives 0, which is no index in OBJ files.
+
+    Returns
+    -------
+    As :func:`real_rows`, but int64.
 
     Raises
     ------
     AssetError
-        An integer that is none.
+        An index that is no integer, or a corner without field 0.
     """
     if not len(lines):
-        none = np.zeros(0, dtype=np.int64)
-        return none, none
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    characters, counts = _gathered(text, lines, keyword)
+    rows = characters.tobytes()
+    marks = characters == ord("/")
+    if marks.any():
+        slashes = np.cumsum(marks, dtype=np.int64)
+        before = np.maximum.accumulate(np.where(characters > ord(" "), 0, slashes))
+        characters[(slashes - before != field) | marks] = ord(" ")
+    elif field:
+        return np.zeros(int(counts.sum()), dtype=np.int64), counts
+    values = _parsed(characters, int(counts.sum()), np.int64)
+    if values is None:
+        values = np.array(_slow_indices(text, lines, rows, field), dtype=np.int64)
+    return values, counts
+
+
+def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Return the lines end to end, keywords and comments blanked, and the words in each."""
     # Lines that follow one another are copied as one piece.
     breaks = np.flatnonzero(np.diff(lines) != 1) + 1
     first = lines[np.concatenate([[0], breaks])]
@@ -170,13 +213,10 @@ def number_rows(
         line_starts[np.searchsorted(lines, first)] = piece_starts
     for offset in range(keyword):
         characters[line_starts + offset] = ord(" ")
-    _blank(characters, ord("#"), characters == ord("\n"))
+    _blank_comments(characters)
     solid = characters > ord(" ")
     begins = np.flatnonzero(solid[1:] & ~solid[:-1]) + 1
-    counts = np.diff(np.searchsorted(begins, line_ends), prepend=0)
-    if integers:
-        _blank(characters, ord("/"), ~solid)
-    return _parse(text, lines, characters, counts, integers=integers), counts
+    return characters, np.diff(np.searchsorted(begins, line_ends), prepend=0)
 
 
 def _line_begins(text: Text, lines: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -186,56 +226,45 @@ def _line_begins(text: Text, lines: NDArray[np.int64]) -> NDArray[np.int64]:
     return begins
 
 
-def _blank(characters: NDArray[np.uint8], mark: int, stops: NDArray[np.bool_]) -> None:
-    """Blank everything from each `mark` to the next of the `stops`, which stays."""
-    marks = characters == mark
-    if not marks.any():
-        return
-    places = np.arange(len(characters), dtype=np.int64)
-    last_mark = np.maximum.accumulate(np.where(marks, places, -1))
-    last_stop = np.maximum.accumulate(np.where(stops, places, -1))
-    characters[last_mark > last_stop] = ord(" ")
+def _blank_comments(characters: NDArray[np.uint8]) -> None:
+    marks = characters == ord("#")
+    if marks.any():
+        seen = np.cumsum(marks, dtype=np.int64)
+        before = np.maximum.accumulate(np.where(characters == ord("\n"), seen, 0))
+        characters[(seen > before) & (characters != ord("\n"))] = ord(" ")
 
 
-def _parse(
-    text: Text, lines: NDArray[np.int64], characters: NDArray[np.uint8], counts: NDArray[np.int64], *, integers: bool
-) -> Numbers:
-    total = int(counts.sum())
+def _parsed(characters: NDArray[np.uint8], total: int, kind: type[_Number]) -> NDArray[_Number] | None:
+    """Parse all numbers, or None where one of the `total` words is none."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # how older NumPy says that it stopped early
         try:
-            text_of_numbers = characters.tobytes()
-            values: Numbers = (
-                np.fromstring(text_of_numbers, dtype=np.int64, sep=" ")
-                if integers
-                else np.fromstring(text_of_numbers, dtype=np.float64, sep=" ")
-            )
-            if len(values) == total:
-                return values
+            values = np.fromstring(characters.tobytes(), dtype=kind, sep=" ")
         except ValueError:
-            pass
-    # Some number is none: read word by word, to say where.
-    rows = characters.tobytes().split(b"\n")
-    slow: list[float] = []
-    for line, count, row in zip(lines.tolist(), counts.tolist(), rows, strict=False):
-        words = row.split()
-        for word in words:
-            value = _number(word, integers=integers)
-            if value is None and integers:
-                raise AssetError(
-                    text.path, f"{decode(word)!r} is no vertex number", place=text.place(line), fix="repair the face"
-                )
-            slow.append(float("nan") if value is None else value)
-        if len(words) != count:
-            raise AssetError(text.path, "a corner has no vertex number", place=text.place(line), fix="repair the face")
-    return np.array(slow, dtype=np.int64) if integers else np.array(slow, dtype=np.float64)
+            return None
+    return values if len(values) == total else None
 
 
-def _number(word: bytes, *, integers: bool) -> float | int | None:
-    if b"_" in word:  # Python's own notation
-        return None
+def _real(word: bytes) -> float:
     try:
-        value = int(word) if integers else float(word)
+        return math.nan if b"_" in word else float(word)  # underscores are Python's own notation
     except ValueError:
-        return None
-    return value if not integers or abs(value) < 1 << 62 else None
+        return math.nan
+
+
+def _slow_indices(text: Text, lines: NDArray[np.int64], rows: bytes, field: int) -> list[int]:
+    """Read word by word, to say where something is wrong."""
+    indices: list[int] = []
+    for line, row in zip(lines.tolist(), rows.split(b"\n"), strict=False):
+        for word in row.split():
+            fields = word.split(b"/")
+            digits = fields[field] if field < len(fields) else b""
+            if field and not digits:
+                indices.append(0)
+                continue
+            if not _INDEX.fullmatch(digits):
+                raise AssetError(
+                    text.path, f"{decode(word)!r} is no corner", place=text.place(line), fix="repair the face"
+                )
+            indices.append(int(digits))
+    return indices

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from voxrt.voxelize import shapes
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.usd import shapes
+from voxrt.voxelize.polygons import triangulate_corners
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,12 +39,18 @@ class Surface:
         int64, shape (T,): the prim's own face that each triangle is of.
     face_count
         How many faces the prim has, holes included.
+    corners
+        int64, shape (T, 3): the corners of its faces that each triangle has, among all of them.
+    corner_count
+        How many corners its faces have; 0 for solids.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     faces: NDArray[np.int64]
     face_count: int
+    corners: NDArray[np.int64]
+    corner_count: int
 
 
 def surface_of(
@@ -63,7 +69,8 @@ def surface_of(
     if solid is None:
         return None
     positions, triangles = solid
-    return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1)
+    none = np.zeros_like(triangles, dtype=np.int64)
+    return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1, none, 0)
 
 
 def _mesh(
@@ -88,10 +95,12 @@ def _mesh(
     if mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none:
         notes.add("subdivision", "subdivision surfaces were taken as their control cage")
     kept = np.flatnonzero(keep)
-    triangles, faces = triangulate(positions, counts[kept], corners[np.repeat(keep, counts)])
+    places = np.flatnonzero(np.repeat(keep, counts))
+    cut, faces = triangulate_corners(positions, counts[kept], corners[places])
     if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
-        triangles = np.ascontiguousarray(triangles[:, ::-1])
-    return Surface(positions, triangles, kept[faces], len(counts))
+        cut = np.ascontiguousarray(cut[:, ::-1])
+    chosen = places[cut]
+    return Surface(positions, corners[chosen].astype(np.int32), kept[faces], len(counts), chosen, len(corners))
 
 
 def _integers(attribute: Usd.Attribute, time: Usd.TimeCode) -> NDArray[np.int64]:

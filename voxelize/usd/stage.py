@@ -10,13 +10,13 @@ from pxr import Tf, Usd, UsdGeom
 from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
     from pathlib import Path
 
     from voxrt.voxelize.notes import Notes
 
 
-def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
+def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
     """Open a stage with all payloads and select variants, in the order given, for this reading alone.
 
     Parameters
@@ -24,7 +24,7 @@ def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
     path
         The root layer.
     variants
-        Selections: ``"/prim:set"`` to the variant's name.
+        Selections: ``"/prim/path:set=name"``.
 
     Raises
     ------
@@ -33,11 +33,12 @@ def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
     """
     stage = Usd.Stage.Open(str(path))
     stage.SetEditTarget(stage.GetSessionLayer())
-    for key, name in variants.items():
+    for selection in variants:
+        key, _, name = selection.partition("=")
         prim_path, _, set_name = key.rpartition(":")
         prim = stage.GetPrimAtPath("/" + prim_path.strip("/")) if prim_path.strip("/") else None
         if not prim:
-            raise AssetError(path, f"variant {key}={name}: no such prim", fix="write it as /prim/path:set=name")
+            raise AssetError(path, f"variant {selection!r}: no such prim", fix="write it as /prim/path:set=name")
         sets = prim.GetVariantSets().GetNames()
         if set_name not in sets:
             known = ", ".join(sets) or "none"

@@ -70,6 +70,8 @@ _add_command(
     "Render a picture of a memory, pixel by pixel what the hardware shows.",
     "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
 )
+_add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
+_add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")
 
 
 def run(arguments: Sequence[str]) -> ExitCode:
@@ -101,6 +103,8 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
     """Say in one line what went wrong, and in a number whose fault it is."""
     problem, code = str(error), ExitCode.BUG
     match error:
+        case ImportError():
+            problem = f"this installation of voxrt is not complete: {problem}; install it again"
         case cyclopts.CycloptsError() | UsageError():
             command = [name for name in arguments[:1] if name in app]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE

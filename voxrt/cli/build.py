@@ -31,6 +31,7 @@ def build(
     size: Annotated[Pixels, Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (640, 480),
     engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
+    strict: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture.
@@ -66,6 +67,8 @@ def build(
     dialect
         How the memory spells a material: report is this project's; seed-rtl is what the published bitstreams read,
         msb what their C++ program reads.
+    strict
+        Refuse an asset of which something would not be honoured as it stands, instead of warning.
     reporting
         How to tell what was done.
     """
@@ -91,6 +94,7 @@ def build(
             preview=png(Path(preview)) if preview else preview is not None,
             size=size,
             engine=engine,
+            strict=strict,
             progress=progress,
         )
     warn(result.warnings)

@@ -47,6 +47,18 @@ def summarize(title: str, rows: Iterable[tuple[str, str]]) -> None:
         _print(f"  {name:<10} {printable(value)}")
 
 
+def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
+    """Print a table, numbers to the right."""
+    rows = [tuple(map(printable, row)) for row in rows]
+    widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
+    right = [all(row[column].replace(",", "").isdigit() for row in rows) for column in range(len(heads))]
+    for row in [heads, *rows]:
+        cells = zip(row, widths, right, strict=True)
+        _print(
+            "  " + "  ".join(cell.rjust(wide) if number else cell.ljust(wide) for cell, wide, number in cells).rstrip()
+        )
+
+
 def picture_cost(frame: Frame, engine: str) -> str:
     """Say what a picture cost."""
     height, width = frame.material.shape

@@ -22,6 +22,7 @@ def render(
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     engine: Literal["rtl", "model"] = "rtl",
+    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
     size: Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (
         640,
         480,
@@ -47,6 +48,8 @@ def render(
         The picture, a .png; NAME.png in this folder when not given.
     engine
         The verilated hardware, or the exact model of it. Both give the same pixels.
+    config
+        The configuration of the hardware: how many lanes, which memory.
     size
         Width and height, pixels. [default: 640x480]
     position
@@ -74,10 +77,10 @@ def render(
     camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size)
+        checked = voxrt.check(memory, camera, size, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine)
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
     voxrt.save_picture(frame, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+import voxrt
 from voxrt.cli.messages import name_file
 from voxrt.outputs import OutputError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from voxrt.octree import Rom
     from voxrt.pipeline import BuildResult, Picture
 
 
@@ -86,9 +88,66 @@ class BuildReport(msgspec.Struct, frozen=True):
     """The preview; null when none was asked for."""
 
 
+class WorldEntry(msgspec.Struct, frozen=True):
+    """Where the voxels stand in the scene."""
+
+    origin: tuple[float, float, float]
+    """The lowest corner, metres."""
+    voxel_size: float
+    """Metres."""
+
+
+class LevelEntry(msgspec.Struct, frozen=True):
+    """The leaves of one size, counted wherever they stand."""
+
+    level: int
+    side: int
+    """Voxels."""
+    solid: int
+    empty: int
+
+
+class UsedMaterialEntry(msgspec.Struct, frozen=True):
+    """A row of the material table, and how much of the world it fills."""
+
+    id: int
+    name: str
+    colour: tuple[int, int, int]
+    authored: bool
+    voxels: int
+
+
+class RomInfo(msgspec.Struct, frozen=True):
+    """``voxrt info --json``."""
+
+    name: str
+    depth: int
+    words: int
+    blocks: int
+    voxels: int
+    world: WorldEntry | None
+    """Null for a memory that does not say."""
+    levels: list[LevelEntry]
+    materials: list[UsedMaterialEntry]
+
+
+class DiffResult(msgspec.Struct, frozen=True):
+    """``voxrt diff --json``: voxels that differ."""
+
+    voxels: int
+    appeared: int
+    """Empty in the first, solid in the second."""
+    vanished: int
+    """Solid in the first, empty in the second."""
+    recoloured: int
+    """Solid in both, of different materials."""
+    bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
+    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+
+
 def schema() -> dict[str, Any]:
     """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult))
+    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, RomInfo, DiffResult))
     return definitions
 
 
@@ -128,6 +187,29 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         camera=CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
+    )
+
+
+def rom_info(rom: Rom) -> RomInfo:
+    """Tell programs what a memory holds."""
+    counts = voxrt.census(rom.octree)
+    voxels = counts.voxels
+    return RomInfo(
+        name=rom.name,
+        depth=rom.octree.depth,
+        words=len(rom.octree.words),
+        blocks=rom.octree.blocks,
+        voxels=counts.solid_voxels,
+        world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
+        levels=[
+            LevelEntry(level, 1 << level, int(leaves[1:].sum()), int(leaves[0]))
+            for level, leaves in enumerate(counts.leaves)
+            if leaves.any()
+        ],
+        materials=[
+            UsedMaterialEntry(number, material.name, material.colour, material.authored, voxels.get(number, 0))
+            for number, material in enumerate(rom.materials)
+        ],
     )
 
 

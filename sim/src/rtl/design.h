@@ -6,12 +6,14 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace voxrt::rtl {
 
 // The parameters of the design that callers must respect: Design checks none of them.
 struct Limits {
     unsigned lanes;
+    bool banked;
     unsigned max_depth;     // depth is 1 .. max_depth
     unsigned position_bits; // signed
     unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
@@ -48,8 +50,10 @@ class Design {
 public:
     virtual ~Design() = default;
     virtual const Limits& limits() const = 0;
-    // At most memory_words(), report dialect. Through the load port, a word a clock, or straight into the memory.
+    // At most memory_words(), report dialect. Through the access port, a word a clock, or straight into the memory.
     virtual void load(std::span<const uint32_t> words, bool through_port) = 0;
+    // What the access port reads from address 0 on.
+    virtual std::vector<uint32_t> read_back(std::size_t count) = 0;
     // Calls poll now and then; what it throws ends the frame, and the design stays usable.
     virtual FrameCost render(const FrameRequest& request, const FrameImage& image,
                              const std::function<void()>& poll) = 0;

@@ -1,4 +1,24 @@
-// voxrt.sim._rtl: the verilated ray tracer for Python. Checks every argument; see _rtl.pyi for the contract.
+// voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
+//
+//   CONFIGS: list[str]        names of the configurations that were built
+//   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
+//     .memory_words           how many words the simulated memory holds
+//     .max_depth              the deepest octree that the configuration can trace
+//     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
+//     .load(words, *, through_port=False)
+//                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
+//                             straight into the simulated memory: the outcome is the same
+//     .read_back(count)       uint32: the memory's first words, read through that port
+//     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
+//                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
+//                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
+//                             materials uint8 (256, 3), sRGB, row 0 is the background. With a stall_seed, the
+//                             picture's consumer stalls in a pattern that depends on it.
+//                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
+//                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
+//                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
+//
+// ValueError: a name, size or register out of range.
 #include "design.h"
 
 #include <nanobind/nanobind.h>
@@ -78,6 +98,20 @@ public:
         Busy busy(*this);
         nb::gil_scoped_release released;
         design_->load({words.data(), words.size()}, through_port);
+    }
+
+    nb::object read_back(std::size_t count) {
+        if (count > memory_words())
+            throw std::invalid_argument("the memory has " + std::to_string(memory_words()) + " words, not " +
+                                        std::to_string(count));
+        auto* words = new std::vector<uint32_t>;
+        nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
+        {
+            Busy busy(*this);
+            nb::gil_scoped_release released;
+            *words = design_->read_back(count);
+        }
+        return nb::cast(nb::ndarray<nb::numpy, uint32_t>(words->data(), {words->size()}, owner));
     }
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
@@ -161,6 +195,7 @@ NB_MODULE(_rtl, m) {
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
+        .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "stall_seed"_a = 0);
 }

@@ -6,64 +6,103 @@
 #include <verilated.h>
 #include <verilated_syms.h>
 
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace voxrt::rtl {
 
 template <class Model> class VerilatedDesign final : public Design {
 public:
-    explicit VerilatedDesign(const Limits& limits) : limits_(limits), model_(&context_, "TOP") {
-        model_.rst_ni = 0;
-        model_.eval();
+    explicit VerilatedDesign(const Limits& limits) : limits_(limits) {
+        context_.threads(1);
+        enter();
+        model_ = std::make_unique<Model>(&context_, "TOP");
+        model_->rst_ni = 0;
+        model_->eval();
     }
 
-    ~VerilatedDesign() override { model_.final(); }
+    ~VerilatedDesign() override {
+        enter();
+        model_.reset();
+        Verilated::threadContextp(Verilated::defaultContextp());
+    }
 
     const Limits& limits() const override { return limits_; }
 
     void load(std::span<const uint32_t> words, bool through_port) override {
+        enter();
         if (through_port) {
-            model_.load_valid_i = 1;
+            model_->access_i = 1;
+            model_->access_write_i = 1;
             for (std::size_t address = 0; address < words.size(); ++address) {
-                model_.load_address_i = static_cast<uint32_t>(address);
-                model_.load_word_i = words[address];
+                model_->access_address_i = static_cast<uint32_t>(address);
+                model_->access_word_i = words[address];
                 clock();
             }
-            model_.load_valid_i = 0;
+            model_->access_i = 0;
+            model_->access_write_i = 0;
             return;
         }
-        *variable<uint32_t>("TOP.voxrt_rtu.u_memory", "root_q") = memory_word(words[0]);
-        for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
-            const std::string scope = "TOP.voxrt_rtu.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram";
-            uint32_t* rows = variable<uint32_t>(scope, "data_q");
+        const std::string memory = "TOP.voxrt_rtu.u_memory";
+        *variable(memory, "root_q") = memory_word(words[0]);
+        if (limits_.banked) {
+            uint32_t* banks[8];
+            for (unsigned bank = 0; bank < 8; ++bank)
+                banks[bank] =
+                    variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
             for (std::size_t row = 0; row + 1 < words.size(); ++row)
-                rows[row] = memory_word(words[row + 1]);
+                banks[(row ^ row >> 3) & 7][row >> 3] = memory_word(words[row + 1]);
+        } else {
+            for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
+                uint32_t* rows =
+                    variable(memory + ".gen_private.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram", "data_q");
+                for (std::size_t row = 0; row + 1 < words.size(); ++row)
+                    rows[row] = memory_word(words[row + 1]);
+            }
         }
     }
 
+    std::vector<uint32_t> read_back(std::size_t count) override {
+        enter();
+        std::vector<uint32_t> words;
+        model_->access_i = 1;
+        for (std::size_t address = 0; words.size() < count; ++address) {
+            model_->access_i = address < count;
+            model_->access_address_i = static_cast<uint32_t>(address);
+            clock();
+            if (model_->access_valid_o)
+                words.push_back(model_->access_word_o);
+        }
+        model_->access_i = 0;
+        return words;
+    }
+
     FrameCost render(const FrameRequest& request, const FrameImage& image, const std::function<void()>& poll) override {
+        enter();
         reset();
         set_frame(request);
-        model_.start_i = 1;
+        model_->start_i = 1;
         clock();
-        model_.start_i = 0;
+        model_->start_i = 0;
 
         const std::size_t pixels = std::size_t{request.width} * request.height;
         StallPattern stalls(request.stall_seed);
         std::size_t done = 0;
         for (uint64_t clocks = 1; done < pixels; ++clocks) {
-            model_.out_ready_i = !stalls.next();
-            if (model_.out_valid_o && model_.out_ready_i) {
-                const uint32_t colour = model_.out_colour_o;
+            model_->out_ready_i = !stalls.next();
+            if (model_->out_valid_o && model_->out_ready_i) {
+                const uint32_t colour = model_->out_colour_o;
                 image.colour[3 * done] = static_cast<uint8_t>(colour >> 16);
                 image.colour[3 * done + 1] = static_cast<uint8_t>(colour >> 8);
                 image.colour[3 * done + 2] = static_cast<uint8_t>(colour);
-                image.material[done] = static_cast<uint8_t>(model_.out_pixel_o >> 2);
-                image.face[done] = model_.out_pixel_o & 3;
+                image.material[done] = static_cast<uint8_t>(model_->out_pixel_o >> 2);
+                image.face[done] = model_->out_pixel_o & 3;
                 const bool last = done + 1 == pixels;
                 const bool line_end = (done + 1) % request.width == 0;
-                if (model_.out_first_o != (done == 0) || model_.out_line_end_o != line_end || model_.out_last_o != last)
+                if (model_->out_first_o != (done == 0) || model_->out_line_end_o != line_end ||
+                    model_->out_last_o != last)
                     throw std::logic_error("pixel " + std::to_string(done) + " has wrong first, line or last marks");
                 ++done;
             }
@@ -71,17 +110,20 @@ public:
             if (clocks % poll_interval == 0)
                 poll();
         }
-        if (model_.busy_o)
+        if (model_->busy_o)
             throw std::logic_error("busy after the last pixel");
-        const unsigned errors = model_.error_o;
-        return {.cycles = model_.cycles_o,
-                .words_read = model_.words_read_o,
+        const unsigned errors = model_->error_o;
+        return {.cycles = model_->cycles_o,
+                .words_read = model_->words_read_o,
                 .direction_overflow = (errors & 4) != 0,
                 .bad_pointer = (errors & 2) != 0,
                 .step_limit = (errors & 1) != 0};
     }
 
 private:
+    // Verilator's run time works on the calling thread's context, in destructors too: never on one that is gone.
+    void enter() { Verilated::threadContextp(&context_); }
+
     static constexpr uint64_t poll_interval = 1 << 16;
 
     // Runs of random length, stalled or not, so that queues fill and drain.
@@ -110,42 +152,42 @@ private:
     };
 
     void clock() {
-        model_.clk_i = 0;
-        model_.eval();
-        model_.clk_i = 1;
-        model_.eval();
+        model_->clk_i = 0;
+        model_->eval();
+        model_->clk_i = 1;
+        model_->eval();
     }
 
     // The pixel buffers clear themselves, 128 places a clock each, after reset.
     void reset() {
-        model_.start_i = 0;
-        model_.out_ready_i = 0;
-        model_.rst_ni = 0;
+        model_->start_i = 0;
+        model_->out_ready_i = 0;
+        model_->rst_ni = 0;
         for (int i = 0; i < 16; ++i)
             clock();
-        model_.rst_ni = 1;
+        model_->rst_ni = 1;
         clock();
     }
 
     void set_frame(const FrameRequest& request) {
-        model_.table_write_i = 1;
+        model_->table_write_i = 1;
         for (unsigned material = 0; material < 256; ++material) {
             const uint8_t* colour = request.materials + 3 * material;
-            model_.table_material_i = static_cast<uint8_t>(material);
-            model_.table_colour_i = uint32_t{colour[0]} << 16 | uint32_t{colour[1]} << 8 | colour[2];
+            model_->table_material_i = static_cast<uint8_t>(material);
+            model_->table_colour_i = uint32_t{colour[0]} << 16 | uint32_t{colour[1]} << 8 | colour[2];
             clock();
         }
-        model_.table_write_i = 0;
+        model_->table_write_i = 0;
         const uint32_t position_mask = limits_.position_bits < 32 ? (1u << limits_.position_bits) - 1 : ~0u;
         for (int axis = 0; axis < 3; ++axis) {
-            model_.position_i[axis] = static_cast<uint32_t>(request.position[axis]) & position_mask;
-            model_.look_i[axis] = static_cast<uint16_t>(request.look[axis]);
-            model_.right_i[axis] = static_cast<uint16_t>(request.right[axis]);
-            model_.up_i[axis] = static_cast<uint16_t>(request.up[axis]);
+            model_->position_i[axis] = static_cast<uint32_t>(request.position[axis]) & position_mask;
+            model_->look_i[axis] = static_cast<uint16_t>(request.look[axis]);
+            model_->right_i[axis] = static_cast<uint16_t>(request.right[axis]);
+            model_->up_i[axis] = static_cast<uint16_t>(request.up[axis]);
         }
-        model_.width_i = static_cast<uint16_t>(request.width);
-        model_.height_i = static_cast<uint16_t>(request.height);
-        model_.depth_i = static_cast<uint8_t>(request.depth);
+        model_->width_i = static_cast<uint16_t>(request.width);
+        model_->height_i = static_cast<uint16_t>(request.height);
+        model_->depth_i = static_cast<uint8_t>(request.depth);
     }
 
     // What voxrt_octree_memory keeps for a word of the report dialect.
@@ -159,17 +201,18 @@ private:
         return word >> 3;
     }
 
-    template <class Value> Value* variable(const std::string& scope_name, const char* name) {
+    // A variable that the design marks public, wherever Verilator put it.
+    uint32_t* variable(const std::string& scope_name, const char* name) {
         const VerilatedScope* scope = context_.scopeFind(scope_name.c_str());
         VerilatedVar* found = scope ? scope->varFind(name) : nullptr;
-        if (!found)
-            throw std::logic_error("the verilated design has no " + scope_name + "." + name);
-        return static_cast<Value*>(found->datap());
+        if (!found || found->vltype() != VLVT_UINT32)
+            throw std::logic_error("the verilated design has no 32-bit variable " + scope_name + "." + name);
+        return static_cast<uint32_t*>(found->datap());
     }
 
     Limits limits_;
     VerilatedContext context_;
-    Model model_;
+    std::unique_ptr<Model> model_;
 };
 
 } // namespace voxrt::rtl

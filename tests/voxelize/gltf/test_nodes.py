@@ -162,3 +162,22 @@ def test_quaternions_of_another_length_are_normalized_with_a_warning(tmp_path):
     scene = load(writer.save(tmp_path / "a.glb"))
     np.testing.assert_allclose(scene.objects[0].transform[:2, :2], [[0, -1], [1, 0]], atol=1e-15)
     assert "rotation-length" in {warning.kind for warning in scene.warnings}
+
+
+def test_hidden_nodes_hide_what_hangs_below_them(tmp_path):
+    writer = GltfWriter()
+    mesh = writer.mesh(TRIANGLE)
+    hidden = {"KHR_node_visibility": {"visible": False}}
+    writer.show(name="shown", mesh=mesh, extensions={"KHR_node_visibility": {"visible": True}})
+    writer.show(name="hidden", mesh=mesh, extensions=hidden, children=[2])
+    writer.add("nodes", {"name": "below", "mesh": mesh})
+    assert list(shown(writer, tmp_path / "a.glb")) == ["shown"]
+
+
+def test_a_chain_whose_nodes_are_all_listed_is_shown_once_without_delay(tmp_path):
+    writer = GltfWriter()
+    count = 3000
+    writer.json["nodes"] = [{"children": [at + 1]} for at in range(count)]
+    writer.json["nodes"].append({"mesh": writer.mesh(TRIANGLE)})
+    writer.json["scenes"] = [{"nodes": list(range(count, -1, -1))}]
+    assert len(load(writer.save(tmp_path / "a.glb")).objects) == 1

@@ -165,12 +165,19 @@ def test_a_concave_polygon_covers_its_own_area(obj):
     assert np.cross(b - a, c - a)[:, 2].sum() / 2 == pytest.approx(10.0)
 
 
-def test_vertex_colours_and_textures_are_counted(obj):
-    text = (
-        "mtllib model.mtl\nusemtl a\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\np 1\ncurv 0 1\nnonsense 1\n"
+def test_what_is_not_honoured_is_counted(obj):
+    scene = obj(
+        "mtllib model.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\np 1\ncurv 0 1\nnonsense 1\n",
+        "newmtl a\nKd 1 0 0\nmap_Kd a.png\nmap_d b.png\n",
     )
-    scene = obj(text, "newmtl a\nKd 1 0 0\nmap_Kd a.png\n")
-    assert kinds(scene) == {"no-area": 2, "free-form": 1, "unknown-statement": 1, "vertex-colours": 2, "texture": 1}
+    assert kinds(scene) == {
+        "no-area": 2,
+        "free-form": 1,
+        "unknown-statement": 1,
+        "missing-texture": 1,
+        "opacity-texture": 1,
+    }
+    assert scene.materials[1].colour == (255, 0, 0)
 
 
 @pytest.mark.parametrize(
@@ -184,8 +191,8 @@ def test_vertex_colours_and_textures_are_counted(obj):
         ("v 0 0 0\n\n\nf 1 2 1\n", "line 4: vertex 2 of a face is none of the file's 1"),
         ("v 0 0 0\nf 0 1 1\n", "line 2: vertex 0 of a face is none"),
         ("v 0 0 0\nf -2 1 1\n", "line 2: vertex -2 of a face is none"),
-        ("v 0 \\\n0 0\nf 1 1 x\n", "line 3: 'x' is no vertex number"),
-        ("v 0 0 0\nf 1 1 /2\n", "line 2: a corner has no vertex number"),
+        ("v 0 \\\n0 0\nf 1 1 x\n", "line 3: 'x' is no corner"),
+        ("v 0 0 0\nf 1 1 /2\n", "line 2: '/2' is no corner"),
         ("v 0 0 0\nf 1 1 99999999999999999999999\n", "line 2: "),
         ("v 0 0 nan\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is no number"),
         ("v 0 0 1e999\nf 1 1 1\n", "line 2: vertex 1 of a face has a coordinate that is no number"),

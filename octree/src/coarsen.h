@@ -1,0 +1,14 @@
+// A memory into a pool: equal blocks shared, and, where asked, nothing finer than a given side.
+#pragma once
+
+#include "block_pool.h"
+#include "memory.h"
+
+namespace voxrt::octree {
+
+/// The root, in `pool`, of `memory` with every octant of side 2**level that is not uniform made one: empty where all of
+/// it is empty, else solid, of the material that most of its solid voxels have (the lowest id where several do). Level
+/// 0 changes no voxel and shares equal blocks. Linear in words times levels. The GIL must not be held.
+Node coarsen(const Memory& memory, unsigned level, BlockPool& pool);
+
+} // namespace voxrt::octree

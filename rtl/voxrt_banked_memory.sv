@@ -1,0 +1,160 @@
+// The octree memory once for all lanes, in eight banks of dual-port block RAM. The words of a block stand in
+// different banks: octant xor the block's lowest bits, so that lanes near the root do not all want one bank.
+//
+// Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
+// Every lane that wants one of these rows gets it; the others get no ack_o and ask again at their ray's next turn.
+// A word comes five clocks after its address:
+//   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register; which lane is served | 4 to the lanes
+//
+// The access port takes port A of its bank.
+module voxrt_banked_memory
+  import voxrt_pkg::*;
+#(
+  parameter  int unsigned Lanes       = 16,
+  parameter  int unsigned BlockBits   = 12,
+  localparam int unsigned PayloadBits = payload_bits(BlockBits),
+  localparam int unsigned RowBits     = BlockBits + 3
+) (
+  input  logic                 clk_i,
+  input  logic                 rst_ni,
+  input  logic                 access_i,
+  input  logic                 access_write_i,
+  input  logic [  RowBits-1:0] access_row_i,
+  input  logic [PayloadBits:0] access_word_i,
+  output logic [PayloadBits:0] access_word_o,              // Five clocks later.
+  input  logic [    Lanes-1:0] read_i,
+  input  logic [BlockBits-1:0] block_i            [Lanes],
+  input  logic [          2:0] octant_i           [Lanes],
+  output logic [    Lanes-1:0] ack_o,
+  output logic [PayloadBits:0] word_o             [Lanes]
+);
+  localparam int unsigned Banks = 8;
+
+  // Bank and block of each lane's request, clock by clock.
+  logic [Lanes-1:0]     read_q [1:3];
+  logic [2:0]           bank   [Lanes];
+  logic [2:0]           bank_q [1:4] [Lanes];
+  logic [BlockBits-1:0] block_q[1:2] [Lanes];
+
+  always_comb for (int unsigned i = 0; i < Lanes; i++) bank[i] = octant_i[i] ^ block_i[i][2:0];
+
+  always_ff @(posedge clk_i) begin
+    read_q[1] <= rst_ni ? read_i : '0;
+    read_q[2] <= rst_ni ? read_q[1] : '0;
+    read_q[3] <= rst_ni ? read_q[2] : '0;
+    bank_q[1] <= bank;
+    bank_q[2] <= bank_q[1];
+    bank_q[3] <= bank_q[2];
+    bank_q[4] <= bank_q[3];
+    block_q[1] <= block_i;
+    block_q[2] <= block_q[1];
+  end
+
+  // Lanes from the rotating start on go before the others at port A, and after them at port B.
+  logic [Lanes-1:0] late_q;
+
+  always_ff @(posedge clk_i) late_q <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
+
+  // The access port, kept in step.
+  logic                 access_q     [1:4];
+  logic                 access_write_q;
+  logic [BlockBits-1:0] access_block_q;
+  logic [          2:0] access_bank_q[1:4];
+  logic [PayloadBits:0] access_word_q[1:2];
+  logic                 access_write2_q;
+
+  always_ff @(posedge clk_i) begin
+    access_q[1]      <= access_i && rst_ni;
+    access_write_q   <= access_write_i;
+    access_block_q   <= access_row_i[RowBits-1:3];
+    access_bank_q[1] <= access_row_i[2:0] ^ access_row_i[5:3];
+    access_word_q[1] <= access_word_i;
+    access_word_q[2] <= access_word_q[1];
+    access_write2_q  <= access_write_q;
+    for (int unsigned s = 2; s <= 4; s++) begin
+      access_q[s]      <= access_q[s-1] && rst_ni;
+      access_bank_q[s] <= access_bank_q[s-1];
+    end
+  end
+
+  logic [PayloadBits:0] a_word[Banks], b_word[Banks];
+  logic [BlockBits-1:0] a_block2_q[Banks], b_block2_q[Banks];
+  logic [Banks-1:0]     a_lane2_q;  // Port A reads for a lane.
+
+  for (genvar k = 0; k < Banks; k++) begin : gen_bank
+    // 0 choose. The lowest set bit is x & -x; the highest is that of the mirrored vector.
+    logic [Lanes-1:0] asks, early, upwards, downwards, first_q, last_q;
+
+    function automatic logic [Lanes-1:0] mirror(logic [Lanes-1:0] lanes);
+      for (int unsigned i = 0; i < Lanes; i++) mirror[i] = lanes[Lanes-1-i];
+    endfunction
+
+    always_comb begin
+      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && bank[i] == 3'(k);
+      early     = asks & ~late_q;
+      upwards   = early != '0 ? early : asks;
+      downwards = mirror((asks & late_q) != '0 ? asks & late_q : asks);
+    end
+
+    // 1 rows.
+    logic [BlockBits-1:0] a_block, b_block;
+
+    always_comb begin
+      a_block = '0;
+      b_block = '0;
+      for (int unsigned i = 0; i < Lanes; i++) begin
+        if (first_q[i]) a_block |= block_q[1][i];
+        if (last_q[i]) b_block |= block_q[1][i];
+      end
+    end
+
+    // 2 block RAM.
+    logic accessed2_q;
+
+    always_ff @(posedge clk_i) begin
+      first_q       <= upwards & -upwards;
+      last_q        <= mirror(downwards & -downwards);
+      accessed2_q   <= access_q[1] && access_bank_q[1] == 3'(k);
+      a_lane2_q[k]  <= !(access_q[1] && access_bank_q[1] == 3'(k));
+      a_block2_q[k] <= access_q[1] && access_bank_q[1] == 3'(k) ? access_block_q : a_block;
+      b_block2_q[k] <= b_block;
+    end
+
+    voxrt_block_ram #(
+      .Width(PayloadBits + 1),
+      .Depth(2 ** BlockBits)
+    ) u_ram (
+      .clk_i,
+      .a_read_i (1'b1),
+      .a_write_i(accessed2_q && access_write2_q),
+      .a_row_i  (a_block2_q[k]),
+      .a_data_i (access_word_q[2]),
+      .a_data_o (a_word[k]),
+      .b_read_i (1'b1),
+      .b_row_i  (b_block2_q[k]),
+      .b_data_o (b_word[k])
+    );
+  end
+
+  // 2, 3 which lane is served; 4 to the lanes.
+  logic [Lanes-1:0]     from_a_q[3:4], from_b_q[3:4], ack_q;
+  logic [PayloadBits:0] word_q[Lanes], access_out_q;
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_block2_q[bank_q[2][i]] == block_q[2][i];
+      from_b_q[3][i] <= read_q[2][i] && b_block2_q[bank_q[2][i]] == block_q[2][i];
+      word_q[i]      <= from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
+    end
+    from_a_q[4]  <= from_a_q[3];
+    from_b_q[4]  <= from_b_q[3];
+    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] : '0;
+    access_out_q <= a_word[access_bank_q[4]];
+  end
+
+  logic unused;
+  assign unused        = access_q[4] ^ (^read_q[3]);
+  assign ack_o         = ack_q;
+  assign word_o        = word_q;
+  assign access_word_o = access_out_q;
+endmodule

@@ -1,0 +1,162 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracles.octree import reference_words, unshared_words
+from oracles.random_worlds import dense_cubes
+
+from voxrt import octree
+from voxrt.octree import _native
+from voxrt.voxelize import DoesNotFitError
+
+
+def surface(cube):
+    padded = np.pad(cube, 1) != 0
+    covered = np.ones(cube.shape, bool)
+    for axis in range(3):
+        for step in (-1, 1):
+            covered &= np.roll(padded, step, axis)[1:-1, 1:-1, 1:-1]
+    return (cube != 0) & ~covered
+
+
+def lumps(depth, materials=1, seed=0):
+    """A few overlapping balls with rough skins."""
+    rng = np.random.default_rng(seed)
+    side = 1 << depth
+    grid = np.stack(np.indices((side,) * 3), -1) + 0.5
+    cube = np.zeros((side,) * 3, np.uint8)
+    for i in range(4):
+        centre, radius = rng.uniform(0.3, 0.7, 3) * side, rng.uniform(0.1, 0.25) * side
+        skin = 0.05 * radius * np.sin(grid @ rng.normal(size=3) * 40 / side)
+        cube[np.linalg.norm(grid - centre, axis=-1) < radius + skin] = 1 + i % materials
+    return cube
+
+
+@given(dense_cubes())
+def test_sharing_gives_the_canonical_memory(cube):
+    tree = octree.decode(unshared_words(cube), "report", len(cube).bit_length() - 1)
+    np.testing.assert_array_equal(octree.share(tree).words, reference_words(cube))
+
+
+@given(dense_cubes(4), st.integers(0, 4))
+def test_coarsening_is_the_majority_of_the_solid(cube, level):
+    depth = len(cube).bit_length() - 1
+    level = min(level, depth)
+    side = 1 << level
+    expected = cube.copy()
+    for x, y, z in np.ndindex(*[len(cube) // side] * 3):
+        part = expected[x * side : (x + 1) * side, y * side : (y + 1) * side, z * side : (z + 1) * side]
+        counts = np.bincount(part.ravel(), minlength=256)
+        counts[0] = 0
+        part[:] = counts.argmax()
+    np.testing.assert_array_equal(octree.coarsen(octree.from_dense(cube), level).words, reference_words(expected))
+
+
+@given(st.data())
+def test_surface_change_is_what_brute_force_counts(data):
+    a, b = data.draw(dense_cubes(4)), data.draw(dense_cubes(4))
+    side = max(len(a), len(b))
+    a, b = (np.pad(c, (0, side - len(c))) for c in (a, b))
+    trees = octree.from_dense(a), octree.from_dense(b)
+    found = _native.surface_change(trees[0].words, trees[1].words, trees[0].depth)
+    seen = surface(a)
+    assert found == (np.count_nonzero(seen), np.count_nonzero(seen & ~(surface(b) & (a == b))))
+
+
+@given(dense_cubes(5), st.floats(0, 1), st.booleans())
+@settings(max_examples=40)
+def test_a_fit_fits_and_opens_no_hole(cube, share, coloured):
+    tree = octree.from_dense(cube)
+    words = max(1, int(share * len(tree.words)))
+    colours = np.random.default_rng(1).integers(0, 256, (256, 3)).astype(np.uint8) if coloured else None
+    try:
+        found = octree.fit(tree, words, colours=colours)
+    except DoesNotFitError as error:
+        smallest = int(str(error).split()[-2])
+        assert smallest > words
+        assert len(octree.fit(tree, smallest, colours=colours).octree.words) <= smallest
+        return
+    assert len(found.octree.words) <= words
+    shown = octree.to_dense(found.octree)
+    np.testing.assert_array_equal(found.octree.words, reference_words(shown))
+    assert not (shown[cube != 0] == 0).any()
+    assert set(np.unique(shown)) <= set(np.unique(cube))
+    assert found.appeared == np.count_nonzero((cube == 0) & (shown != 0))
+    assert found.recoloured == np.count_nonzero((cube != 0) & (shown != cube))
+    assert found.surface == np.count_nonzero(surface(cube))
+    assert found.changed == np.count_nonzero(surface(cube) & ~(surface(shown) & (shown == cube)))
+
+
+def test_what_fits_is_not_touched():
+    tree = octree.from_dense(lumps(5))
+    found = octree.fit(tree, len(tree.words))
+    np.testing.assert_array_equal(found.octree.words, tree.words)
+    assert (found.changed, found.appeared, found.recoloured, found.percent_changed) == (0, 0, 0, 0.0)
+
+
+def test_sharing_comes_first():
+    cube = lumps(5)
+    tree = octree.decode(unshared_words(cube), "report", 5)
+    found = octree.fit(tree, len(reference_words(cube)))
+    assert (found.words_before, found.words_shared) == (len(tree.words), len(found.octree.words))
+    assert octree.diff(tree, found.octree).voxels == 0
+
+
+@pytest.mark.parametrize("materials", [1, 3])
+@pytest.mark.parametrize("level", [1, 2])
+def test_closer_than_a_coarser_world_of_the_same_size(materials, level):
+    tree = octree.from_dense(lumps(6, materials))
+    plain = octree.coarsen(tree, level)
+    _, plain_changed = _native.surface_change(tree.words, plain.words, tree.depth)
+    found = octree.fit(tree, len(plain.words))
+    assert len(found.octree.words) <= len(plain.words)
+    assert found.changed + found.appeared < plain_changed + octree.diff(tree, plain).appeared
+
+
+def test_hidden_materials_go_first():
+    """A ball of one material around noise of three: the noise can go without a change that anyone sees."""
+    cube = lumps(6) * 4
+    hidden = np.zeros(cube.shape, bool)
+    hidden[24:40, 24:40, 24:40] = True
+    cube[16:48, 16:48, 16:48] = 4
+    cube[hidden] = np.random.default_rng(0).integers(1, 4, hidden.sum())
+    quiet = np.where(hidden, 4, cube)
+    tree = octree.from_dense(cube)
+    found = octree.fit(tree, len(octree.from_dense(quiet).words) + 80)
+    assert (found.changed, found.appeared) == (0, 0)
+    assert found.recoloured > 0
+
+
+def test_similar_colours_stand_for_each_other_first():
+    cube = np.zeros((32, 32, 32), np.uint8)
+    cube[:, :, :8] = np.random.default_rng(0).integers(1, 4, (32, 32, 8))
+    colours = np.array([[0, 0, 0], [200, 0, 0], [204, 0, 0], [0, 0, 255]], np.uint8)
+    tree = octree.from_dense(cube)
+
+    def far_changes(colours):
+        shown = octree.to_dense(octree.fit(tree, len(tree.words) // 2, colours=colours).octree)
+        return np.count_nonzero((cube == 3) != (shown == 3))
+
+    assert far_changes(colours) < far_changes(None)
+
+
+def test_infeasible_budgets_name_the_smallest():
+    tree = octree.from_dense(lumps(6))
+    smallest = len(octree.coarsen(tree, 3).words)
+    with pytest.raises(
+        DoesNotFitError, match=rf"does not fit {smallest - 1} words: .* give it at least {smallest} words"
+    ):
+        octree.fit(tree, smallest - 1)
+    assert len(octree.fit(tree, smallest).octree.words) <= smallest
+
+
+def test_boards_hold_whole_blocks():
+    assert all(words % 8 == 1 for words in octree.BOARDS.values())
+
+
+def test_refusals():
+    tree = octree.from_dense(np.ones((2, 2, 2), int))
+    with pytest.raises(ValueError, match=r"level must be 0 \.\.\. 1, not 2"):
+        octree.coarsen(tree, 2)
+    with pytest.raises(ValueError, match=r"colours must have the shape \(M, 3\)"):
+        octree.fit(octree.from_dense(lumps(4)), 9, colours=np.zeros((2, 4), np.uint8))
