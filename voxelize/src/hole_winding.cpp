@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kMostCaps = 1 << 18;
 constexpr uint32_t kLeafCaps = 4;
-constexpr double kFar = 3; // radii at which a node is a dipole: errors below 1 %, see Barill et al.
+constexpr double kFar = 2; // radii at which a node is a dipole, as Barill et al. chose
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -169,7 +169,7 @@ double HoleWinding::variation(int32_t index, const Point& q, double reach) const
 int HoleWinding::settled(const Point& q, double reach) const {
     if (nodes_.empty())
         return 0;
-    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.02; // and the dipoles' error
+    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.05; // and the dipoles' error
     if (!(change < 0.5))
         return kUnsettled;
     const double value = at(q);
