@@ -7,7 +7,7 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test lint bench sanitize clean
 .DELETE_ON_ERROR:
 
 help:
@@ -15,6 +15,7 @@ help:
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
 	@echo "make bench   run the benchmarks"
+	@echo "make sanitize  run the native voxelizer under the address, undefined and thread sanitizers"
 	@echo "make clean   remove what the others made"
 
 demo: $(VENV)/.installed
@@ -33,6 +34,16 @@ lint: $(VENV)/.installed $(VENV)/.tools
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
+
+# Without Python, so that the sanitizers see our own code alone.
+sanitize: $(addprefix build/sanitize/voxelize-,address-undefined thread)
+	for program in $^; do echo $$program && $$program || exit 1; done
+
+build/sanitize/voxelize-%: tests/voxelize/native/exercise.cpp $(wildcard voxelize/src/*)
+	@mkdir -p $(@D)
+	$(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -Ivoxelize/src -o $@ \
+		$< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
+comma := ,
 
 clean:
 	rm -rf $(VENV) build demo
