@@ -114,7 +114,7 @@ def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
     size
         Columns and rows of the frame.
     """
-    return frame_points(_outline(rom.octree), size)
+    return frame_points(outline(rom.octree), size)
 
 
 def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
@@ -141,15 +141,14 @@ def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
     return _scaled(eye, axes, focal, size)
 
 
-def _outline(octree: Octree) -> NDArray[np.float64]:
+def outline(octree: Octree) -> NDArray[np.float64]:
     """Give points whose hull holds all that is solid, or the world: shape (N, 3), voxels."""
     coarse = coarsen(octree, max(0, octree.depth - _OUTLINE_LEVELS))
-    boxes = [
-        (part.corners, part.corners + (1 << part.levels.astype(np.int64))[:, None])
-        for part in leaves(coarse, solid_only=True)
-    ] or [(np.zeros((1, 3)), np.full((1, 3), octree.size))]
-    low, high = (np.concatenate(ends).astype(np.float64) for ends in zip(*boxes, strict=True))
-    return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
+    parts = list(leaves(coarse, solid_only=True))
+    low = np.concatenate([part.corners for part in parts]) if parts else np.zeros((1, 3), np.int32)
+    levels = np.concatenate([part.levels for part in parts]) if parts else np.array([octree.depth], np.uint8)
+    high = low + (1 << levels.astype(np.int64))[:, None]
+    return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]).astype(np.float64)
 
 
 def pixel_directions(camera: Camera, size: tuple[int, int]) -> NDArray[np.int64]:

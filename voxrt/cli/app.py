@@ -75,6 +75,16 @@ _add_command(
     "Compare a memory with the meshes that it was built from.",
     "voxrt compare courtyard.mem courtyard.glb -o likeness.png",
 )
+_add_command(
+    "serve",
+    "Show scenes live in the browser, until interrupted.",
+    "voxrt serve courtyard.mem dog.usda",
+)
+_add_command(
+    "upload",
+    "Let a running board show another scene.",
+    "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
+)
 _add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
 _add_command(
     "completion",

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 import voxrt
+from voxrt.cli.board_results import ServeResult, UploadResult
 from voxrt.cli.messages import name_file
 from voxrt.outputs import OutputError
 
@@ -185,7 +186,9 @@ class CompareResult(msgspec.Struct, frozen=True):
 
 def schema() -> dict[str, Any]:
     """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, RomInfo, DiffResult, CompareResult))
+    _, definitions = msgspec.json.schema_components(
+        (BuildReport, RenderResult, RomInfo, DiffResult, CompareResult, ServeResult, UploadResult)
+    )
     return definitions
 
 
