@@ -66,7 +66,7 @@ def test_the_kaitai_description_reads_what_is_written():
     assert body["NAME"] == {"text": written.rom.name}
     assert body["WRLD"] == {"depth": 2, "known": 1, "origin": [1.5, -2.0, 0.1], "voxel_size": 0.25}
     assert [(m["name"], (m["red"], m["green"], m["blue"]), m["flags"]) for m in body["MATL"]["entries"]] == [
-        ("empty", (0, 0, 0), 2),
+        ("empty", EMPTY.colour, 2),
         ("red", (255, 0, 1), 2),
         (MATERIALS[2].name, (1, 2, 3), 1),
     ]
@@ -116,7 +116,7 @@ def test_the_c_header_reads_what_is_written(tmp_path):
     result = subprocess.run([tmp_path / "read", "a.blob"], cwd=tmp_path, check=True, capture_output=True, text=True)
     assert result.stdout.splitlines() == [
         "2 1 1.5 -2 0.1 0.25",
-        "0 0 0 2 empty",
+        "{} {} {} 2 empty".format(*EMPTY.colour),
         "255 0 1 2 red",
         f"1 2 3 1 {MATERIALS[2].name}",
         "".join(f"{word:08X} " for word in written.rom.octree.words),

@@ -31,9 +31,7 @@ def block(lines, depth):
         return items, lines
     mapping = {}
     while lines and indent(lines[0]) == depth:
-        key, _, value = (
-            lines[0].strip().partition(": ") if not lines[0].endswith(":") else (lines[0].strip()[:-1], "", "")
-        )
+        key, _, value = lines[0].strip().removesuffix(":").partition(": ")
         lines = lines[1:]
         if value:
             mapping[key] = value
