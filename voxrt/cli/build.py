@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Pixels, Reporting, UsageError, png, whole
-from voxrt.cli.messages import picture_cost, stage_bar, summarize, warn
+from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.results import build_report, print_json
 
 
@@ -34,6 +34,7 @@ def build(
     engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
+    profile: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture.
@@ -79,6 +80,8 @@ def build(
         msb what their C++ program reads.
     strict
         Refuse an asset of which something would not be honoured as it stands, instead of warning.
+    profile
+        Show where the time goes, a stage a row.
     reporting
         How to tell what was done.
     """
@@ -123,6 +126,10 @@ def build(
         print_json(build_report(result))
     else:
         summarize(f"{asset.name}:", _rows(result))
+    if profile:
+        total = sum(result.seconds.values())
+        stages = [(stage, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for stage, took in result.seconds.items()]
+        tabulate(("stage", "ms", "%"), [*stages, ("all", f"{1e3 * total:.1f}", "100")])
 
 
 def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
