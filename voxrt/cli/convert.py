@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.arguments import Reporting, UsageError, levels
 from voxrt.cli.memory_results import ConvertResult
 from voxrt.cli.messages import name_file, summarize, warn
 from voxrt.cli.results import print_json, warning_entries
@@ -20,7 +20,7 @@ def convert(
     target: Annotated[Path, Parameter(metavar="TO")],
     /,
     *,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     from_dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     material: Annotated[tuple[str, ...], Parameter(metavar="NAME=RRGGBB", show_default=False)] = (),

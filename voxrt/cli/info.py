@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, whole
+from voxrt.cli.arguments import Reporting, levels
 from voxrt.cli.memory_results import info_result
 from voxrt.cli.messages import summarize, tabulate, warn
 from voxrt.cli.results import print_json
@@ -18,7 +18,7 @@ def info(
     rom: Annotated[Path, Parameter(metavar="ROM")],
     /,
     *,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, place, png, register, whole
+from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
@@ -30,7 +30,7 @@ def render(
     look: Annotated[Triple | None, _register] = None,
     right: Annotated[Triple | None, _register] = None,
     up: Annotated[Triple | None, _register] = None,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
