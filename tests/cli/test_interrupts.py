@@ -56,13 +56,13 @@ for moment in count(1):
 
 # Sends itself a signal while the model renders.
 IN_NATIVE_CODE = """
-import os, signal, threading
-from voxrt import sim
-render = sim.render
-def render_interrupted(*arguments, **options):
-    threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-    return render(*arguments, **options)
-sim.render = render_interrupted
+import os, signal, sys, threading
+from voxrt.sim import _model
+class Memory(_model.Memory):
+    def render(self, *arguments, **options):
+        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        return super().render(*arguments, **options)
+_model.Memory = Memory
 from voxrt.cli import main
 main()
 """
