@@ -147,7 +147,7 @@ def _outline(octree: Octree) -> NDArray[np.float64]:
     boxes = [
         (part.corners, part.corners + (1 << part.levels.astype(np.int64))[:, None])
         for part in leaves(coarse, solid_only=True)
-    ] or [(np.zeros((1, 3)), np.full((1, 3), octree.size))]
+    ] or [(np.zeros((1, 3), dtype=np.int32), np.full((1, 3), octree.size, dtype=np.int64))]
     low, high = (np.concatenate(ends).astype(np.float64) for ends in zip(*boxes, strict=True))
     return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
 
