@@ -11,7 +11,7 @@ from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, seed_words
 from oracles.worlds import WORLDS
 
 from voxrt.octree import Octree, Rom
-from voxrt.sim import Camera, check, frame_scene, look_at, pixel_directions
+from voxrt.sim import Camera, _model, check, frame_scene, look_at, pixel_directions, render
 from voxrt.voxelize import Material
 
 pytestmark = pytest.mark.skipif(
@@ -47,6 +47,19 @@ def test_every_ray_meets_what_the_walk_meets(name):
         material, face, _ = trace_batch(voxels, origins, directions)
         np.testing.assert_array_equal(frame.material.reshape(-1), material)
         np.testing.assert_array_equal(frame.face.reshape(-1), face)
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_the_ray_tracer_reads_no_word_in_vain(name):
+    # One by one, the model's rays read what the traversal needs, and nothing else.
+    voxels = WORLDS[name]
+    rom = rom_of(memory_of(voxels), len(voxels).bit_length() - 1)
+    for registers in adversarial_cameras(len(voxels), 3, seed=99):
+        camera = Camera(*(tuple(triple) for triple in registers.tolist()))
+        directions = pixel_directions(camera, SIZE).reshape(-1, 3).astype(np.int32)
+        origins = np.ascontiguousarray(np.broadcast_to(registers[0], directions.shape))
+        traced = _model.Memory(rom.octree.words, rom.octree.depth).trace(origins, directions)
+        assert render(rom, camera, SIZE, engine="rtl").cost.words_read == traced["words_read"]
 
 
 @pytest.mark.parametrize("name", ["cubes", "dog", "house"])
