@@ -1,11 +1,11 @@
 """Benchmark of the exact model: pixels a second a core, against the report's C++ algorithm and the simulated hardware.
 
-Usage: ``python bench/model.py [MEMORY.mem ...] [--size N] [--clock MHZ] [--write]``. Without memories it takes the demo
-scene at two depths. ``original.cpp``, the report's algorithm, is compiled with ``c++ -O2`` and run beside it, with the
-data handling of its appendix and without, from a camera that it can stand (inside the world, on whole voxels, along an
-axis). ``--clock`` is the hardware's clock, by which its counted cycles become time. ``--write`` puts the table
-into ``bench/results/model.md`` as well. Each time is the least of seven; on one core it is the processor's time, so that
-other work on the machine does not count.
+Usage: ``python bench/model.py [MEMORY.mem ...] [--size N] [--clock MHZ] [--write]``. Without memories it takes the
+demo scene at two depths. ``original.cpp``, the report's algorithm, is compiled with ``c++ -O2`` and run beside it,
+with the data handling of its appendix and without, from a camera that it can stand (in the world, on whole voxels,
+along an axis). ``--clock`` is the hardware's clock, by which its counted cycles become time. ``--write`` puts the
+table into ``bench/results/model.md`` as well. Each time is the least of seven; on one core it is the processor's
+time, so that other work on the machine does not count.
 """
 
 from __future__ import annotations
