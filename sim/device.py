@@ -111,7 +111,7 @@ class _SimulatedDevice:
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
-        self._octree = self._memory.octree()
+        self._octree = self._memory.octree().copy()
 
     def close(self) -> None:
         """Nothing to let go of."""
@@ -150,17 +150,15 @@ class ModelDevice(_SimulatedDevice):
             )
         )
         self._threads = threads
-        self._verified: _model.Memory | None = None  # the selected octree, until a word of it changes
-
-    def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
-        """Write words from `address` on."""
-        self._verified = None
-        super().write_memory(address, words)
+        self._model = _model.Memory(self._octree, self._memory.depth)
 
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at `root` from the next frame on."""
-        self._verified = None
         super().select_scene(root, depth)
+        try:
+            self._model = _model.Memory(self._octree, depth)
+        except ValueError as error:
+            raise DeviceError(f"the model refuses the memory: {error}") from error
 
     def frame(self, view: View) -> Frame:
         """Render a frame."""
@@ -168,14 +166,12 @@ class ModelDevice(_SimulatedDevice):
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
         colours = self._colours(view)
         try:
-            self._verified = self._verified or _model.Memory(self._octree, self._memory.depth)
-            pixels = self._verified.render(colours, camera, *view.size, self._threads, flat="flat" in view.features)
+            pixels = self._model.render(colours, camera, *view.size, self._threads)
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
+        colour = colours[pixels["material"]] if "flat" in view.features else pixels["colour"]
         rays = view.size[0] * view.size[1]
-        return self._kept(
-            view, pixels["colour"], Counters(rays, pixels["words_read"], None, time.perf_counter() - started)
-        )
+        return self._kept(view, colour, Counters(rays, pixels["words_read"], None, time.perf_counter() - started))
 
 
 class RtlDevice(_SimulatedDevice):
