@@ -3,7 +3,7 @@
 module voxrt_pixel_buffer_properties
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned Depth   = 4,
+  parameter  int unsigned Depth   = 2,
   localparam int unsigned TagBits = $clog2(Depth) + 1
 ) (
   input logic               clk_i,
