@@ -138,12 +138,13 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     width, height = (int(side) for side in options.size.split("x"))
+    heads = ["scene", "configuration", "lanes", "words a ray", "cycles a pixel", "bound", "of the bound"]
+    heads += ["words a clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
     lines = [
         f"{width}x{height} pixels. Bound: max(1, words a ray / lanes).",
         "",
-        "| scene | configuration | lanes | words a ray | cycles a pixel | bound | of the bound "
-        "| words a clock and lane | million clocks/s simulated | million pixels/s simulated |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        f"| {' | '.join(heads)} |",
+        "|---" * len(heads) + "|",
     ]
     for scene in scenes(options.memories, (width, height)):
         lines += measure(scene, (width, height))
