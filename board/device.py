@@ -32,6 +32,8 @@ class Identity:
         Camera positions lie below this on either side of zero, 1/16 voxel.
     features
         Which of :data:`~.view.FEATURES` it has.
+    movable_root
+        Whether an octree may stand anywhere in the memory, so that two can be there at a time; otherwise at word 0.
     clock
         Hertz; None where there is no clock.
     """
@@ -43,6 +45,7 @@ class Identity:
     size: tuple[int, int]
     position_limit: int
     features: frozenset[str] = frozenset()
+    movable_root: bool = True
     clock: int | None = None
 
 

@@ -116,6 +116,7 @@ class Show:
                 "size": stage.view.size,
                 "background": stage.view.background,
                 "light": stage.view.light,
+                "ambient": stage.view.ambient,
                 "features": sorted(stage.view.features),
                 "bounces": stage.view.bounces,
                 "nonstop": stage.nonstop,

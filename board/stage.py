@@ -76,7 +76,7 @@ class Stage:
         Refused
             The device cannot show that; the view stays as it is.
         """
-        fields = ("camera", "size", "background", "light", "features", "bounces")
+        fields = ("camera", "size", "background", "light", "ambient", "features", "bounces")
         changed = {name: value for name in fields if (value := getattr(change, name)) is not None}
         view = replace(self.view, **changed)
         check_view(view, self.device.identity)
@@ -154,6 +154,15 @@ class Stage:
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
         camera = refit(scene.camera, FIRST_SIZE, size) if scene.camera else face_world(scene.depth, size)
-        side = 16 << scene.depth
-        light = scene.light or (side, 2 * side, side)
-        return replace(self.view, camera=camera, background=scene.background, light=light)
+        view = replace(self.view, camera=camera, background=scene.background)
+        lighting = scene.lighting
+        if lighting is None:
+            side = 16 << scene.depth
+            return replace(view, light=(side, 2 * side, side))
+        return replace(
+            view,
+            light=lighting.position,
+            ambient=lighting.ambient,
+            bounces=lighting.bounces,
+            features=lighting.features & self.device.identity.features,
+        )
