@@ -59,7 +59,6 @@ class Show:
         self.stage = Stage(device)
         self.audience = Audience(self.state)
         self.handover = Handover(time.monotonic)
-        self.uploads = 0
         self._program = program
         self._reading = ThreadPoolExecutor(1, "reader")
         self._scene_change = asyncio.Lock()
@@ -131,7 +130,6 @@ class Show:
             "frames": self.stage.frames,
             "dropped": self.audience.dropped,
             "viewers": len(self.audience),
-            "uploads": self.uploads,
             "scenes": self.stage.scene_number,
         }
 
@@ -176,6 +174,5 @@ class Show:
             if not allowed():
                 raise Refused("control passed to another viewer meanwhile; the scene was not changed")
             await self.stage.put_on(scene, progress)
-            self.uploads += 1
         self.audience.refresh()
         return scene

@@ -411,7 +411,7 @@ def test_garbage_and_crowds(run):
                 await visitor.send(bytes(CHUNK_LIMIT + 100))
                 await visitor.wait_closed()
                 assert visitor.close_code == 1009
-            while len(server._server.handler_tasks) > 1:
+            while len(server.sockets) > 1:
                 await honest.ask("counters")
             request = await honest.send("view", camera=CAMERA)
             await frame_where(honest, lambda packet: packet.request == request)
