@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import zlib
 from contextlib import asynccontextmanager
@@ -10,6 +11,7 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 from stand_ins.device import PaintedDevice, scene
+from stand_ins.sockets import ended, stranger
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
@@ -348,11 +350,9 @@ def test_who_may_come_in(run):
 
 
 async def http(port, request):
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    writer.write(request)
-    answer = await reader.read()
-    writer.close()
-    return answer
+    async with stranger(port) as (reader, writer):
+        writer.write(request)
+        return await reader.read()
 
 
 def test_page(run):
@@ -393,16 +393,13 @@ def test_garbage_and_crowds(run):
             await asyncio.gather(http(server.port, oversized), return_exceptions=True)
             # Abandoned before, in the middle of and after the handshake.
             for opening in (b"", b"GET /v1 HTTP/1.1\r\nHost:", b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n"):
-                _, writer = await asyncio.open_connection("127.0.0.1", server.port)
-                writer.write(opening)
-                writer.transport.abort()
+                async with stranger(server.port) as (_, writer):
+                    writer.write(opening)
             # More sockets than are borne: the rest is cut off, and all of them go.
-            crowd = await asyncio.gather(*(asyncio.open_connection("127.0.0.1", server.port) for _ in range(300)))
-            await honest.ask("counters")
-            cut = [reader for reader, _ in crowd[150:]]
-            assert all(await asyncio.gather(*(ended(reader) for reader in cut)))
-            for _, writer in crowd:
-                writer.transport.abort()
+            async with contextlib.AsyncExitStack() as crowd:
+                readers = [(await crowd.enter_async_context(stranger(server.port)))[0] for _ in range(300)]
+                await honest.ask("counters")
+                assert all(await asyncio.gather(*(ended(reader) for reader in readers[150:])))
             # Visitors that talk nonsense.
             async with connect(f"ws://127.0.0.1:{server.port}/v1", proxy=None) as visitor:
                 for _ in range(50):
@@ -418,13 +415,6 @@ def test_garbage_and_crowds(run):
             assert len(server.show.audience) == 1
 
     run(visiting())
-
-
-async def ended(reader):
-    try:
-        return await reader.read() == b""
-    except ConnectionError:
-        return True
 
 
 def test_answers_that_nobody_reads(run):
