@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.board.client import visit
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 from voxrt.sim.device import ModelDevice
 from voxrt.staging import BuildingReader, load_scene
 

@@ -87,7 +87,7 @@ class Device(Protocol):
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
 
-    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
         """Write the material table: uint8, shape (256, 3), sRGB, and bool, shape (256,)."""
 
     def select_scene(self, root: int, depth: int) -> None:

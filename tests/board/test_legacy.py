@@ -12,7 +12,8 @@ from stand_ins.sockets import ended, stranger
 
 from voxrt.board.legacy import read_request
 from voxrt.board.scene_files import BoardReader
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 from voxrt.board.view import Camera
 
 field = st.integers(-2048, 2047)

@@ -21,7 +21,8 @@ from voxrt.board.client import visit
 from voxrt.board.errors import Refused
 from voxrt.board.packets import CHUNK_LIMIT, Chunk, pack_chunk
 from voxrt.board.scene_files import BoardReader
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 
 CAMERA = {"position": [80, 0, 0], "look": [0, 0, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
 
