@@ -1,4 +1,4 @@
-"""Make the pictures of the README: ``python examples/make_pictures.py`` renders the example scenes by the ray tracer."""
+"""Make the README's pictures: ``python examples/make_pictures.py`` renders the example scenes by the ray tracer."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.render import Engine, EngineCheck, check, render
 from voxrt.sim.shading import Light, Shading
+from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 __all__ = [
     "FACE_NONE",
@@ -32,7 +33,9 @@ __all__ = [
     "frame_points",
     "frame_scene",
     "look_at",
+    "peak_signal_to_noise",
     "pixel_directions",
     "render",
+    "structural_similarity",
     "write_png",
 ]

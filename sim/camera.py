@@ -144,12 +144,11 @@ def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
 def _outline(octree: Octree) -> NDArray[np.float64]:
     """Give points whose hull holds all that is solid, or the world: shape (N, 3), voxels."""
     coarse = coarsen(octree, max(0, octree.depth - _OUTLINE_LEVELS))
-    boxes = [
-        (part.corners, part.corners + (1 << part.levels.astype(np.int64))[:, None])
-        for part in leaves(coarse, solid_only=True)
-    ] or [(np.zeros((1, 3)), np.full((1, 3), octree.size))]
-    low, high = (np.concatenate(ends).astype(np.float64) for ends in zip(*boxes, strict=True))
-    return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
+    parts = list(leaves(coarse, solid_only=True))
+    low = np.concatenate([part.corners for part in parts]) if parts else np.zeros((1, 3), np.int32)
+    levels = np.concatenate([part.levels for part in parts]) if parts else np.array([octree.depth], np.uint8)
+    high = low + (1 << levels.astype(np.int64))[:, None]
+    return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]).astype(np.float64)
 
 
 def pixel_directions(camera: Camera, size: tuple[int, int]) -> NDArray[np.int64]:
