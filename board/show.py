@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -92,7 +92,7 @@ class Show:
 
     def state(self) -> dict[str, Any]:
         """Tell what is shown now."""
-        stage, camera, scene = self.stage, self.stage.view.camera, self.stage.scene
+        stage, scene = self.stage, self.stage.scene
         return {
             "type": "state",
             "viewers": len(self.audience),
@@ -103,15 +103,12 @@ class Show:
                 "name": scene.name,
                 "depth": scene.depth,
                 "words": len(scene.words),
-                "crc32": scene.crc32,
+                "crc32": stage.crc32,
+                "camera": asdict(stage.first_view.camera),
+                "size": stage.first_view.size,
             },
             "view": {
-                "camera": {
-                    "position": camera.position,
-                    "look": camera.look,
-                    "right": camera.right,
-                    "up": camera.up,
-                },
+                "camera": asdict(stage.view.camera),
                 "size": stage.view.size,
                 "background": stage.view.background,
                 "light": stage.view.light,

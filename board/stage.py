@@ -58,7 +58,8 @@ class Stage:
         self.device = device
         self.scene = NOTHING
         self.scene_number = 0
-        self.view = View(face_world(NOTHING.depth, size), size, NOTHING.background)
+        self.crc32 = NOTHING.crc32
+        self.view = self.first_view = View(face_world(NOTHING.depth, size), size, NOTHING.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
@@ -104,7 +105,8 @@ class Stage:
         self.check_scene(scene)
         async with self._between_frames:
             await self._on_device(partial(self._memory.swap, scene, progress))
-            self.scene, self.view = scene, self._view_of(scene)
+            self.scene, self.crc32 = scene, scene.crc32
+            self.view = self.first_view = self._view_of(scene)
             self.scene_number += 1
         self._wanted.set()
 
