@@ -43,8 +43,8 @@ def serve(
     Parameters
     ----------
     scenes
-        Memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one on the
-        page.
+        Blobs, memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one
+        on the page.
     device
         What renders: the exact model, or the verilated hardware, which is slow.
     config
@@ -67,7 +67,7 @@ def serve(
     from voxrt.board.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
     from voxrt.board.server import Listening  # noqa: PLC0415
     from voxrt.board.show import Program  # noqa: PLC0415
-    from voxrt.staging import BuildingReader, load_scene  # noqa: PLC0415
+    from voxrt.staging import BuildingReader  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
         if value is not None and not 0 <= value < 1 << 16:
@@ -76,7 +76,7 @@ def serve(
         raise UsageError(f"--depth {depth} is not 1 to 16")
     if token is None and not is_loopback(host):
         token = secrets.token_urlsafe(16)
-    first = load_scene(scenes[0], depth) if scenes else None
+    first = _first(scenes[0], depth) if scenes else None
     library = {path.stem: (lambda path=path: _listed(path, depth)) for path in scenes}
     listening = Listening(host, port, token, origin, legacy_port)
     opened = open_device(device, config)
@@ -89,6 +89,16 @@ def open_device(name: str, config: str) -> Device:
     from voxrt.sim.device import ModelDevice, RtlDevice  # noqa: PLC0415 - NumPy comes with it
 
     return ModelDevice() if name == "model" else RtlDevice(config)
+
+
+def _first(path: Path, depth: int | None) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path, depth)
+    except (Refused, OSError) as error:  # of a blob, which the board's own reader reads
+        raise voxrt.RomError(f"{path}: {error}") from error
 
 
 def _listed(path: Path, depth: int | None) -> Scene:
