@@ -33,6 +33,8 @@ def caught(path: Path, notes: Notes) -> Iterator[None]:
         yield
     except Tf.ErrorException as error:
         raise _asset_error(path, error) from None
+    except UnicodeDecodeError as error:  # a message or a value of the file, on its way to Python
+        raise AssetError(path, f"holds text that is no UTF-8 ({error.reason})", fix="export it again") from None
     finally:
         for said in delegate.TakeUncoalescedDiagnostics():
             notes.add(*_note(said.commentary))

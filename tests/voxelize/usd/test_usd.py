@@ -334,3 +334,11 @@ def test_too_many_materials(usd):
     )
     with pytest.raises(DoesNotFitError, match="255 materials"):
         usd(body)
+
+
+def test_text_that_is_no_utf8(tmp_path):
+    path = tmp_path / "stage.usda"
+    path.write_bytes(b"#usda 1.0\n(\n)\n" + mesh().encode().replace(b"point3f[]", b"point\x983f[]"))
+    with pytest.raises(AssetError) as caught:
+        load_usd(path)
+    assert "\n" not in str(caught.value)
