@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from voxrt.voxelize.errors import AssetError, SceneWarning
+from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 
 if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
@@ -87,9 +87,11 @@ def load(
         for option, value in (("up", up), ("unit", unit), ("time", time), ("variants", variants))
         if value not in (None, ())
     }
-    scene: Scene = getattr(import_module(module), name)(
-        path, **{option: value for option, value in told.items() if option in understood}
-    )
+    options = {option: value for option, value in told.items() if option in understood}
+    try:
+        scene: Scene = getattr(import_module(module), name)(path, **options)
+    except DoesNotFitError as error:
+        raise DoesNotFitError(f"{path}: {error}") from None
     ignored = tuple(
         SceneWarning("ignored-option", _WHY_IGNORED[option].format(suffix[1:]))
         for option in told

@@ -79,6 +79,10 @@ def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
 
 def _parse(path: Path, text: bytes) -> Gltf:
     try:
+        str(text, "utf-8")  # the decoder looks only at the strings it needs
+    except UnicodeDecodeError as error:
+        raise AssetError(path, "the JSON is not UTF-8", place=f"byte {error.start}", fix=_RE_EXPORT) from None
+    try:
         gltf = _decoder.decode(text.removeprefix(b"\xef\xbb\xbf"))
     except msgspec.ValidationError as error:
         problem, _, place = str(error).partition(" - at ")

@@ -85,7 +85,7 @@ def skinned(
             number += 1
         bare = total[:, 0] <= 0.0
         if bare.any():
-            document.warn("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
+            document.notes.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
             carried[bare] = positions[bare] @ pose.joints[0, :3, :3].T + pose.joints[0, :3, 3]
             total[bare] = 1.0
         carried /= total

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
 
-from voxrt.voxelize.errors import AssetError, SceneWarning
+from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.container import read_container
 from voxrt.voxelize.gltf.extensions import MESHOPT, read_extension
 from voxrt.voxelize.gltf.meshopt import BadStreamError, CompressedView, decode
+from voxrt.voxelize.notes import Notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +38,8 @@ class Document:
         The ``.gltf`` or ``.glb`` file.
     gltf
         Its JSON.
+    notes
+        What could not be honoured as it stands.
     """
 
     def __init__(self, path: Path) -> None:
@@ -47,21 +49,12 @@ class Document:
         self._buffers: dict[int, memoryview] = {}
         self._unpacked: dict[int, bytes] = {}
         self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
-        self._warnings: Counter[tuple[str, str]] = Counter()
+        self.notes = Notes()
         self._check_views()
 
     def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
         """Return the error that refuses this file for what stands at the JSON path `place`."""
         return AssetError(self.path, problem, place=place, fix=fix)
-
-    def warn(self, kind: str, message: str, count: int = 1) -> None:
-        """Note something that was not honoured as it stands; equal notes are counted."""
-        self._warnings[kind, message] += count
-
-    @property
-    def warnings(self) -> tuple[SceneWarning, ...]:
-        """What was noted, in order of first occurrence."""
-        return tuple(SceneWarning(kind, message, count) for (kind, message), count in self._warnings.items())
 
     def charge(self, amount: int, place: str) -> None:
         """Take `amount` bytes of the memory that an asset of this size may use."""
@@ -143,7 +136,8 @@ class Document:
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
         folder = self.path.parent.resolve()
-        for name in (unquote(uri), uri):
+        # Some exporters forget to encode names, or write paths as Windows does.
+        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
             try:
                 target = (folder / Path(name)).resolve()
                 found = target.is_file()

@@ -61,6 +61,12 @@ NO_BEARING = frozenset(
 """Extensions that say nothing about where surfaces are or what base colour they have."""
 
 
+_WAYS_OUT = {
+    "KHR_meshopt_compression": "compress it with EXT_meshopt_compression, or not at all",
+    "KHR_texture_basisu": "export its images as PNG, JPEG or WebP",
+    "EXT_texture_avif": "export its images as PNG, JPEG or WebP",
+}
+
 _T = TypeVar("_T")
 
 
@@ -84,8 +90,8 @@ def check_required(document: Document) -> None:
     known = HONOURED | NO_BEARING
     for at, name in enumerate(gltf.extensions_required):
         if name not in known:
-            fix = "export the file without it"
+            fix = _WAYS_OUT.get(name, "export the file without it")
             raise document.error(f"extensionsRequired[{at}]", f"the extension {name[:60]} is not supported", fix)
     for name in dict.fromkeys(gltf.extensions_used):
         if name not in known:
-            document.warn("unknown-extension", f"the extension {name[:60]} was ignored")
+            document.notes.add("unknown-extension", f"the extension {name[:60]} was ignored")

@@ -30,6 +30,17 @@ class NodeExtras(MaterialExtras, frozen=True, kw_only=True):
     voxrt_collider: ColliderKind | None = None
 
 
+def refuse_misplaced(document: Document) -> None:
+    """Refuse properties for voxrt on scenes and meshes, where they would say nothing."""
+    for array, owners in (("scenes", document.gltf.scenes), ("meshes", document.gltf.meshes)):
+        for index, owner in enumerate(owners):
+            if _PREFIX in bytes(owner.extras):
+                place = f"{array}[{index}].extras"
+                problem = "voxrt's properties belong on nodes and materials"
+                raise document.error(place, problem, "move them there (in Blender: from the mesh to the object)")
+
+
+_PREFIX = b'"voxrt_'
 _T = TypeVar("_T", MaterialExtras, NodeExtras)
 
 
@@ -44,7 +55,7 @@ def material_extras(document: Document, index: int) -> MaterialExtras:
 
 
 def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -> _T:
-    if b'"voxrt_' not in bytes(extras):
+    if _PREFIX not in bytes(extras):
         return kind()
     try:
         authored = msgspec.json.decode(extras)

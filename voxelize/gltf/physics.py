@@ -167,7 +167,7 @@ def _check_sizes(document: Document, place: str, *sizes: float) -> None:
 
 def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
     if plane.size_x is None or plane.size_z is None:
-        document.warn("endless-plane", "colliders that are planes without end were left out")
+        document.notes.add("endless-plane", "colliders that are planes without end were left out")
         return None
     _check_sizes(document, place, plane.size_x, plane.size_z)
     x, z = plane.size_x / 2, plane.size_z / 2

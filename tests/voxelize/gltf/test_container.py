@@ -32,7 +32,13 @@ def test_a_glb_and_a_gltf_with_inline_data_are_the_same(suffix, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("uri", "file"), [("data.bin", "data.bin"), ("a%20b/c.bin", "a b/c.bin"), ("x%41.bin", "x%41.bin")]
+    ("uri", "file"),
+    [
+        ("data.bin", "data.bin"),
+        ("a%20b/c.bin", "a b/c.bin"),
+        ("x%41.bin", "x%41.bin"),
+        ("folder\\data.bin", "folder/data.bin"),
+    ],
 )
 def test_files_beside_the_asset_are_read(uri, file, tmp_path):
     path, data = with_uri(tmp_path, uri)
@@ -105,6 +111,9 @@ JSON = b'{"asset":{"version":"2.0"}}     '
         (b'{"nodes":[{"mesh":-1}]}', r"nodes\[0\]\.mesh: expected `int` >= 0"),
         (b'{"extras":' + b"[" * 100_000 + b"]" * 100_000 + b"}", r"the JSON is nested too deeply"),
         (b'{"a', r"input data was truncated"),
+        (b'{"asset":{"version":"2.0","generator":"\xa1"}}', r"byte 39: the JSON is not UTF-8"),
+        (b'{"asset":{"version":"2.0"},"nodes":[{"name":"\xa1"}]}', r"byte 45: the JSON is not UTF-8"),
+        (b'{"asset":{"version":"2.0"},"nodes":[{"name":"\\ud800"}]}', r"truncated|malformed"),
         (b"\x00\x01", r"JSON is malformed"),
         (b"", r"input data was truncated"),
         (b"\xef\xbb\xbf" + JSON, r"has no triangles to voxelize"),

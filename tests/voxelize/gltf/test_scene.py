@@ -161,8 +161,7 @@ def test_materials_get_unique_names(tmp_path):
     writer.show(mesh=writer.mesh(TRIANGLE))
     scene = load(writer.save(tmp_path / "a.glb"))
     assert [material.name for material in scene.materials] == [
-        *("empty", "a", "a (materials[1])", "materials[2]", "default", "empty (materials[4])"),
-        "default (none in the file)",
+        *("empty", "a", "a (2)", "materials[2]", "default", "empty (2)", "default (2)"),
     ]
 
 
@@ -177,7 +176,7 @@ def test_more_than_255_materials_do_not_fit(count, fits, tmp_path):
     if fits:
         assert len(load(path).materials) == 256
     else:
-        with pytest.raises(DoesNotFitError, match=r"a\.glb: uses more than the 255 materials that a memory"):
+        with pytest.raises(DoesNotFitError, match=r"a\.glb: more than 255 materials are in use; merge some"):
             load(path)
 
 
@@ -228,6 +227,7 @@ def test_voxrt_collider_stands_in_for_the_mesh(tmp_path):
     assert isinstance(mesh, MeshCollider)
     assert mesh.triangles.tolist() == [[0, 1, 2], [1, 2, 3], [3, 4, 5]]
     assert {scene.materials[thing.collider_material].name for thing in scene.objects} == {"red"}
+    assert kinds(scene)["collider-material"] == 4
 
 
 @pytest.mark.parametrize(
@@ -255,6 +255,17 @@ def test_properties_in_the_wrong_place_are_refused(tmp_path):
     writer.json["nodes"][empty] = {}
     writer.json["materials"][0]["extras"] = {"voxrt_collider": "box"}
     with pytest.raises(AssetError, match=r"materials\[0\]\.extras\.voxrt_collider: voxrt knows no such property here"):
+        load(writer.save(tmp_path / "a.gltf"))
+
+
+@pytest.mark.parametrize("array", ["scenes", "meshes"])
+def test_properties_on_scenes_and_meshes_are_refused(array, tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json[array][0]["extras"] = {"voxrt_collider": "box"}
+    with pytest.raises(
+        AssetError, match=rf"{array}\[0\]\.extras: voxrt's properties belong on nodes and materials; move"
+    ):
         load(writer.save(tmp_path / "a.gltf"))
 
 
