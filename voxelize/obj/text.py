@@ -204,6 +204,8 @@ def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArr
     pieces = [data[a : b + 1] for a, b in zip(text.starts[first].tolist(), text.ends[last].tolist(), strict=True)]
     characters = np.frombuffer(bytearray(b"".join(pieces)), dtype=np.uint8)
     line_ends = np.flatnonzero(characters == ord("\n"))
+    characters[characters < ord(" ")] = ord(" ")  # all that is no text is blank, to NumPy and Python alike
+    characters[line_ends] = ord("\n")
     line_starts = np.empty_like(line_ends)
     line_starts[0] = 0
     line_starts[1:] = line_ends[:-1] + 1

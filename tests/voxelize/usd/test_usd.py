@@ -301,6 +301,23 @@ def test_layers_of_another_unit(usd, tmp_path):
             "beyond the mesh's 6",
         ),
         ("def Mesh cube {", "line 6"),
+        (
+            mesh().replace("int[] faceVertexC", "nt[] faceVertexC"),
+            "/cube: faceVertexCounts holds values that are no integers",
+        ),
+        (
+            mesh().replace("int[] faceVertexI", "double[] faceVertexI"),
+            "/cube: faceVertexIndices holds values that are no integers",
+        ),
+        (
+            'def Mesh "m" { float[] points = [1, 2]\nint[] faceVertexCounts = [3] }',
+            "/m: points holds values that are no points",
+        ),
+        (
+            "def Mesh \"m\" { string[] points = ['a']\nint[] faceVertexCounts = [3] }",
+            "/m: points holds values that are no points",
+        ),
+        ('def Sphere "s" { string radius = "one" }', "/s: radius one is no length"),
     ],
 )
 def test_refused(usd, capfd, body, message):
