@@ -1,5 +1,8 @@
 """Triangles, materials and what authors say in extras, on files made by hand."""
 
+import json
+import tracemalloc
+
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
@@ -116,6 +119,30 @@ def test_a_small_file_that_asks_for_much_is_refused(tmp_path):
     )
     with pytest.raises(AssetError, match=r"accessors\[0\]: asks for 10800000000 bytes, more than a file of this size"):
         load(path)
+
+
+@pytest.mark.parametrize("count", [900_000, 3_000_000, 3_600_000, 2**31, 2**62])
+@pytest.mark.parametrize("shared", [1, 40])
+def test_the_memory_of_a_small_file_is_bounded_whatever_it_asks_for(count, shared, tmp_path):
+    zeros = {"componentType": 5126, "type": "VEC3", "count": count}
+    primitive = {"attributes": {"POSITION": 0}}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive | {"attributes": {"POSITION": at}} for at in range(shared)]}],
+        "accessors": [zeros] * shared,
+    }
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps(gltf))
+    tracemalloc.start()
+    try:
+        load(path)
+    except AssetError as error:
+        assert "more than a file of this size may use in all" in str(error)  # noqa: PT017
+    finally:
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert peak < 500 << 20
 
 
 def materials_of(writer, path):
