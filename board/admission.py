@@ -28,12 +28,15 @@ class Limits:
         New viewers a second, on average; twice as many at once.
     requests
         Messages a second that one viewer is heard, on average; twice as many at once. More wait.
+    patience
+        Seconds that a client may take to say what it wants.
     """
 
     viewers: int = 64
     sockets: int = 256
     arrivals: float = 50
     requests: float = 400
+    patience: float = 5
 
 
 class Bucket:

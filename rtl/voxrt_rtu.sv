@@ -51,7 +51,10 @@ module voxrt_rtu
   // Of this frame, or of the last one when busy_o is low.
   output error_t                         error_o,
   output logic        [            31:0] cycles_o,            // From the start to the last pixel accepted.
-  output logic        [            31:0] words_read_o
+  output logic        [            31:0] rays_o,              // Pixels accepted.
+  output logic        [            31:0] words_read_o,
+  output logic        [            31:0] hits_o,              // Pixels accepted that show a material.
+  output logic        [            31:0] stalls_o             // Clocks in which a pixel waited to be accepted.
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned TimeBits = DistanceBits + WeightBits;
@@ -335,23 +338,32 @@ module voxrt_rtu
   );
 
   // Counters and errors.
-  logic [31:0] cycles_q, words_read_q;
+  logic [31:0] cycles_q, rays_q, words_read_q, hits_q, stalls_q;
   error_t      error_q;
 
   always_ff @(posedge clk_i) begin
     if (busy_q) cycles_q <= cycles_q + 1'b1;
+    if (out_valid_o && out_ready_i) rays_q <= rays_q + 1'b1;
+    if (out_valid_o && out_ready_i && out_pixel_o.material != '0) hits_q <= hits_q + 1'b1;
+    if (out_valid_o && !out_ready_i) stalls_q <= stalls_q + 1'b1;
     words_read_q <= words_read_q + 32'($countones(word_read));
     if (ray_valid && overflow) error_q.direction_overflow <= 1'b1;
     if (bad_pointer != '0 || (start_q && root_q[PayloadBits] && root_q[8])) error_q.bad_pointer <= 1'b1;
     if (step_limit != '0) error_q.step_limit <= 1'b1;
     if (start) begin
       cycles_q     <= '0;
+      rays_q       <= '0;
       words_read_q <= '0;
+      hits_q       <= '0;
+      stalls_q     <= '0;
       error_q      <= '0;
     end
   end
 
   assign cycles_o     = cycles_q;
+  assign rays_o       = rays_q;
   assign words_read_o = words_read_q;
+  assign hits_o       = hits_q;
+  assign stalls_o     = stalls_q;
   assign error_o      = error_q;
 endmodule

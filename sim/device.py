@@ -111,7 +111,7 @@ class _SimulatedDevice:
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
-        self._octree = self._memory.octree()
+        self._octree = self._memory.octree().copy()
 
     def close(self) -> None:
         """Nothing to let go of."""
@@ -150,6 +150,15 @@ class ModelDevice(_SimulatedDevice):
             )
         )
         self._threads = threads
+        self._model = _model.Memory(self._octree, self._memory.depth)
+
+    def select_scene(self, root: int, depth: int) -> None:
+        """Trace the octree at `root` from the next frame on."""
+        super().select_scene(root, depth)
+        try:
+            self._model = _model.Memory(self._octree, depth)
+        except ValueError as error:
+            raise DeviceError(f"the model refuses the memory: {error}") from error
 
     def frame(self, view: View) -> Frame:
         """Render a frame."""
@@ -157,7 +166,7 @@ class ModelDevice(_SimulatedDevice):
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
         colours = self._colours(view)
         try:
-            pixels = _model.render(self._octree, self._memory.depth, colours, camera, *view.size, self._threads)
+            pixels = self._model.render(colours, camera, *view.size, self._threads)
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
         colour = colours[pixels["material"]] if "flat" in view.features else pixels["colour"]

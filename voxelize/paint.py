@@ -174,7 +174,8 @@ def _parts(coat: Coat) -> NDArray[np.int32]:
     parts = np.where(coat.rows < 0, 0, 1).astype(np.int32)
     for row, paint in enumerate(coat.paints):
         here = np.flatnonzero(coat.rows == row)
-        across = np.full(len(here), 2.0)  # Vertex colours change linearly: a few samples give their mean.
+        # Vertex colours change linearly: the centroid has their mean, and a few samples tell what is cut away.
+        across = np.full(len(here), 2.0 if paint.cutoff else 1.0)
         if paint.texture is not None:
             height, width = paint.texture.pixels.shape[:2]
             spread = np.ptp(coat.uv[here], axis=1) * (width, height)

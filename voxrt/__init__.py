@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import read_rom
-    from voxrt.octree import Octree, Rom, RomError, census, diff
+    from voxrt.octree import BOARDS, Octree, Rom, RomError, census, diff
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError, check
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
+    from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -31,7 +31,9 @@ __path__ = extend_path(__path__, __name__)
 __version__ = "0.1.0"
 
 __all__ = [
+    "BOARDS",
     "AssetError",
+    "BudgetFit",
     "BuildResult",
     "Camera",
     "DoesNotFitError",
@@ -51,6 +53,8 @@ __all__ = [
     "build",
     "census",
     "check",
+    "compare",
+    "comparison_sheet",
     "diff",
     "fit_grid",
     "load",
@@ -61,10 +65,10 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("read_rom",),
-    "voxrt.octree": ("Octree", "Rom", "RomError", "census", "diff"),
+    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "census", "diff"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),
+    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

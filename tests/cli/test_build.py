@@ -191,3 +191,33 @@ def test_strict_makes_warnings_errors(voxrt, folder):
     assert finished.error.startswith("voxrt: error: dog.usda: ")
     assert sorted(folder.iterdir()) == before
     assert voxrt("build", "dog.usda", "--depth", "5", "--strict").code == 0
+
+
+def test_a_budget_is_kept_and_its_price_told(voxrt, folder):
+    arguments = ("build", "house.obj", "--depth", "6", "--json")
+    whole = json.loads(voxrt(*arguments).out)
+    assert whole["budget"] is None
+    fitted = json.loads(voxrt(*arguments, "--budget", whole["words"] // 2).out)
+    assert fitted["words"] <= whole["words"] // 2
+    assert fitted["voxels"] >= whole["voxels"]
+    assert fitted["budget"]["words_before"] == whole["words"]
+    assert 0 < fitted["budget"]["percent_changed"] < 50
+    assert 0 < fitted["budget"]["ssim"] < 1
+    assert len((folder / "house.mem").read_text().split()) == fitted["words"]
+    assert "% of the surface changed" in voxrt(*arguments[:-1], "--budget", whole["words"] // 2).err
+    enough = json.loads(voxrt(*arguments, "--board", "pynq-z1").out)
+    assert enough["words"] == whole["words"]
+    assert enough["budget"]["psnr"] is None
+
+
+def test_a_budget_that_cannot_be_met(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "6", "--budget", "5")
+    assert finished.code == 4
+    assert "give it at least" in finished.error
+
+
+def test_time_and_variants_reach_the_loader(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "3", "--time", "1", "--variant", "red", "--json")
+    assert finished.code == 0
+    kinds = [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
+    assert kinds.count("ignored-option") == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 
@@ -24,6 +25,10 @@ import pytest
         (["build", "house.obj", "--voxel-size", "nan"], "not a positive number"),
         (["build", "house.obj", "--unit", "0"], "not a positive number"),
         (["build", "house.obj", "--unit", "inf"], "not a positive number"),
+        (["build", "house.obj", "--budget", "0"], "not a number of words"),
+        (["build", "house.obj", "--budget", "9", "--board", "pynq-z1"], "exclude each other"),
+        (["build", "house.obj", "--board", "abacus"], "there are pynq-z1"),
+        (["build", "house.obj", "--time", "inf"], "not a number of seconds"),
         (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
         (["build", "house.obj", "--size", "640"], "is not WIDTHxHEIGHT"),
         (["build", "house.obj", "--size", "0x480"], "is not between 1x1 and"),
@@ -55,7 +60,7 @@ def test_usage(voxrt, arguments, said):
         (["build", "nothing.glb"], "nothing.glb: no such file"),
         (["build", "."], "unknown kind of file"),
         (["build", "folder.glb"], "folder.glb: is a folder"),
-        (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz, .obj, .stl, .ply"),
+        (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz"),
         (["build", "notes"], "unknown kind of file"),
         (["build", "broken.glb"], "broken.glb"),
         (["build", "broken.usda"], "broken.usda"),
@@ -101,7 +106,7 @@ def test_the_traceback_comes_with_debug_only(voxrt, process):
     assert finished.err.splitlines()[-1].startswith("voxrt: error: nothing.glb: no such file")
 
 
-@pytest.mark.parametrize("command", ["build", "render", "info", "diff"])
+@pytest.mark.parametrize("command", ["build", "render", "compare", "info", "diff"])
 def test_help_has_an_example(voxrt, command):
     finished = voxrt(command, "--help")
     assert finished.code == 0
@@ -127,3 +132,13 @@ def test_version(voxrt):
 def test_what_a_terminal_would_act_on_is_spelled_out(voxrt):
     assert "\\x1b[31mred.glb" in voxrt("build", "\x1b[31mred.glb").error
     assert "two\\nlines.glb" in voxrt("build", "two\nlines.glb").error
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion(voxrt, shell):
+    finished = voxrt("completion", shell)
+    assert finished.code == 0
+    assert finished.err == ""
+    assert "voxel-size" in finished.out
+    if path := shutil.which(shell):
+        subprocess.run([path, "-n"], input=finished.out, text=True, check=True)

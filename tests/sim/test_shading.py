@@ -34,7 +34,7 @@ SHADERS = {
     "flat": {"flat": True},
     "light above": {"light": (70, 300, 50), "ambient": 40},
     "light within": {"light": (61, 70, 77), "ambient": 0},
-    "light on a corner of the grid": {"light": (64, 64, 64), "ambient": 255},
+    "light on a corner of the grid": {"light": (64, 64, 64), "ambient": 9},
     "light far away": {"light": (-(2**30), 2**31 - 1, 77), "ambient": 13},
     "light, flat": {"light": (70, 300, 50), "ambient": 100, "flat": True},
     "one bounce": {"bounces": 1},

@@ -73,8 +73,9 @@ def _coat(tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray
     else:
         return None
     name = "face colours" if by_face is not None else "vertex colours"
+    cutoff = OPAQUE_FROM if (colours[:, :, 3] < 1.0).any() else 0.0
     rows = np.zeros(len(triangles), dtype=np.int32)
-    return Coat((Paint(name, cutoff=OPAQUE_FROM),), rows, np.zeros((len(triangles), 3, 2)), colours.astype(np.float32))
+    return Coat((Paint(name, cutoff=cutoff),), rows, np.zeros((len(triangles), 3, 2)), colours.astype(np.float32))
 
 
 def _colours(table: Table) -> NDArray[np.float64] | None:

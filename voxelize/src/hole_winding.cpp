@@ -8,10 +8,9 @@
 namespace voxrt {
 namespace {
 
-constexpr double kLongestEdge = 16; // voxels; longer caps are cut, so that bounds stay tight near them
 constexpr size_t kMostCaps = 1 << 18;
 constexpr uint32_t kLeafCaps = 4;
-constexpr double kFar = 3; // radii at which a node is a dipole: errors below 1 %, see Barill et al.
+constexpr double kFar = 2; // radii at which a node is a dipole, as Barill et al. chose
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -25,20 +24,51 @@ Point centre(const HoleWinding::Cap& cap) {
     return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
 }
 
-/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
-double solid_angle(const HoleWinding::Cap& cap, const Point& q) {
+/// Tangents of half solid angles, multiplied as complex numbers: a sum of angles with one arc tangent at the end.
+class AngleSum {
+public:
+    /// Adds the angle of (under, over), or takes it away, `times` times.
+    void add(double over, double under, int times) {
+        const double size = std::abs(over) + std::abs(under);
+        if (size == 0)
+            return;
+        over /= size;
+        under /= size;
+        if (times < 0)
+            over = -over;
+        for (int i = std::abs(times); i > 0; --i) {
+            const double x = x_ * under - y_ * over, y = x_ * over + y_ * under;
+            // Past half a turn the sign of y changes against that of both angles.
+            if (y_ >= 0 && over >= 0 && y < 0)
+                ++turns_;
+            else if (y_ < 0 && over < 0 && y >= 0)
+                --turns_;
+            const double scale = 1 / (std::abs(x) + std::abs(y));
+            x_ = x * scale;
+            y_ = y * scale;
+        }
+    }
+    double radians() const { return std::atan2(y_, x_) + 2 * std::numbers::pi * turns_; }
+
+private:
+    double x_ = 1, y_ = 0;
+    int turns_ = 0;
+};
+
+/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983: the tangent of half of it is over / under.
+void add_solid_angle(AngleSum& sum, const HoleWinding::Cap& cap, const Point& q) {
     const Point a = minus(cap.corners[0], q), b = minus(cap.corners[1], q), c = minus(cap.corners[2], q);
     const double la = length(a), lb = length(b), lc = length(c);
-    return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    sum.add(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb, cap.times);
 }
 
 /// Cuts caps at their longest edges' middles until the edges are short.
-std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps) {
+std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps, double longest_edge) {
     for (size_t i = 0; i < caps.size() && caps.size() < kMostCaps;) {
         auto& [a, b, c] = caps[i].corners;
         const double lengths[3] = {length(minus(b, a)), length(minus(c, b)), length(minus(a, c))};
         const int longest = int(std::max_element(lengths, lengths + 3) - lengths);
-        if (!(lengths[longest] > kLongestEdge)) {
+        if (!(lengths[longest] > longest_edge)) {
             ++i;
             continue;
         }
@@ -54,7 +84,7 @@ std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps) {
 
 } // namespace
 
-HoleWinding::HoleWinding(std::vector<Cap> caps) : caps_(cut(std::move(caps))) {
+HoleWinding::HoleWinding(std::vector<Cap> caps, double longest_edge) : caps_(cut(std::move(caps), longest_edge)) {
     if (!caps_.empty())
         build(0, uint32_t(caps_.size()));
 }
@@ -102,6 +132,7 @@ int32_t HoleWinding::build(uint32_t first, uint32_t last) {
 
 double HoleWinding::at(const Point& q) const {
     double total = 0;
+    AngleSum near;
     int32_t stack[64];
     int depth = 0;
     if (!nodes_.empty())
@@ -117,10 +148,10 @@ double HoleWinding::at(const Point& q) const {
             stack[depth++] = node.right;
         } else {
             for (uint32_t i = node.first; i < node.last; ++i)
-                total += caps_[i].times * solid_angle(caps_[i], q);
+                add_solid_angle(near, caps_[i], q);
         }
     }
-    return total / (4 * std::numbers::pi);
+    return (total + 2 * near.radians()) / (4 * std::numbers::pi);
 }
 
 /// Bounds how far the solid angle may differ within `reach` of q: an area seen from d away changes by 2 / d^3 a length.
@@ -138,7 +169,7 @@ double HoleWinding::variation(int32_t index, const Point& q, double reach) const
 int HoleWinding::settled(const Point& q, double reach) const {
     if (nodes_.empty())
         return 0;
-    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.02; // and the dipoles' error
+    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.05; // and the dipoles' error
     if (!(change < 0.5))
         return kUnsettled;
     const double value = at(q);

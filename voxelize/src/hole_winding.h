@@ -15,7 +15,8 @@
 namespace voxrt {
 
 struct Point {
-    double x, y, z; // voxels
+    double x, y, z;
+    bool operator==(const Point&) const = default;
 };
 
 /// Triangles with multiplicity, as a tree of dipoles.
@@ -27,7 +28,8 @@ public:
     };
 
     HoleWinding() = default;
-    explicit HoleWinding(std::vector<Cap> caps);
+    /// Caps with edges above `longest_edge` are cut.
+    HoleWinding(std::vector<Cap> caps, double longest_edge);
 
     bool empty() const { return caps_.empty(); }
 

@@ -171,6 +171,8 @@ private:
             const ShellBrick* found = layer.find(column, k);
             const ShellBrick& brick = found != nullptr ? *found : nothing;
             const int value = settled_[size_t(column) * layer.height() + k];
+            if (found == nullptr && value == 0 && winding.inside() == 0)
+                continue;
             Slices within{};
             const Slices shell = slices_of(brick.shell);
             const Crossings crossings(brick);

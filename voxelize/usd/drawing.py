@@ -12,7 +12,7 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.material_table import MaterialTable
 from voxrt.voxelize.painted import Unfinished, finish
 from voxrt.voxelize.scene import SceneObject
-from voxrt.voxelize.usd.geometry import Surface, surface_of
+from voxrt.voxelize.usd.geometry import Surface, solid_key, surface_of
 from voxrt.voxelize.usd.instancer import placed_copies
 from voxrt.voxelize.usd.materials import Materials
 from voxrt.voxelize.usd.physics import colliders_of
@@ -154,10 +154,10 @@ class Drawing:
     def _object(self, prim: Usd.Prim) -> list[_Drawn]:
         """Draw one prim: an object, or none."""
         name = str(prim.GetPath())
-        # Instances of one prim share its surface, unless each has a pose of its own.
+        # Instances of one prim share its surface, unless each has a pose of its own; so do equal solids.
         source = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
         deformed = self._deformed.get(name)
-        key = name if deformed else str(source.GetPath())
+        key = name if deformed else solid_key(source, self.time) or str(source.GetPath())
         if key not in self._surfaces:
             self._surfaces[key] = surface_of(source, self.path, self.time, self.notes, deformed)
         surface = self._surfaces[key]

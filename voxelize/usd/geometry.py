@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from voxrt.voxelize import shapes
+from voxrt.voxelize import primitives
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate_corners
 
@@ -23,6 +23,29 @@ if TYPE_CHECKING:
 
 # Positions USD calls legal and no scene has: beyond it, squares overflow.
 _FARTHEST = 1e150
+
+
+# The attributes of each solid, in the order of what makes it.
+_MEASURES = {
+    "Cube": ("size",),
+    "Sphere": ("radius",),
+    "Cylinder": ("radius", "height", "axis"),
+    "Cylinder_1": ("radiusBottom", "radiusTop", "height", "axis"),
+    "Cone": ("radius", "height", "axis"),
+    "Capsule": ("radius", "height", "axis"),
+    "Capsule_1": ("radiusBottom", "radiusTop", "height", "axis"),
+    "Plane": ("width", "length", "axis"),
+}
+_MAKERS: dict[str, Callable[..., primitives.Surface]] = {
+    "Cube": primitives.cube,
+    "Sphere": primitives.sphere,
+    "Cylinder": lambda radius, height, axis: primitives.cylinder(radius, radius, height, axis),
+    "Cylinder_1": primitives.cylinder,
+    "Cone": primitives.cone,
+    "Capsule": lambda radius, height, axis: primitives.capsule(radius, radius, height, axis),
+    "Capsule_1": primitives.capsule,
+    "Plane": primitives.plane,
+}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -126,28 +149,25 @@ def _check_topology(
         raise AssetError(path, problem, place=place, fix="export the mesh again")
 
 
-def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> shapes.Surface | None:
-    def measure(name: str) -> float:
-        value = prim.GetAttribute(name).Get(time)
-        if value is None or not 0 <= value < _FARTHEST:
-            raise AssetError(path, f"{name} {value} is no length", place=str(prim.GetPath()), fix="give a positive one")
-        return float(value)
-
-    def axis() -> str:
-        value = str(prim.GetAttribute("axis").Get(time))
-        if value not in ("X", "Y", "Z"):
-            raise AssetError(path, f"axis {value!r} is none of X, Y, Z", place=str(prim.GetPath()), fix="give one")
-        return value
-
-    make: dict[str, Callable[[], shapes.Surface]] = {
-        "Cube": lambda: shapes.cube(measure("size")),
-        "Sphere": lambda: shapes.sphere(measure("radius")),
-        "Cylinder": lambda: shapes.cylinder(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Cylinder_1": lambda: shapes.cylinder(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Cone": lambda: shapes.cone(measure("radius"), measure("height"), axis()),
-        "Capsule": lambda: shapes.capsule(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Capsule_1": lambda: shapes.capsule(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Plane": lambda: shapes.plane(measure("width"), measure("length"), axis()),
-    }
+def solid_key(prim: Usd.Prim, time: Usd.TimeCode) -> str | None:
+    """Return what tells a solid's surface from others': its kind and measures; None for prims that are no solid."""
     kind = str(prim.GetTypeName())
-    return make[kind]() if kind in make else None
+    if kind not in _MEASURES:
+        return None
+    return " ".join([kind, *(str(prim.GetAttribute(name).Get(time)) for name in _MEASURES[kind])])
+
+
+def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitives.Surface | None:
+    kind = str(prim.GetTypeName())
+    if kind not in _MEASURES:
+        return None
+    values: list[float | str] = []
+    for name in _MEASURES[kind]:
+        value = prim.GetAttribute(name).Get(time)
+        place = str(prim.GetPath())
+        if name == "axis" and value not in ("X", "Y", "Z"):
+            raise AssetError(path, f"axis {str(value)!r} is none of X, Y, Z", place=place, fix="give one")
+        if name != "axis" and (value is None or not 0 <= value < _FARTHEST):
+            raise AssetError(path, f"{name} {value} is no length", place=place, fix="give a positive one")
+        values.append(str(value) if name == "axis" else float(value))
+    return _MAKERS[kind](*values)

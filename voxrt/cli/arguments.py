@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,3 +118,6 @@ def _sixteenths(text: str) -> int:
     if value != int(value):
         raise ValueError(f"{text} is not a multiple of 1/16 voxel (0.0625)")
     return int(value)
+
+
+Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]

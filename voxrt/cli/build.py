@@ -8,11 +8,9 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, pixels, png, whole
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, png, whole
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, warn
 from voxrt.cli.results import build_report, print_json
-
-Pixels = tuple[int, int]
 
 
 def build(
@@ -27,8 +25,12 @@ def build(
     pow2: Literal["box", "none"] = "box",
     up: Literal["x", "y", "z"] | None = None,
     unit: Annotated[float | None, Parameter(metavar="METRES")] = None,
+    time: Annotated[float | None, Parameter(metavar="SECONDS")] = None,
+    variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
+    budget: Annotated[int | None, Parameter(converter=whole, metavar="WORDS")] = None,
+    board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
-    size: Annotated[Pixels, Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (640, 480),
+    size: Pixels = (640, 480),
     engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
@@ -39,7 +41,7 @@ def build(
     Parameters
     ----------
     asset
-        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file.
+        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file, or a scene of some (.toml).
     output
         Folder to write to; made when it is missing.
     depth
@@ -58,6 +60,14 @@ def build(
         The up axis of formats that do not say (OBJ, STL, PLY).
     unit
         Metres per unit of formats that do not say.
+    time
+        The second of its animation at which the asset is shown (glTF, USD).
+    variant
+        A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
+    budget
+        Words that the memory may take: what is seen least is given up until it fits.
+    board
+        A board whose memory is the budget.
     preview
         Render a picture of the scene, to NAME.preview.png in the output folder or to FILE, a .png.
     size
@@ -79,7 +89,15 @@ def build(
     for option, value in (("--voxel-size", voxel_size), ("--unit", unit)):
         if value is not None and not 0 < value < float("inf"):
             raise UsageError(f"{option} {value} is not a positive number of metres")
-    with stage_bar(5 if preview is None else 6) as progress:
+    if budget is not None and board is not None:
+        raise UsageError("--budget and --board exclude each other; give one of them")
+    if board is not None and board not in voxrt.BOARDS:
+        raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
+    if budget is not None and budget < 1:
+        raise UsageError(f"--budget {budget} is not a number of words")
+    if time is not None and not abs(time) < float("inf"):
+        raise UsageError(f"--time {time} is not a number of seconds")
+    with stage_bar(5 + (preview is not None) + (budget is not None or board is not None)) as progress:
         result = voxrt.build(
             asset,
             output,
@@ -90,6 +108,9 @@ def build(
             pow2=pow2,
             up=up,
             unit=unit,
+            time=time,
+            variants=variant,
+            budget=board or budget,
             dialect=dialect,
             preview=png(Path(preview)) if preview else preview is not None,
             size=size,
@@ -114,8 +135,19 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{words:,} words, {words * 4 / 1024:,.1f} KiB"),
+        *([("budget", _budget(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
         ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
         *(("wrote", str(path)) for path in result.outputs.values()),
     ]
+
+
+def _budget(budget: voxrt.BudgetFit) -> str:
+    fit = budget.fit
+    if not (fit.changed or fit.appeared or fit.recoloured):
+        return f"{budget.words:,} words are enough, nothing is given up"
+    return (
+        f"{budget.words:,} of {fit.words_shared:,} words: {fit.percent_changed:.2f} % of the surface changed, "
+        f"PSNR {budget.psnr:.1f} dB, SSIM {budget.ssim:.3f}"
+    )

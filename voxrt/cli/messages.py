@@ -94,5 +94,20 @@ def stage_bar(stages: int) -> Iterator[Callable[[str], None]]:
         yield begin
 
 
+@contextmanager
+def transfer_bar() -> Iterator[Callable[[str, int, int], None]]:
+    """Show how far a transfer is, while standard error is a terminal; yields what to call with stage, done, total."""
+    if not sys.stderr.isatty():
+        yield lambda _stage, _done, _total: None
+        return
+    from rich.console import Console  # noqa: PLC0415 - only terminals need it
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+
+    columns = (SpinnerColumn(), TextColumn("{task.description:<10}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda stage, done, total: progress.update(task, description=stage, completed=done, total=total)
+
+
 def _print(line: str) -> None:
     print(line, file=sys.stderr)  # noqa: T201 - the one place that does

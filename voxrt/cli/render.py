@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, pixels, place, png, register, whole
+from voxrt.cli.arguments import Pixels, Reporting, place, png, register, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
@@ -23,10 +23,7 @@ def render(
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     engine: Literal["rtl", "model"] = "rtl",
     config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
-    size: Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (
-        640,
-        480,
-    ),
+    size: Pixels = (640, 480),
     position: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
     ] = None,
@@ -81,7 +78,7 @@ def render(
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
         frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
-    voxrt.save_picture(frame, file)
+    voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:

@@ -6,12 +6,15 @@ validators.
 
 from __future__ import annotations
 
+import math
 import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 import voxrt
+from voxrt.cli.board_results import ServeResult, UploadResult
 from voxrt.cli.messages import name_file
 from voxrt.outputs import OutputError
 
@@ -19,7 +22,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.octree import Rom
-    from voxrt.pipeline import BuildResult, Picture
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture
+    from voxrt.sim import Likeness
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -71,6 +75,24 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """With ``--check``: pixels on which the two engines differ."""
 
 
+class BudgetEntry(msgspec.Struct, frozen=True):
+    """What fitting a memory to a budget took."""
+
+    words: int
+    """The budget."""
+    words_before: int
+    """What the memory takes without it."""
+    percent_changed: float
+    """Percent of the surface voxels that vanished or took another material."""
+    appeared: int
+    """Voxels that became solid."""
+    recoloured: int
+    """Voxels that took another material, hidden ones included."""
+    psnr: float | None
+    """Of the scene's picture against that without a budget, decibel; null where they are equal."""
+    ssim: float
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -86,6 +108,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Wall seconds a stage, in order."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
+    budget: BudgetEntry | None = None
+    """Null when there was none."""
 
 
 class WorldEntry(msgspec.Struct, frozen=True):
@@ -145,9 +169,26 @@ class DiffResult(msgspec.Struct, frozen=True):
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
 
 
+class CompareResult(msgspec.Struct, frozen=True):
+    """``voxrt compare --json``; null where nothing is seen that could be compared."""
+
+    silhouette_iou: float | None
+    depth_mean: float | None
+    depth_median: float | None
+    depth_95: float | None
+    """Depths in voxels."""
+    normal_cosine: float | None
+    normal_agreement: float | None
+    psnr: float | None
+    ssim: float | None
+    outputs: dict[str, str]
+
+
 def schema() -> dict[str, Any]:
     """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult, RomInfo, DiffResult))
+    _, definitions = msgspec.json.schema_components(
+        (BuildReport, RenderResult, RomInfo, DiffResult, CompareResult, ServeResult, UploadResult)
+    )
     return definitions
 
 
@@ -167,6 +208,20 @@ def build_report(result: BuildResult) -> BuildReport:
         warnings=[WarningEntry(warning.kind, warning.message, warning.count) for warning in result.warnings],
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
+        budget=None if result.budget is None else _budget_entry(result.budget),
+    )
+
+
+def _budget_entry(budget: BudgetFit) -> BudgetEntry:
+    fit = budget.fit
+    return BudgetEntry(
+        words=budget.words,
+        words_before=fit.words_shared,
+        percent_changed=fit.percent_changed,
+        appeared=fit.appeared,
+        recoloured=fit.recoloured,
+        psnr=budget.psnr if math.isfinite(budget.psnr) else None,
+        ssim=budget.ssim,
     )
 
 
@@ -211,6 +266,12 @@ def rom_info(rom: Rom) -> RomInfo:
             for number, material in enumerate(rom.materials)
         ],
     )
+
+
+def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
+    """Tell programs how like two pictures are."""
+    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
+    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})
 
 
 def print_json(result: msgspec.Struct) -> None:

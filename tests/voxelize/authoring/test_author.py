@@ -19,6 +19,9 @@ from voxrt.voxelize import (
     author,
 )
 from voxrt.voxelize.author import Author, AuthoringError
+from voxrt.voxelize.paint import Coat, Paint
+
+WHITE = (255, 255, 255)
 
 
 def test_the_examples_of_the_module():
@@ -115,6 +118,22 @@ def test_assets_bring_their_materials_and_share_meshes():
     assert scene.objects[2].mesh.materials.tolist() == [3, 4]
     assert scene.objects[0].mesh is scene.objects[1].mesh
     assert scene.objects[1].transform[:3, 3].tolist() == [5, 0, 7]
+
+
+def test_paint_stays_unless_its_material_is_declared():
+    white = np.ones((2, 3, 4), dtype=np.float32)
+    coat = Coat((Paint("cloth"), Paint("skin")), np.array([0, 1], dtype=np.int32), np.zeros((2, 3, 2)), white)
+    mesh = Mesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]], dtype=np.int32), np.array([1, 2], dtype=np.uint8), coat)
+    table = (Material("empty", (0, 0, 0)), Material("cloth #ffffff", WHITE), Material("skin #ffffff", WHITE))
+    painted = Scene("asset", (SceneObject("one", mesh),), table)
+    yard = Author("yard")
+    yard.material("linen", "#eeeeee")
+    yard.add_asset("doll", painted, np.eye(4), materials={"cloth": "linen"})
+    scene = yard.build()
+    assert [one.name for one in scene.materials[1:]] == ["linen", "skin #ffffff"]
+    (one,) = scene.objects
+    assert one.mesh.materials.tolist() == [1, 2]
+    assert one.mesh.coat.rows.tolist() == [-1, 1]
 
 
 def test_a_view_and_a_light():

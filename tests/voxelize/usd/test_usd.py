@@ -238,6 +238,17 @@ def test_mesh_colliders(usd, approximation, kind):
         assert collider.radius == pytest.approx(np.sqrt(0.75))
 
 
+def test_a_convex_decomposition_has_a_hull_a_connected_part(usd):
+    cube = CUBE.replace("(0,1,1)]", "(0,1,1),(5,0,0),(6,0,0),(5,1,0),(5,0,1)]")
+    cube = cube.replace("[4,4,4,4,4,4]", "[4,4,4,4,4,4,3,3,3,3]").replace(
+        "0,4,7,3]", "0,4,7,3, 8,10,9, 8,11,10, 8,9,11, 9,10,11]"
+    )
+    apis = 'prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]'
+    scene = usd(f'def Mesh "m" ({apis}) {{{cube}\nuniform token physics:approximation = "convexDecomposition"\n}}')
+    assert [len(collider.positions) for collider in scene.objects[0].colliders] == [8, 4]
+    assert kinds(scene)["collider"] == 1
+
+
 def test_solid_colliders_and_disabled_ones(usd):
     api = '(prepend apiSchemas = ["PhysicsCollisionAPI"])'
     scene = usd(
