@@ -277,7 +277,9 @@ def test_properties_in_the_wrong_place_are_refused(tmp_path):
     writer = two_coloured()
     writer.show(mesh=0)
     empty = writer.show(extras={"voxrt_collider": "box"})
-    with pytest.raises(AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node has no mesh; put "):
+    with pytest.raises(
+        AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node shows no triangles; put "
+    ):
         load(writer.save(tmp_path / "a.gltf"))
     writer.json["nodes"][empty] = {}
     writer.json["materials"][0]["extras"] = {"voxrt_collider": "box"}
