@@ -134,7 +134,7 @@ def test_a_listed_child_is_shown_once_and_where_its_parents_put_it(tmp_path):
             {"nodes": [{"matrix": np.eye(4).ravel().tolist(), "scale": [1, 1, 1]}, {}]},
             r"nodes\[0\]: has a matrix and translation, rotation or scale as well",
         ),
-        ({"nodes": [{"scale": [1e999, 1, 1]}, {}]}, r"JSON is malformed"),
+        ({"nodes": [{"scale": [1e999, 1, 1]}, {}]}, r"the JSON cannot be read"),
         ({"nodes": [{"mesh": 0, "scale": [1e308, 1e308, 1], "translation": [1e308] * 3}, {}]}, r"range of numbers"),
     ],
 )
