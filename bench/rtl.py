@@ -141,8 +141,8 @@ def main() -> None:
     lines = [
         f"{width}x{height} pixels. Bound: max(1, words a ray / lanes).",
         "",
-        "| scene | configuration | lanes | words a ray | cycles a pixel | bound | of the bound "
-        "| words a clock and lane | million clocks/s simulated | million pixels/s simulated |",
+        "| scene | configuration | lanes | words a ray | cycles a pixel | bound | of the bound | words a clock and lane "
+        + "| million clocks/s simulated | million pixels/s simulated |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for scene in scenes(options.memories, (width, height)):

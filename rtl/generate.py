@@ -33,7 +33,11 @@ def main() -> None:
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))
     top = compiler.elaborate().top
-    python = ['"""Made of rtl/registers.rdl: name, byte address, fields as (lowest bit, width)."""', "", "REGISTERS = {"]
+    python = [
+        '"""Made of rtl/registers.rdl: name, byte address, fields as (lowest bit, width)."""',
+        "",
+        "REGISTERS = {",
+    ]
     manual = ["# Registers", "", " ".join((top.get_property("desc") or "").split()), ""]
     for node in top.children(unroll=True):
         name = node.get_path_segment()
@@ -49,7 +53,9 @@ def main() -> None:
                 access = "w1c" if field.get_property("onwrite") is not None else field.get_property("sw").name
                 reset = field.get_property("reset")
                 meaning = " ".join((field.get_property("desc") or "").split())
-                manual.append(f"| {bits} | {field.inst_name} | {access} | {'' if reset is None else reset} | {meaning} |")
+                manual.append(
+                    f"| {bits} | {field.inst_name} | {access} | {'' if reset is None else reset} | {meaning} |"
+                )
             manual.append("")
         elif isinstance(node, MemNode):
             manual += [f"## 0x{node.absolute_address:03X} {name}, {node.get_property('mementries')} words", ""]

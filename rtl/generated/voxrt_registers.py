@@ -1,11 +1,23 @@
-"""Registers of the ray tracer, made of rtl/registers.rdl: name, byte address, fields as (low, width)."""
+"""Made of rtl/registers.rdl: byte address and fields (lowest bit, width) by name."""
 
 REGISTERS = {
     "identity": (0x000, {"value": (0, 32)}),
     "version": (0x004, {"minor": (0, 8), "major": (8, 8)}),
-    "configuration": (0x008, {"lanes": (0, 8), "max_depth": (8, 5), "position_bits": (16, 6), "block_bits": (24, 5), "banked": (31, 1)}),
+    "configuration": (
+        0x008,
+        {"lanes": (0, 8), "max_depth": (8, 5), "position_bits": (16, 6), "block_bits": (24, 5), "banked": (31, 1)},
+    ),
     "control": (0x00C, {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1)}),
-    "status": (0x010, {"busy": (0, 1), "frame_done": (1, 1), "direction_overflow": (8, 1), "bad_pointer": (9, 1), "step_limit": (10, 1)}),
+    "status": (
+        0x010,
+        {
+            "busy": (0, 1),
+            "frame_done": (1, 1),
+            "direction_overflow": (8, 1),
+            "bad_pointer": (9, 1),
+            "step_limit": (10, 1),
+        },
+    ),
     "size": (0x014, {"width": (0, 12), "height": (16, 12)}),
     "depth": (0x018, {"depth": (0, 5)}),
     "position[0]": (0x020, {"value": (0, 32)}),

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from oracles.meshes import box_mesh, icosphere, one_object, scene_of
 from oracles.voxels import compete, dense, snap, voxelize_mesh
 
-from voxelize.shapes import box_mesh, icosphere, one_object, scene_of
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
 
 UNIT_GRID = {depth: Grid(depth, (0.0, 0.0, 0.0), 1.0) for depth in range(1, 7)}
