@@ -188,6 +188,7 @@ def test_webp_by_extension(tmp_path):
     ("mode", "alpha", "factor", "there"),
     [
         ("OPAQUE", 0, 1.0, True),
+        ("OPAQUE", 255, -1.0, True),
         ("MASK", 127, 1.0, False),
         ("MASK", 128, 1.0, True),
         ("MASK", 255, 0.4, False),
