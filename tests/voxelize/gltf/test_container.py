@@ -152,3 +152,12 @@ def test_required_extensions_that_are_unknown_refuse_the_file_and_others_are_cou
     writer.json["extensionsRequired"] = ["KHR_lights_punctual", "ACME_wobble"]
     with pytest.raises(AssetError, match=r"extensionsRequired\[1\]: the extension ACME_wobble is not supported"):
         load(writer.save(tmp_path / "a.glb"))
+
+
+def test_a_buffer_without_data_is_refused(tmp_path):
+    path = tmp_path / "a.gltf"
+    writer = triangle()
+    writer.json["buffers"] = [{"byteLength": len(writer.data)}]
+    path.write_text(json.dumps(writer.json))
+    with pytest.raises(AssetError, match=r"buffers\[0\]: has no uri and the file no binary chunk for it"):
+        load(path)

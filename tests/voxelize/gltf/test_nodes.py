@@ -181,3 +181,20 @@ def test_a_chain_whose_nodes_are_all_listed_is_shown_once_without_delay(tmp_path
     writer.json["nodes"].append({"mesh": writer.mesh(TRIANGLE)})
     writer.json["scenes"] = [{"nodes": list(range(count, -1, -1))}]
     assert len(load(writer.save(tmp_path / "a.glb")).objects) == 1
+
+
+def test_roots_listed_twice_are_shown_once_and_counted(tmp_path):
+    writer = GltfWriter()
+    writer.show(name="once", mesh=writer.mesh(TRIANGLE))
+    writer.json["scenes"][0]["nodes"] *= 2
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert [thing.name for thing in scene.objects] == ["once"]
+    assert "repeated-root" in {warning.kind for warning in scene.warnings}
+
+
+def test_transforms_that_overflow_together_are_refused(tmp_path):
+    writer = GltfWriter()
+    writer.show(scale=[1e200, 1, 1], children=[1])
+    writer.add("nodes", {"scale": [1e200, 1, 1], "mesh": writer.mesh(TRIANGLE)})
+    with pytest.raises(AssetError, match=r"nodes\[1\]: the transform leaves the range of numbers"):
+        load(writer.save(tmp_path / "a.glb"))

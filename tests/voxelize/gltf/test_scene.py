@@ -303,3 +303,12 @@ def test_extras_of_others_are_left_alone(extras, tmp_path):
     writer = two_coloured()
     writer.show(mesh=0, extras=extras)
     assert len(load(writer.save(tmp_path / "a.gltf")).objects) == 1
+
+
+def test_primitives_without_positions_are_counted(tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json["meshes"][0]["primitives"].append({"attributes": {"NORMAL": 0}})
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert len(scene.objects[0].mesh.triangles) == 3
+    assert kinds(scene)["no-positions"] == 1
