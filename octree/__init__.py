@@ -15,6 +15,7 @@ from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
+from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.octree.vox import read_vox
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Octree",
     "Rom",
     "RomError",
+    "SurfaceChange",
     "build",
     "census",
     "coarsen",
@@ -45,5 +47,6 @@ __all__ = [
     "read_vox",
     "share",
     "solid_bounds",
+    "surface_change",
     "to_dense",
 ]

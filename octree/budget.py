@@ -19,6 +19,7 @@ import numpy as np
 from voxrt.octree import _native
 from voxrt.octree.diff import diff
 from voxrt.octree.octree import Octree
+from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class Fit:
     @property
     def percent_changed(self) -> float:
         """Percent of the surface voxels that changed."""
-        return 100 * self.changed / self.surface if self.surface else 0.0
+        return SurfaceChange(self.surface, self.changed).percent
 
 
 def share(octree: Octree) -> Octree:
@@ -177,14 +178,14 @@ def _least_exponent(
 
 
 def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
-    surface, changed = _native.surface_change(original.words, result.words, original.depth)
+    seen = surface_change(original, result)
     difference = diff(original, result)
     return Fit(
         octree=result,
         words_before=len(original.words),
         words_shared=len(shared.words),
-        surface=surface,
-        changed=changed,
+        surface=seen.surface,
+        changed=seen.changed,
         appeared=difference.appeared,
         recoloured=difference.recoloured,
     )

@@ -6,7 +6,6 @@ from oracles.octree import reference_words, unshared_words
 from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
-from voxrt.octree import _native
 from voxrt.voxelize import DoesNotFitError
 
 
@@ -58,9 +57,11 @@ def test_surface_change_is_what_brute_force_counts(data):
     side = max(len(a), len(b))
     a, b = (np.pad(c, (0, side - len(c))) for c in (a, b))
     trees = octree.from_dense(a), octree.from_dense(b)
-    found = _native.surface_change(trees[0].words, trees[1].words, trees[0].depth)
+    found = octree.surface_change(*trees)
     seen = surface(a)
-    assert found == (np.count_nonzero(seen), np.count_nonzero(seen & ~(surface(b) & (a == b))))
+    assert found.surface == np.count_nonzero(seen)
+    assert found.changed == np.count_nonzero(seen & ~(surface(b) & (a == b)))
+    assert found.percent == (100 * found.changed / found.surface if found.surface else 0)
 
 
 @given(dense_cubes(5), st.floats(0, 1), st.booleans())
@@ -107,7 +108,7 @@ def test_sharing_comes_first():
 def test_closer_than_a_coarser_world_of_the_same_size(materials, level):
     tree = octree.from_dense(lumps(6, materials))
     plain = octree.coarsen(tree, level)
-    _, plain_changed = _native.surface_change(tree.words, plain.words, tree.depth)
+    plain_changed = octree.surface_change(tree, plain).changed
     found = octree.fit(tree, len(plain.words))
     assert len(found.octree.words) <= len(plain.words)
     assert found.changed + found.appeared < plain_changed + octree.diff(tree, plain).appeared
@@ -160,3 +161,5 @@ def test_refusals():
         octree.coarsen(tree, 2)
     with pytest.raises(ValueError, match=r"colours must have the shape \(M, 3\)"):
         octree.fit(octree.from_dense(lumps(4)), 9, colours=np.zeros((2, 4), np.uint8))
+    with pytest.raises(ValueError, match="depth 1 and 4"):
+        octree.surface_change(tree, octree.from_dense(lumps(4)))
