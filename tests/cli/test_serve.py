@@ -61,6 +61,8 @@ def test_a_server_for_others_wants_a_token(folder):
     [
         (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
         (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
+        (["serve", "--device", "pynq"], 2, "--device pynq wants the ray tracer's --bitstream"),
+        (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no PYNQ"),
         (["serve", "nothing.mem"], 3, "nothing.mem"),
         (["serve", "nothing.blob"], 3, "nothing.blob"),
         (["upload", "house.obj", "--to", "127.0.0.1:1"], 2, "is no .mem or .blob; build it first"),
