@@ -7,7 +7,7 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test lint bench sanitize clean
 .DELETE_ON_ERROR:
 
 help:
@@ -15,12 +15,13 @@ help:
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
 	@echo "make bench   run the benchmarks"
+	@echo "make sanitize  run the native voxelizer under the address, undefined and thread sanitizers"
 	@echo "make clean   remove what the others made"
 
 demo: $(VENV)/.installed
-	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview
+	$(BIN)/voxrt-build examples/courtyard.glb -o demo --preview demo/preview.png
 
-# From a folder of its own and without the repository's root on the path, so that the wheel is what is tested.
+# pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
 test: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
 
@@ -34,18 +35,29 @@ lint: $(VENV)/.installed $(VENV)/.tools
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
 
+# Without Python, so that the sanitizers see our own code alone.
+sanitize: $(addprefix build/sanitize/voxelize-,address-undefined thread)
+	for program in $^; do echo $$program && $$program || exit 1; done
+
+build/sanitize/voxelize-%: tests/voxelize/native/exercise.cpp $(wildcard voxelize/src/*)
+	@mkdir -p $(@D)
+	$(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -Ivoxelize/src -o $@ \
+		$< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
+comma := ,
+
 clean:
 	rm -rf $(VENV) build demo
 
 $(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
-	rm -rf build/wheel
-	$(PIP) wheel --no-deps --wheel-dir build/wheel .
-	$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
-	$(PIP) install build/wheel/*.whl
+	@echo "building voxrt, its native code and the verilated ray tracer: a few minutes when anything changed"
+	@rm -rf build/wheel
+	@$(PIP) wheel --no-deps --wheel-dir build/wheel .
+	@$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
+	@$(PIP) install build/wheel/*.whl
 	@touch $@
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
-	$(PIP) install --group dev
+	@$(PIP) install --group dev
 	@touch $@
 
 $(VENV)/.ready:
@@ -54,7 +66,7 @@ $(VENV)/.ready:
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "voxrt needs Python's venv module: apt install python3-venv" >&2; exit 1; }
 	@$(PYTHON) -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(os.path.join(sysconfig.get_paths()["include"], "Python.h")))' || { echo "voxrt needs Python's headers: apt install python3-dev" >&2; exit 1; }
 	@echo 'int main() { return [](auto x) requires true { return x; }(0); }' | $${CXX:-c++} -std=c++20 -x c++ -fsyntax-only - 2>/dev/null || { echo "voxrt needs a C++20 compiler (gcc 11, clang 14 or newer): apt install g++" >&2; exit 1; }
-	@echo "setting up $(VENV): a minute or two, once"
+	@echo "setting up $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) install --upgrade 'pip>=25.1'
 	@touch $@

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import re
 import zlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.word_file import WordFile, mem_bytes, read_bytes
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:
@@ -28,40 +28,12 @@ _WORD = re.compile(rb"[0-9A-Fa-f_]+")
 _LINE_LENGTH = 9
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MemFile:
-    """What a ``.mem`` file holds.
-
-    Attributes
-    ----------
-    words
-        uint32, shape (N,), as they stand in the file, whatever they mean.
-    lines
-        int64, shape (N,): the line of each word, counted from 1.
-    crc32
-        CRC-32 (ISO 3309, as zlib computes it) of the file's bytes.
-    """
-
-    words: NDArray[np.uint32]
-    lines: NDArray[np.int64]
-    crc32: int
-
-
-def mem_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Format words (uint32, shape (N,)) as the bytes of a ``.mem`` file."""
-    text = np.empty((len(words), _LINE_LENGTH), dtype=np.uint8)
-    for digit in range(8):
-        text[:, digit] = _DIGITS[(words >> np.uint32(28 - 4 * digit)) & np.uint32(15)]
-    text[:, 8] = ord("\n")
-    return text.tobytes()
-
-
 def write_mem(path: Path, words: NDArray[np.uint32]) -> None:
     """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
     write_atomically(path, mem_bytes(words))
 
 
-def read_mem(path: Path) -> MemFile:
+def read_mem(path: Path) -> WordFile:
     """Read a ``.mem`` file; what the words mean is for :func:`voxrt.octree.decode` to say.
 
     Raises
@@ -69,15 +41,12 @@ def read_mem(path: Path) -> MemFile:
     RomError
         Where the file cannot be read or holds something that is no word: names the line.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise RomError(f"{path}: cannot be read: {error.strerror}; name a .mem file") from None
+    data = read_bytes(path)
     crc32 = zlib.crc32(data)
     words = _parse_plain(data)
     if words is not None:
-        return MemFile(words, np.arange(1, len(words) + 1), crc32)
-    return MemFile(*_parse(path, data), crc32)
+        return WordFile(words, np.arange(1, len(words) + 1), crc32)
+    return WordFile(*_parse(path, data), crc32)
 
 
 def _parse_plain(data: bytes) -> NDArray[np.uint32] | None:

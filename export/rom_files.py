@@ -1,4 +1,4 @@
-"""A ROM as the pair NAME.mem and NAME.json, and back.
+"""A ROM as the pair NAME.mem and NAME.json, and back; NAME.coe, NAME.mif and NAME.bin in place of the ``.mem`` alike.
 
 The pair changes at one moment, the renaming of the new ``.mem``: before it, the new manifest waits as NAME.json.next;
 after it, that file takes the name NAME.json. A reader takes whichever of the two manifests has the CRC-32 of the
@@ -13,9 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.export.atomic import sync_folder, write_atomically
+from voxrt.export.coe import coe_bytes, read_coe
 from voxrt.export.manifest import Source, make_manifest, manifest_bytes, read_manifest
-from voxrt.export.mem import mem_bytes, read_mem
+from voxrt.export.mem import read_mem
+from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
+from voxrt.export.raw import raw_bytes, read_raw
+from voxrt.export.word_file import mem_bytes
 from voxrt.octree import Octree, Rom, RomError, census, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
@@ -24,13 +28,20 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from voxrt.export.manifest import Manifest
-    from voxrt.export.mem import MemFile
+    from voxrt.export.word_file import WordFile
     from voxrt.voxelize import Material, ObjectReport
+
+
+_READERS = {".mem": read_mem, ".coe": read_coe, ".mif": read_mif, ".bin": read_raw}
+_WRITERS = {".mem": mem_bytes, ".coe": coe_bytes, ".mif": mif_bytes, ".bin": raw_bytes}
+
+WORD_SUFFIXES = tuple(_WRITERS)
+"""The files of words that are read and written."""
 
 
 @dataclass(frozen=True, slots=True)
 class RomFiles:
-    """Where a ROM was written: its ``.mem`` and its manifest."""
+    """Where a ROM was written: its words (a ``.mem``, most often) and its manifest."""
 
     mem: Path
     manifest: Path
@@ -40,6 +51,7 @@ def write_rom(
     folder: Path,
     rom: Rom,
     *,
+    suffix: str = ".mem",
     dialect: str = "report",
     objects: tuple[ObjectReport, ...] = (),
     warnings: tuple[SceneWarning, ...] = (),
@@ -54,6 +66,8 @@ def write_rom(
         Made where it is not there.
     rom
         What to write; its name names the files.
+    suffix
+        Which file of words to write, one of :data:`WORD_SUFFIXES`.
     dialect
         How the ``.mem`` marks its leaves, one of :data:`voxrt.octree.DIALECTS`.
     objects, warnings, seconds, source
@@ -68,15 +82,15 @@ def write_rom(
     """
     if rom.name in {"", ".", ".."} or any(c in rom.name for c in "/\\\0"):
         raise ValueError(f"{rom.name!r} cannot name a file")
-    mem = mem_bytes(encode(rom.octree.words, dialect))
+    words = encode(rom.octree.words, dialect)
     manifest = make_manifest(
-        rom, mem, as_dialect(dialect), objects=objects, warnings=warnings, seconds=seconds, source=source
+        rom, mem_bytes(words), as_dialect(dialect), objects=objects, warnings=warnings, seconds=seconds, source=source
     )
     folder.mkdir(parents=True, exist_ok=True)
-    files = RomFiles(folder / f"{rom.name}.mem", folder / f"{rom.name}.json")
+    files = RomFiles(folder / f"{rom.name}{suffix}", folder / f"{rom.name}.json")
     waiting = _waiting(files.manifest)
     write_atomically(waiting, manifest_bytes(manifest))
-    write_atomically(files.mem, mem)
+    write_atomically(files.mem, _WRITERS[suffix.lower()](words))
     waiting.replace(files.manifest)
     sync_folder(folder)
     return files
@@ -90,7 +104,7 @@ def read_rom(
     Parameters
     ----------
     path
-        ``NAME.mem``; the manifest is looked for as ``NAME.json``.
+        ``NAME.mem``, or with another of :data:`WORD_SUFFIXES`; the manifest is looked for as ``NAME.json``.
     depth, dialect
         What no manifest says. Without them the depth is the least that the memory has, the dialect is told by the
         leaves, the materials get the default palette, and a warning says so.
@@ -107,7 +121,9 @@ def read_rom(
         the manifest.
     """
     mem_path = Path(path)
-    mem = read_mem(mem_path)
+    if mem_path.suffix.lower() not in _READERS:
+        raise RomError(f"{path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
+    mem = _READERS[mem_path.suffix.lower()](mem_path)
     manifest = _manifest_of(mem_path, mem)
     if manifest is None:
         return _without_manifest(mem_path, mem, depth, dialect)
@@ -126,7 +142,7 @@ def read_rom(
     return Rom(manifest.name, octree, manifest.material_table, manifest.grid), ()
 
 
-def _manifest_of(mem_path: Path, mem: MemFile) -> Manifest | None:
+def _manifest_of(mem_path: Path, mem: WordFile) -> Manifest | None:
     """Find the manifest that belongs to the bytes of the ``.mem``; None where there is no manifest at all."""
     path = mem_path.with_suffix(".json")
     candidates = [candidate for candidate in (path, _waiting(path)) if candidate.is_file()]
@@ -147,7 +163,7 @@ def _waiting(manifest: Path) -> Path:
 
 
 def _without_manifest(
-    path: Path, mem: MemFile, depth: int | None, dialect: str | None
+    path: Path, mem: WordFile, depth: int | None, dialect: str | None
 ) -> tuple[Rom, tuple[SceneWarning, ...]]:
     warnings: list[SceneWarning] = []
     if dialect is None:

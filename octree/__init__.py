@@ -5,7 +5,7 @@ from pkgutil import extend_path
 __path__ = extend_path(__path__, __name__)
 
 from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
-from voxrt.octree.build import build, from_dense
+from voxrt.octree.build import build, from_dense, from_points
 from voxrt.octree.census import Census, census
 from voxrt.octree.decode import decode
 from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
@@ -15,6 +15,8 @@ from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
+from voxrt.octree.surface import SurfaceChange, surface_change
+from voxrt.octree.vox import read_vox
 
 __all__ = [
     "BOARDS",
@@ -28,6 +30,7 @@ __all__ = [
     "Octree",
     "Rom",
     "RomError",
+    "SurfaceChange",
     "build",
     "census",
     "coarsen",
@@ -38,9 +41,12 @@ __all__ = [
     "encode",
     "fit",
     "from_dense",
+    "from_points",
     "leaves",
     "material_at",
+    "read_vox",
     "share",
     "solid_bounds",
+    "surface_change",
     "to_dense",
 ]

@@ -3,10 +3,10 @@
 How it works: equal blocks are shared first, which costs nothing. If that is not enough, blocks two and three levels
 above the voxels let similar blocks stand for them (van der Laan, Scandolo and Eisemann, "Lossy Geometry Compression for
 High Resolution Voxel Scenes", 2020): a block goes where the voxels that change, counted wherever it stands, weigh less
-than the price of a block, and the price rises until the memory fits. A stand-in holds every solid voxel of what it stands
-for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Materials that no ray from
-outside reaches change for nothing. Memories far too large start from a world made coarser by one level or more; every
-candidate that fits is measured against the original, the plain coarser world among them, and the closest is taken.
+than the price of a block, and the price rises until the memory fits. A stand-in holds every solid voxel of what it
+stands for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Materials that no ray
+from outside reaches change for nothing. Memories far too large start from a world made coarser by one level or more;
+every candidate that fits is measured against the original, the plain coarser world among them; the closest is taken.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ import numpy as np
 from voxrt.octree import _native
 from voxrt.octree.diff import diff
 from voxrt.octree.octree import Octree
+from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -32,11 +33,11 @@ BOARDS = {"pynq-z1": 1 + 8 * 4096}
 _LEVELS_KEPT = 3
 """However small the budget, octants of more than 1/8 of the world's side are never filled up."""
 
-_PRICE_EXPONENTS = (0.0, 44.0)
-_PRICE_STEPS = 8
-_LEVELS_TRIED = 2
-_FINE_TO_COARSE = (0, 2)
-"""How much more a block two levels above the voxels may cost than one three levels above, as powers of two."""
+_EXPONENTS = (0.0, 44.0)
+_COARSE_DISCOUNT = 0.75
+_FINE_EXPONENTS = (-1.5, 2.5)
+_MANY_BLOCKS = 30_000
+"""With fewer blocks there is time to start from a world twice as fine as need be, too."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -70,7 +71,7 @@ class Fit:
     @property
     def percent_changed(self) -> float:
         """Percent of the surface voxels that changed."""
-        return 100 * self.changed / self.surface if self.surface else 0.0
+        return SurfaceChange(self.surface, self.changed).percent
 
 
 def share(octree: Octree) -> Octree:
@@ -130,39 +131,61 @@ def _candidates(shared: Octree, words: int, costs: NDArray[np.uint16]) -> Iterat
             f"give it at least {len(worlds[-1].words)} words"
         )
     yield worlds[-1]
-    for finest in range(max(0, len(worlds) - 1 - _LEVELS_TRIED), len(worlds) - 1):
-        for fine_to_coarse in _FINE_TO_COARSE:
-            merged = _merge_to(worlds[finest], finest, words, costs, fine_to_coarse)
-            if merged is not None:
-                yield merged
+    starts = 1 if shared.blocks > _MANY_BLOCKS else 2
+    for finest in range(max(0, len(worlds) - 1 - starts), len(worlds) - 1):
+        yield from _merged(worlds[finest], finest, words, costs)
 
 
-def _merge_to(world: Octree, finest: int, words: int, costs: NDArray[np.uint16], fine_to_coarse: int) -> Octree | None:
-    """Find the least price at which merging blocks of `world` makes it fit, by halving its exponent's range."""
-    low, high = _PRICE_EXPONENTS
-    fitting = None
-    for _ in range(_PRICE_STEPS):
+def _merged(world: Octree, finest: int, words: int, costs: NDArray[np.uint16]) -> Iterator[Octree]:
+    """Memories that fit at the least price for which they do.
+
+    First one price for all blocks; then, with blocks three levels above the voxels cheaper than that, the least price
+    for those two levels above them, which are shared more and so deserve one of their own.
+    """
+
+    def merge(fine_exponent: float, coarse_exponent: float) -> Octree:
+        fine_price, coarse_price = int(2**fine_exponent), int(2**coarse_exponent)
+        return Octree(
+            world.depth, _native.merge_blocks(world.words, world.depth, finest, costs, fine_price, coarse_price)
+        )
+
+    exponent, found = _least_exponent(lambda e: merge(e, e), words, _EXPONENTS, 8)
+    if found is None:
+        return
+    yield found
+    around = (exponent + _FINE_EXPONENTS[0], exponent + _FINE_EXPONENTS[1])
+    _, found = _least_exponent(lambda e: merge(e, exponent - _COARSE_DISCOUNT), words, around, 4)
+    if found is not None:
+        yield found
+
+
+def _least_exponent(
+    merge: Callable[[float], Octree], words: int, exponents: tuple[float, float], steps: int
+) -> tuple[float, Octree | None]:
+    """Halve the range of exponents: the least found whose memory fits, and the largest memory that did."""
+    low, high = exponents
+    fitting: Octree | None = None
+    for _ in range(steps):
         middle = (low + high) / 2
-        fine_price, coarse_price = int(2 ** (middle + fine_to_coarse)), int(2**middle)
-        merged = _native.merge_blocks(world.words, world.depth, finest, costs, fine_price, coarse_price)
-        if len(merged) <= words:
-            high = middle
-            if fitting is None or len(merged) >= len(fitting.words):
-                fitting = Octree(world.depth, merged)
-        else:
+        merged = merge(middle)
+        if len(merged.words) > words:
             low = middle
-    return fitting
+            continue
+        high = middle
+        if fitting is None or len(merged.words) >= len(fitting.words):
+            fitting = merged
+    return high, fitting
 
 
 def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
-    surface, changed = _native.surface_change(original.words, result.words, original.depth)
+    seen = surface_change(original, result)
     difference = diff(original, result)
     return Fit(
         octree=result,
         words_before=len(original.words),
         words_shared=len(shared.words),
-        surface=surface,
-        changed=changed,
+        surface=seen.surface,
+        changed=seen.changed,
         appeared=difference.appeared,
         recoloured=difference.recoloured,
     )

@@ -81,3 +81,45 @@ def from_dense(materials: NDArray[np.integer]) -> Octree:
             f"{max(materials.shape)} voxels a side do not fit depth {MAX_DEPTH}; cut the array in parts"
         )
     return Octree(depth, _native.build_dense(np.ascontiguousarray(materials, dtype=np.uint8), depth))
+
+
+def from_points(points: NDArray[np.integer], materials: NDArray[np.integer], depth: int) -> Octree:
+    """Build the octree of solid voxels given one by one.
+
+    Parameters
+    ----------
+    points
+        Integers, shape (N, 3): voxel coordinates (x, y, z), 0 … 2**depth - 1. Where one repeats, the first counts.
+    materials
+        Integers, shape (N,): material ids 1 … 255.
+    depth
+        Levels of the world, 1 … 16.
+
+    Raises
+    ------
+    ValueError
+        Where a shape, a coordinate or a material is none of these.
+    """
+    if points.ndim != 2 or points.shape[1] != 3 or materials.shape != points.shape[:1]:
+        raise ValueError(f"points and materials must be (N, 3) and (N,), not {points.shape} and {materials.shape}")
+    if len(points) and (points.min() < 0 or int(points.max()) >> depth):
+        raise ValueError(f"points must lie in 0 ... {(1 << depth) - 1}, not {points.min()} ... {points.max()}")
+    if len(points) and (materials.min() < 1 or materials.max() > 255):
+        raise ValueError(f"materials must be 1 ... 255, not {materials.min()} ... {materials.max()}")
+    codes = np.zeros(len(points), dtype=np.uint64)
+    for axis in range(3):
+        codes |= _every_third_bit(points[:, axis].astype(np.uint64)) << np.uint64(axis)
+    codes, first = np.unique(codes, return_index=True)
+    return Octree(depth, _native.build_points(codes, materials[first].astype(np.uint8), depth))
+
+
+def _every_third_bit(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Bit k of each value (16 bits) at bit 3k."""
+    for shift, mask in (
+        (16, 0x00FF0000FF0000FF),
+        (8, 0xF00F00F00F00F00F),
+        (4, 0x30C30C30C30C30C3),
+        (2, 0x9249249249249249),
+    ):
+        values = (values | values << np.uint64(shift)) & np.uint64(mask)
+    return values

@@ -4,12 +4,22 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.sim.camera import Camera, camera_from_registers, frame_box, frame_scene, look_at, pixel_directions
+from voxrt.sim.camera import (
+    Camera,
+    camera_from_registers,
+    frame_points,
+    frame_scene,
+    look_at,
+    outline,
+    pixel_directions,
+)
 from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.render import Engine, EngineCheck, check, render
+from voxrt.sim.shading import Light, Shading
+from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 __all__ = [
     "FACE_NONE",
@@ -18,18 +28,23 @@ __all__ = [
     "Engine",
     "EngineCheck",
     "Frame",
+    "Light",
     "Likeness",
     "RenderCost",
+    "Shading",
     "SimulatorError",
     "View",
     "camera_from_registers",
     "check",
     "compare",
     "comparison_sheet",
-    "frame_box",
+    "frame_points",
     "frame_scene",
     "look_at",
+    "outline",
+    "peak_signal_to_noise",
     "pixel_directions",
     "render",
+    "structural_similarity",
     "write_png",
 ]

@@ -28,5 +28,11 @@ class Memory:
         height: int,
         threads: int = 0,
         instructions: str = "",
+        *,
+        flat: bool = False,
+        light: NDArray[np.int32] | None = None,
+        ambient: int = 0,
+        bounces: int = 0,
+        mirrors: NDArray[np.uint8] | None = None,
     ) -> RenderedPixels: ...
     def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...

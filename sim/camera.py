@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree import solid_bounds
+from voxrt.octree import coarsen, leaves
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.octree import Rom
+    from voxrt.octree import Octree, Rom
 
 Triple = tuple[int, int, int]
 
@@ -25,7 +25,8 @@ DIRECTION_LIMIT = 1 << 20
 _REGISTER_LIMIT = 1 << 15
 _FIELD_OF_VIEW = 35.0
 _THREE_QUARTER = (0.62, 0.68, 1.0)  # from the scene to the eye: front right, from above
-_MARGIN = 0.04  # of the frame's side, left free on each side by frame_box
+_MARGIN = 0.04  # of the frame's side, left free on each side by frame_points
+_OUTLINE_LEVELS = 6  # what is framed is known to 1/64 of the world: the frame's margin, at little cost
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,28 +110,26 @@ def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
     Parameters
     ----------
     rom
-        What is to be seen, as :func:`frame_box` sees a box.
+        What is to be seen, as :func:`frame_points` sees points.
     size
         Columns and rows of the frame.
     """
-    minimum, maximum = solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3)
-    return frame_box(minimum, maximum, size)
+    return frame_points(outline(rom.octree), size)
 
 
-def frame_box(minimum: ArrayLike, maximum: ArrayLike, size: tuple[int, int]) -> Camera:
-    """Make the camera that sees a whole box of voxels, tightly, from the front right and above.
+def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
+    """Make the camera that sees all points, tightly, from the front right and above.
 
     Parameters
     ----------
-    minimum, maximum
-        float, shape (3,), voxels, grid frame: the lowest and the highest corner.
+    points
+        float, shape (N, 3), voxels, grid frame; at least one.
     size
         Columns and rows of the frame.
     """
-    low, high = np.asarray(minimum, dtype=np.float64), np.asarray(maximum, dtype=np.float64)
+    corners = np.asarray(points, dtype=np.float64)
     axes = _axes(-np.array(_THREE_QUARTER), np.array([0.0, 1.0, 0.0]))
     focal = _focal_length(size, _FIELD_OF_VIEW)
-    corners = np.array([[(low, high)[i >> a & 1][a] for a in range(3)] for i in range(8)])
     x, y, z = (corners @ axis for axis in (axes[1], axes[2], axes[0]))
     # The eye (ex, ey, ez) in the camera's axes sees x within the slope s when |x - ex| <= s (z - ez): the two tightest
     # corners a side give ez, and half way between them ex.
@@ -140,6 +139,16 @@ def frame_box(minimum: ArrayLike, maximum: ArrayLike, size: tuple[int, int]) -> 
     ez = min((left - right) / (2 * slope_x), (bottom - top) / (2 * slope_y))
     eye = np.array([ez, (left + right) / 2, (bottom + top) / 2]) @ axes
     return _scaled(eye, axes, focal, size)
+
+
+def outline(octree: Octree) -> NDArray[np.float64]:
+    """Give points whose hull holds all that is solid, or the world: shape (N, 3), voxels."""
+    coarse = coarsen(octree, max(0, octree.depth - _OUTLINE_LEVELS))
+    parts = list(leaves(coarse, solid_only=True))
+    low = np.concatenate([part.corners for part in parts]) if parts else np.zeros((1, 3), np.int32)
+    levels = np.concatenate([part.levels for part in parts]) if parts else np.array([octree.depth], np.uint8)
+    high = low + (1 << levels.astype(np.int64))[:, None]
+    return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]).astype(np.float64)
 
 
 def pixel_directions(camera: Camera, size: tuple[int, int]) -> NDArray[np.int64]:

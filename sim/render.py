@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from voxrt.sim import _model
 from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
+from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,6 +55,7 @@ def render(
     size: tuple[int, int],
     *,
     engine: Engine,
+    shading: Shading = PLAIN,
     threads: int = 0,
     config: str = "tiny",
 ) -> Frame:
@@ -69,6 +72,8 @@ def render(
     engine
         ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact C++ model. Both give the
         same pixels.
+    shading
+        Light, mirrors and flat colour.
     threads
         Threads of the model, 0 for one a core. The frame does not depend on it.
     config
@@ -77,17 +82,21 @@ def render(
     Raises
     ------
     SimulatorError
-        The ray tracer is not in this installation, or cannot hold the memory or the camera; a size or a direction is
-        out of range.
+        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading; a
+        size, a direction or the light is out of range.
     """
     width, height = size
     if not (1 <= width <= _FRAME_LIMIT and 1 <= height <= _FRAME_LIMIT):
         raise SimulatorError(f"a frame of {width}x{height} pixels is not 1x1 … {_FRAME_LIMIT}x{_FRAME_LIMIT}")
     _check_directions(camera, size)
-    started = time.perf_counter()
+    _check_shading(shading)
     if engine == "model":
-        return _render_model(rom, camera, size, threads, started)
-    return _render_rtl(rom, camera, size, config, started)
+        return _render_model(rom, camera, size, shading, threads)
+    if shading != PLAIN:
+        raise SimulatorError(
+            "the ray tracer has no lights, mirrors or flat colour yet; use the exact model (--engine model)"
+        )
+    return _render_rtl(rom, camera, size, config)
 
 
 def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, config: str = "tiny") -> EngineCheck:
@@ -98,9 +107,22 @@ def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, 
     return EngineCheck(rtl=rtl, model=model, wrong=wrong)
 
 
-def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int, started: float) -> Frame:
+def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, threads: int) -> Frame:
+    started = time.perf_counter()
+    light = shading.light
+    mirrors = np.zeros(256, dtype=np.uint8)
+    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
-        palette_of(rom), _registers(camera), size[0], size[1], threads
+        palette_of(rom),
+        _registers(camera),
+        size[0],
+        size[1],
+        threads,
+        flat=shading.flat,
+        light=None if light is None else np.array(light.position, dtype=np.int32),
+        ambient=0 if light is None else light.ambient,
+        bounces=shading.bounces,
+        mirrors=mirrors,
     )
     return Frame(
         colour=pixels["colour"],
@@ -110,9 +132,10 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], threads: int,
     )
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str, started: float) -> Frame:
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) -> Frame:
+    started = time.perf_counter()
     try:
-        from voxrt.sim import _rtl  # noqa: PLC0415 - not built on every platform
+        _rtl = import_module("voxrt.sim._rtl")
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
@@ -164,6 +187,17 @@ def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
 
 def _registers(camera: Camera) -> NDArray[np.int32]:
     return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
+
+
+def _check_shading(shading: Shading) -> None:
+    if not 0 <= shading.bounces <= BOUNCE_LIMIT:
+        raise SimulatorError(f"{shading.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
+    if shading.light is None:
+        return
+    if not 0 <= shading.light.ambient <= 255:
+        raise SimulatorError(f"an ambient brightness of {shading.light.ambient} is not 0 … 255")
+    if max(abs(value) for value in shading.light.position) >= 1 << 31:
+        raise SimulatorError(f"the light at {shading.light.position} is not within signed 32 bits of 1/16 voxel")
 
 
 def palette_of(rom: Rom) -> NDArray[np.uint8]:

@@ -7,6 +7,7 @@ __path__ = extend_path(__path__, __name__)
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid, fit_grid
 from voxrt.voxelize.load import load
+from voxrt.voxelize.paint import Coat, Paint, Texture
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -32,6 +33,7 @@ __all__ = [
     "MATERIAL_LIMIT",
     "AssetError",
     "BoxCollider",
+    "Coat",
     "Collider",
     "DoesNotFitError",
     "Grid",
@@ -40,11 +42,13 @@ __all__ = [
     "Mesh",
     "MeshCollider",
     "ObjectReport",
+    "Paint",
     "PointLight",
     "Scene",
     "SceneObject",
     "SceneWarning",
     "SphereCollider",
+    "Texture",
     "Viewpoint",
     "Voxelization",
     "Voxels",

@@ -15,6 +15,7 @@ The same in a file is ``scene.toml`` (:mod:`voxrt.voxelize.scene_toml`).
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -127,7 +128,7 @@ class Author:
         if name in self._ids:
             raise AuthoringError(f"material {name!r} is declared twice")
         if number is not None and (not 1 <= number <= MATERIAL_LIMIT or number in self._materials):
-            taken = f", which is {self._materials[number].name!r}'s" if number in self._materials else ""
+            taken = f", which belongs to {self._materials[number].name!r}" if number in self._materials else ""
             raise AuthoringError(f"material {name!r} cannot have the id {number}{taken}; ids are 1 to {MATERIAL_LIMIT}")
         self._ids[name] = self._enter(Material(name, parse_colour(colour), mirror), number)
         return name
@@ -177,7 +178,7 @@ class Author:
     ) -> None:
         """As :meth:`add`, placed by a matrix (float64, shape (4, 4), affine, column vectors)."""
         positions, triangles, runs = (solid if material is None else solid.of(material)).surface()
-        ids = np.concatenate([np.full(count, self._id(name, count), dtype=np.uint8) for name, count in runs])
+        ids = np.concatenate([np.full(count, self.number(name, count), dtype=np.uint8) for name, count in runs])
         colliders = (collider_around(collider, positions, triangles, pow2=pow2),) if collider else ()
         self._enter_object(SceneObject(name, Mesh(positions, triangles, ids), transform, colliders, int(ids[0])))
 
@@ -202,33 +203,26 @@ class Author:
         transform
             float64, shape (4, 4), affine, column vectors: where its frame stands in this scene.
         materials
-            The file's material names to those declared here; a name that is declared here needs no entry.
+            The file's material names to those declared here; a name that is declared here needs no entry. A texture
+            gives way to the declared material, too.
         collider
             Replaces the colliders of each of its objects.
         pow2
             Whether box colliders made for it are rounded up to powers of two voxels.
         """
-        renamed = dict(materials or {})
-        unknown = [one for one in renamed if one not in {material.name for material in asset.materials[1:]}]
-        if unknown:
-            known = ", ".join(repr(one.name) for one in asset.materials[1:])
-            raise AuthoringError(f"the asset of {name!r} has no material {unknown[0]!r}; it has {known}")
-        ids = np.zeros(len(asset.materials), dtype=np.uint8)
-        for old, material in enumerate(asset.materials[1:], start=1):
-            target = renamed.get(material.name, material.name)
-            ids[old] = self._id(target, 1) if target in self._ids or material.name in renamed else self._adopt(material)
+        wardrobe = _Wardrobe(self, asset, dict(materials or {}), name)
         meshes: dict[int, Mesh] = {}
         for one in asset.objects:
             if id(one.mesh) not in meshes:
-                meshes[id(one.mesh)] = Mesh(one.mesh.positions, one.mesh.triangles, ids[one.mesh.materials])
+                meshes[id(one.mesh)] = wardrobe.dressed(one.mesh)
             mesh = meshes[id(one.mesh)]
-            stand_ins = one.colliders
-            if collider and len(mesh.triangles):
+            stand_ins, filling = one.colliders, int(mesh.materials[0]) if len(mesh.triangles) else 0
+            if collider and filling:
                 stand_ins = (collider_around(collider, mesh.positions, mesh.triangles, pow2=pow2),)
+            elif stand_ins:
+                filling = wardrobe.number(one.collider_material)
             path = f"{name}/{one.name.strip('/')}"
-            self._enter_object(
-                SceneObject(path, mesh, transform @ one.transform, stand_ins, int(ids[one.collider_material]))
-            )
+            self._enter_object(SceneObject(path, mesh, transform @ one.transform, stand_ins, filling or 1))
         for warning in asset.warnings:
             self._notes.add(warning.kind, f"{name}: {warning.message}", warning.count)
 
@@ -261,7 +255,14 @@ class Author:
         warnings: tuple[SceneWarning, ...] = self._notes.warnings()
         return Scene(self._name, tuple(self._objects.values()), table, warnings, self._viewpoint, self._light)
 
-    def _id(self, name: str | None, faces: int) -> int:
+    def number(self, name: str | None, faces: int) -> int:
+        """Return the id of a declared material, or of the default one for `faces` faces that have none.
+
+        Raises
+        ------
+        AuthoringError
+            It is not declared.
+        """
         if name is None:
             self._notes.add("default-material", "faces without a material got the default one", faces)
             if self._default is None:
@@ -272,7 +273,11 @@ class Author:
             raise AuthoringError(f"no material {name!r} is declared; there is {known}")
         return self._ids[name]
 
-    def _adopt(self, material: Material) -> int:
+    def declares(self, name: str) -> bool:
+        """Whether a material of that name is declared."""
+        return name in self._ids
+
+    def adopted(self, material: Material) -> int:
         """Return the id of an asset's own material; equal ones of several assets are one."""
         key = (material.name, material)
         if key not in self._asset_ids:
@@ -297,6 +302,53 @@ class Author:
         if not np.isfinite(one.transform).all():
             raise AuthoringError(f"the place of {one.name!r} is no finite one")
         self._objects[one.name] = one
+
+
+class _Wardrobe:
+    """What the materials of one asset are in the scene; each gets its id when a face asks for it."""
+
+    def __init__(self, author: Author, asset: Scene, renamed: dict[str, str], name: str) -> None:
+        self._author = author
+        self._asset = asset
+        self._renamed = renamed
+        self._numbers: dict[int, int] = {}
+        painted = {paint.name for one in asset.objects if one.mesh.coat is not None for paint in one.mesh.coat.paints}
+        known = {material.name for material in asset.materials[1:]} | painted
+        for one in renamed:
+            if one not in known:
+                has = ", ".join(map(repr, sorted(known)))
+                raise AuthoringError(f"the asset of {name!r} has no material {one!r}; it has {has}")
+
+    def number(self, old: int) -> int:
+        """Return the scene's id of the asset's material `old`."""
+        if old not in self._numbers:
+            material = self._asset.materials[old]
+            target = self._target(material.name)
+            new = self._author.adopted(material) if target is None else self._author.number(target, 1)
+            self._numbers[old] = new
+        return self._numbers[old]
+
+    def dressed(self, mesh: Mesh) -> Mesh:
+        """Return a mesh in the scene's materials."""
+        coat = mesh.coat
+        materials = np.zeros(len(mesh.materials), dtype=np.uint8)
+        if coat is not None:
+            rows = coat.rows.copy()
+            for row, paint in enumerate(coat.paints):
+                target = self._target(paint.name)
+                if target is not None:
+                    materials[rows == row] = self._author.number(target, 1)
+                    rows[rows == row] = -1
+            coat = replace(coat, rows=rows) if (rows >= 0).any() else None
+        for old in np.unique(mesh.materials[materials == 0]).tolist():
+            materials[(mesh.materials == old) & (materials == 0)] = self.number(old)
+        return Mesh(mesh.positions, mesh.triangles, materials, coat)
+
+    def _target(self, name: str) -> str | None:
+        """Return the declared material that one of the asset's becomes, None where it stays its own."""
+        if name in self._renamed:
+            return self._renamed[name]
+        return name if self._author.declares(name) else None
 
 
 def collider_around(

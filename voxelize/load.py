@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from voxrt.voxelize.errors import AssetError, SceneWarning
+from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 
 if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
@@ -23,6 +23,7 @@ _LOADERS = {
     ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
     ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
     ".usdz": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
+    ".toml": ("voxrt.voxelize.scene_toml", "load_scene_toml", set()),
     ".obj": ("voxrt.voxelize.obj", "load_obj", {"up", "unit"}),
     ".stl": ("voxrt.voxelize.stl", "load_stl", {"up", "unit"}),
     ".ply": ("voxrt.voxelize.ply", "load_ply", {"up", "unit"}),
@@ -52,8 +53,8 @@ def load(
     Parameters
     ----------
     path
-        A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file; the case
-        of the suffix does not matter.
+        A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
+        scene written by hand, ``.toml``; the case of the suffix does not matter.
     up
         The file's up axis, for formats that do not say (OBJ, STL, PLY).
     unit
@@ -86,9 +87,11 @@ def load(
         for option, value in (("up", up), ("unit", unit), ("time", time), ("variants", variants))
         if value not in (None, ())
     }
-    scene: Scene = getattr(import_module(module), name)(
-        path, **{option: value for option, value in told.items() if option in understood}
-    )
+    options = {option: value for option, value in told.items() if option in understood}
+    try:
+        scene: Scene = getattr(import_module(module), name)(path, **options)
+    except DoesNotFitError as error:
+        raise DoesNotFitError(f"{path}: {error}") from None
     ignored = tuple(
         SceneWarning("ignored-option", _WHY_IGNORED[option].format(suffix[1:]))
         for option in told

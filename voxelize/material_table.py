@@ -21,9 +21,17 @@ class MaterialTable:
     def __init__(self) -> None:
         self._entries = [EMPTY]
         self._ids: dict[Hashable, int] = {}
-        self._names: set[str] = set()
+        self._names = {EMPTY.name}
 
-    def id_of(self, key: Hashable, name: str, colour: tuple[int, int, int], *, authored: bool = True) -> int:
+    def id_of(
+        self,
+        key: Hashable,
+        name: str,
+        colour: tuple[int, int, int],
+        *,
+        mirror: bool = False,
+        authored: bool = True,
+    ) -> int:
         """Return the id of the material known to its file as `key`, given on first use.
 
         Parameters
@@ -34,6 +42,8 @@ class MaterialTable:
             The author's name; a number is appended where another material has it already.
         colour
             sRGB, 8 bits a channel.
+        mirror
+            Whether it reflects.
         authored
             False for a stand-in.
 
@@ -51,13 +61,16 @@ class MaterialTable:
             unique, number = f"{name} ({number})", number + 1
         self._names.add(unique)
         self._ids[key] = len(self._entries)
-        self._entries.append(Material(unique, colour, authored=authored))
+        self._entries.append(Material(unique, colour, mirror, authored))
         return self._ids[key]
 
     def default(self, notes: Notes, faces: int = 1) -> int:
         """Return the id of the default material, for `faces` faces that have none; counted in `notes`."""
         notes.add("default-material", "faces without a material got the default one", faces)
         return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
+
+    def __len__(self) -> int:
+        return len(self._entries)
 
     def materials(self) -> tuple[Material, ...]:
         """Return the table so far, indexed by id."""

@@ -6,7 +6,7 @@ gives each triangle one colour.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
 
 _FINEST = 32
-_MOST_SAMPLES = 1 << 23
+_MOST_SAMPLES = 1 << 21
+_MANY_PARTS = 4
 _CHUNK = 1 << 16
 
 
@@ -106,16 +107,14 @@ def sample(coat: Coat, triangles: NDArray[np.intp], weights: NDArray[np.float64]
     colours
         float64, shape (N, 4): linear red, green, blue and alpha.
     """
-    mixed: NDArray[np.float64] = np.einsum("nk,nkc->nc", weights, coat.colours[triangles].astype(np.float64))
+    found = np.empty((len(triangles), 4))
     rows = coat.rows[triangles]
     for row in np.unique(rows).tolist():
-        paint = coat.paints[row]
         here = np.flatnonzero(rows == row)
-        mixed[here] *= paint.factor
-        if paint.texture is not None:
-            uv = np.einsum("nk,nkc->nc", weights[here], coat.uv[triangles[here]])
-            mixed[here] *= _look_up(paint.texture, uv)
-    return mixed
+        uv = np.einsum("nk,nkc->nc", weights[here], coat.uv[triangles[here]])
+        colours = np.einsum("nk,nkc->nc", weights[here], coat.colours[triangles[here]].astype(np.float64))
+        found[here] = _shaded(coat.paints[row], uv, colours)
+    return found
 
 
 def mean_colours(coat: Coat) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -135,20 +134,39 @@ def mean_colours(coat: Coat) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     parts = _parts(coat)
     while int((parts.astype(np.int64) ** 2).sum()) > _MOST_SAMPLES and parts.max() > 1:
         parts = np.minimum(parts, parts.max() // 2)
-    cutoffs = np.array([paint.cutoff for paint in coat.paints])
-    for n in np.unique(parts[parts > 0]).tolist():
-        weights = _centroids(n)
-        members = np.flatnonzero(parts == n)
-        step = max(1, _CHUNK // len(weights))
-        for start in range(0, len(members), step):
-            some = members[start : start + step]
-            every = np.repeat(some, len(weights))
-            found = sample(coat, every, np.tile(weights, (len(some), 1))).reshape(len(some), len(weights), 4)
-            kept = found[:, :, 3] >= cutoffs[coat.rows[some]][:, None]
-            solid[some] = kept.any(axis=1)
-            share = kept / np.maximum(kept.sum(axis=1, keepdims=True), 1)
-            colours[some] = np.einsum("ns,nsc->nc", share, found[:, :, :3])
+    for row, paint in enumerate(coat.paints):
+        members = np.flatnonzero(coat.rows == row)
+        if paint.texture is None and paint.cutoff <= 0:
+            colours[members] = coat.colours[members, :, :3].mean(axis=1, dtype=np.float64) * paint.factor[:3]
+            solid[members] = True
+            continue
+        for n in np.unique(parts[members]).tolist():
+            weights = _centroids(n)
+            of_size = members[parts[members] == n]
+            used = paint if n < _MANY_PARTS else _unfiltered(paint)
+            for some in np.array_split(of_size, -(-len(of_size) * n * n // _CHUNK)):
+                uv, own = weights @ coat.uv[some], weights @ coat.colours[some].astype(np.float64)
+                found = _shaded(used, uv.reshape(-1, 2), own.reshape(-1, 4)).reshape(len(some), n * n, 4)
+                kept = found[:, :, 3] >= paint.cutoff
+                solid[some] = kept.any(axis=1)
+                share = kept / np.maximum(kept.sum(axis=1, keepdims=True), 1)
+                colours[some] = (share[:, None, :] @ found[:, :, :3])[:, 0]
     return colours, solid
+
+
+def _shaded(paint: Paint, uv: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Multiply the vertex colours of points, shape (N, 4), with what `paint` adds at `uv`, shape (N, 2)."""
+    shaded: NDArray[np.float64] = colours * paint.factor
+    if paint.texture is not None:
+        shaded *= _look_up(paint.texture, uv)
+    return shaded
+
+
+def _unfiltered(paint: Paint) -> Paint:
+    """Return `paint` without filtering, which the mean of many samples does not need."""
+    if paint.texture is None:
+        return paint
+    return replace(paint, texture=replace(paint.texture, nearest=True))
 
 
 def _parts(coat: Coat) -> NDArray[np.int32]:
@@ -156,7 +174,8 @@ def _parts(coat: Coat) -> NDArray[np.int32]:
     parts = np.where(coat.rows < 0, 0, 1).astype(np.int32)
     for row, paint in enumerate(coat.paints):
         here = np.flatnonzero(coat.rows == row)
-        across = np.full(len(here), 2.0)  # Vertex colours change linearly: a few samples give their mean.
+        # Vertex colours change linearly: the centroid has their mean, and a few samples tell what is cut away.
+        across = np.full(len(here), 2.0 if paint.cutoff else 1.0)
         if paint.texture is not None:
             height, width = paint.texture.pixels.shape[:2]
             spread = np.ptp(coat.uv[here], axis=1) * (width, height)

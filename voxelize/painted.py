@@ -112,33 +112,55 @@ def _palette(
         return [np.zeros(0, dtype=np.uint8) for _ in sizes]
     colours = np.concatenate([mean[0][faces] for mean, faces in zip(means, painted, strict=True) if mean is not None])
     areas = np.concatenate([_areas(one, faces) for one, faces in zip(unfinished, painted, strict=True)])
-    names: dict[str, int] = {}
+    labels: dict[tuple[str, bool], int] = {}
     owners = np.concatenate(
         [
-            np.array([names.setdefault(paint.name, len(names)) for paint in one.coat.paints])[one.coat.rows[faces]]
+            np.array([labels.setdefault((paint.name, paint.mirror), len(labels)) for paint in one.coat.paints])[
+                one.coat.rows[faces]
+            ]
             for one, faces in zip(unfinished, painted, strict=True)
             if one.coat is not None
         ]
     )
-    free = MATERIAL_LIMIT - (len(table.materials()) - 1)
+    ids = np.zeros(len(colours), dtype=np.uint8)
+    for mirror in sorted({mirror for _, mirror in labels}):
+        names = [name if kind == mirror else "" for name, kind in labels]
+        faces = np.array([kind == mirror for _, kind in labels])[owners]
+        ids[faces] = _entries(colours[faces], areas[faces], owners[faces], names, table, mirror=mirror)
+    return np.split(ids, np.cumsum(sizes)[:-1])
+
+
+def _entries(
+    colours: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    owners: NDArray[np.int64],
+    names: list[str],
+    table: MaterialTable,
+    *,
+    mirror: bool,
+) -> NDArray[np.uint8]:
+    """Append a palette of `colours` to `table`, each named after the paint it covers most of; return their ids."""
+    free = MATERIAL_LIMIT - (len(table) - 1)
     if free < 1:
         raise DoesNotFitError(
             f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
         )
     palette, rows = quantize(colours, areas, min(PALETTE_SIZE, free))
+    cover = np.bincount(rows.astype(np.int64) * len(names) + owners, areas, minlength=len(palette) * len(names))
+    most = cover.reshape(len(palette), len(names)).argmax(axis=1).tolist()
     by_row = np.zeros(len(palette), dtype=np.uint8)
-    labels = list(names)
     for row, (red, green, blue) in enumerate(palette.tolist()):
-        here = rows == row
-        cover = np.bincount(owners[here], areas[here], minlength=len(labels))
-        name = f"{labels[int(cover.argmax())]} #{red:02x}{green:02x}{blue:02x}"
-        by_row[row] = table.id_of(("palette", red, green, blue), name, (red, green, blue))
-    return np.split(by_row[rows], np.cumsum(sizes)[:-1])
+        name = f"{names[most[row]]} #{red:02x}{green:02x}{blue:02x}"
+        key = ("palette", red, green, blue, mirror)
+        by_row[row] = table.id_of(key, name, (red, green, blue), mirror=mirror)
+    return by_row[rows]
 
 
 def _areas(one: Unfinished, faces: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Return the areas of some triangles, scaled to the mesh so that nothing leaves the range of numbers."""
     scale = float(np.abs(one.positions).max(initial=0.0)) or 1.0
-    a, b, c = (one.positions[one.triangles[faces, corner]] / scale for corner in range(3))
-    areas: NDArray[np.float64] = np.linalg.norm(np.cross(b - a, c - a), axis=1) * min(scale, 1e100) ** 2
+    corners = one.positions[one.triangles[faces]] / scale
+    along, across = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    dots = [np.einsum("ti,ti->t", p, q) for p, q in ((along, along), (across, across), (along, across))]
+    areas: NDArray[np.float64] = np.sqrt(np.maximum(dots[0] * dots[1] - dots[2] ** 2, 0.0)) * min(scale, 1e100) ** 2
     return areas

@@ -17,8 +17,11 @@ from voxrt.voxelize.colour import srgb_from_linear
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_PIXELS = 1 << 16
+_PIXELS = 1 << 14
 _UNTIL_CHANGES = 1
+# Beyond this many colours, k-means sees them at 5 bits a channel: it is slow, and entries lie farther apart than that.
+_DISTINCT = 1 << 13
+_COARSE, _MIDDLE = np.uint32(0xF8F8F8), np.uint32(0x040404)
 
 
 def quantize(
@@ -42,9 +45,12 @@ def quantize(
     palette, rows
         uint8, shape (K, 3), sRGB, in ascending order; and int32, shape (N,): each colour's entry.
     """
-    packed, inverse = np.unique(_packed(srgb_from_linear(colours)), return_inverse=True)
+    every = _packed(srgb_from_linear(colours))
+    packed, inverse = np.unique(every, return_inverse=True)
     if len(packed) <= count:
         return _unpacked(packed), inverse.astype(np.int32)
+    if len(packed) > _DISTINCT:
+        packed, inverse = np.unique(every & _COARSE | _MIDDLE, return_inverse=True)
     cover = np.bincount(inverse, weights).astype(np.float64)
     groups = _grouped(_unpacked(packed), cover, count)[inverse]
     total = np.maximum(np.bincount(groups, weights), np.finfo(np.float64).tiny)

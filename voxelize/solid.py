@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import manifold3d
 import numpy as np
 
-from voxrt.voxelize import shapes
+from voxrt.voxelize import primitives
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,6 +64,8 @@ class Solid:
 
     def transformed(self, matrix: NDArray[np.float64]) -> Solid:
         """Return the solid moved by `matrix` (float64, shape (4, 4), affine, column vectors)."""
+        if np.array_equal(matrix, np.eye(4)):
+            return self
         return Solid(self._manifold.transform(np.ascontiguousarray(matrix[:3])), self._materials)
 
     @classmethod
@@ -149,7 +151,7 @@ def placement(
 def box(size: ArrayLike, *, centre: ArrayLike = (0, 0, 0), material: str | None = None) -> Solid:
     """Return a box of `size` metres along x, y and z."""
     sides = _lengths("size", size, 3)
-    positions, triangles = shapes.cube(1.0)
+    positions, triangles = primitives.cube(1.0)
     return _made(positions * sides + np.asarray(centre, dtype=np.float64), triangles, material)
 
 
@@ -157,13 +159,13 @@ def box_between(minimum: ArrayLike, maximum: ArrayLike, *, material: str | None 
     """Return the box from corner `minimum` to corner `maximum`, which it meets exactly."""
     low, high = np.asarray(minimum, dtype=np.float64), np.asarray(maximum, dtype=np.float64)
     _lengths("size", high - low, 3)
-    positions, triangles = shapes.cube(2.0)
+    positions, triangles = primitives.cube(2.0)
     return _made(np.where(positions > 0, high, low), triangles, material)
 
 
 def sphere(radius: float, *, centre: ArrayLike = (0, 0, 0), material: str | None = None) -> Solid:
     """Return a ball of `radius` metres."""
-    positions, triangles = shapes.sphere(_length("radius", radius))
+    positions, triangles = primitives.sphere(_length("radius", radius))
     return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
 
 
@@ -172,7 +174,7 @@ def cylinder(
 ) -> Solid:
     """Return a cylinder along `axis`."""
     across, along = _length("radius", radius), _length("height", height)
-    positions, triangles = shapes.cylinder(across, across, along, axis.upper())
+    positions, triangles = primitives.cylinder(across, across, along, axis.upper())
     return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
 
 
@@ -180,7 +182,7 @@ def cone(
     radius: float, height: float, *, axis: Axis = "y", centre: ArrayLike = (0, 0, 0), material: str | None = None
 ) -> Solid:
     """Return a cone along `axis`, tip towards its positive end; `centre` is half way up."""
-    positions, triangles = shapes.cone(_length("radius", radius), _length("height", height), axis.upper())
+    positions, triangles = primitives.cone(_length("radius", radius), _length("height", height), axis.upper())
     return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
 
 

@@ -26,9 +26,21 @@ def weld(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.
         int32, shape (T, 3).
     """
     exact = np.ascontiguousarray(corners + 0.0)  # -0 becomes 0, which it equals
-    keys = exact.view(np.dtype((np.void, 24))).ravel()
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    _, first, inverse = np.unique(_hashes(exact), return_index=True, return_inverse=True)
+    if not np.array_equal(exact[first][inverse], exact):  # two places share a hash: compare all bytes, which is slow
+        keys = exact.view(np.dtype((np.void, 24))).ravel()
+        _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return exact[first[order]], rank[inverse].reshape(-1, 3).astype(np.int32)
+
+
+def _hashes(exact: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """Mix the bits of each row: odd multipliers, as in Knuth's multiplicative hashing, and shifts of the high bits."""
+    bits = exact.view(np.uint64)
+    mixed = np.zeros(len(exact), dtype=np.uint64)
+    for column, odd in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)):
+        mixed = (mixed ^ bits[:, column]) * np.uint64(odd)
+        mixed ^= mixed >> np.uint64(29)
+    return mixed

@@ -17,11 +17,11 @@ from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from voxrt.export import read_rom
-    from voxrt.octree import Octree, Rom, RomError
+    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.octree import BOARDS, Octree, Rom, RomError, diff
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError, check
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
+    from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -31,7 +31,10 @@ __path__ = extend_path(__path__, __name__)
 __version__ = "0.1.0"
 
 __all__ = [
+    "BOARDS",
+    "WRITABLE_SUFFIXES",
     "AssetError",
+    "BudgetFit",
     "BuildResult",
     "Camera",
     "DoesNotFitError",
@@ -50,19 +53,25 @@ __all__ = [
     "aim_camera",
     "build",
     "check",
+    "compare",
+    "comparison_sheet",
+    "convert",
+    "diff",
     "fit_grid",
     "load",
+    "read_any",
     "read_rom",
     "render",
+    "rom_info",
     "save_picture",
 ]
 
 _HOMES = {
-    "voxrt.export": ("read_rom",),
-    "voxrt.octree": ("Octree", "Rom", "RomError"),
+    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "diff"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check"),
+    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

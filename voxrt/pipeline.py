@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import os
-import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from voxrt import export, octree, sim, voxelize
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.viewpoint import aim_camera
+from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
@@ -39,6 +44,27 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class BudgetFit:
+    """What fitting a memory to a budget took.
+
+    Attributes
+    ----------
+    words
+        The budget.
+    fit
+        What was shared and what was given up, in words and voxels.
+    psnr, ssim
+        How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
+        1 for equal pictures.
+    """
+
+    words: int
+    fit: octree.Fit
+    psnr: float
+    ssim: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class BuildResult:
     """What a build made.
 
@@ -54,8 +80,11 @@ class BuildResult:
         The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
     preview
         The rendered picture, None when none was asked for.
+    budget
+        What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"write"``, ``"preview"``.
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"budget"``, ``"write"``,
+        ``"preview"``.
     """
 
     rom: Rom
@@ -63,6 +92,7 @@ class BuildResult:
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
     preview: Picture | None = None
+    budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -82,10 +112,14 @@ def build(
     pow2: Pow2 = "box",
     up: UpAxis | None = None,
     unit: float | None = None,
+    time: float | None = None,
+    variants: tuple[str, ...] = (),
+    budget: int | str | None = None,
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
+    strict: bool = False,
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> BuildResult:
@@ -111,11 +145,20 @@ def build(
         ``"box"`` rounds box colliders up to powers of two voxels, ``"none"`` never.
     up, unit
         The up axis and the metres per unit, for formats that do not say.
+    time
+        The second of its animation at which the asset is shown.
+    variants
+        What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
+    budget
+        Words that the memory may take, or the name of a board that knows (:data:`voxrt.octree.BOARDS`): what is seen
+        least is given up until it fits.
     dialect
         How the memory's words spell a material.
     preview
         PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
         ``NAME.preview.png`` in `output`.
+    strict
+        Refuse an asset of which something is not honoured as it stands, where it would be a warning.
     threads
         Threads for the native stages, 0 for one a core. The result does not depend on it.
     progress
@@ -124,7 +167,7 @@ def build(
     Raises
     ------
     AssetError
-        The asset cannot be honoured.
+        The asset cannot be honoured, or not to the letter and `strict` is set.
     DoesNotFitError
         The asset is sound but too large.
     OutputError
@@ -139,9 +182,9 @@ def build(
     def stage(name: str) -> Iterator[None]:
         if progress is not None:
             progress(name)
-        start = time.perf_counter()
+        start = perf_counter()
         yield
-        seconds[name] = time.perf_counter() - start
+        seconds[name] = perf_counter() - start
 
     if output is not None:
         check_folder(Path(output))
@@ -151,7 +194,8 @@ def build(
         picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
         check_folder(picture_file.parent)
     with stage("load"):
-        scene = voxelize.load(asset, up=up, unit=unit)
+        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants)
+    _refuse(asset, scene.warnings if strict else ())
     with stage("fit"):
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
@@ -160,7 +204,13 @@ def build(
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels), scene.materials, grid)
+    budget_fit = None
+    if budget is not None:
+        with stage("budget"):
+            words = octree.BOARDS[budget] if isinstance(budget, str) else budget
+            rom, budget_fit = _fit_to(rom, words, size, threads)
     warnings = scene.warnings + voxelization.warnings
+    _refuse(asset, warnings if strict else ())
     outputs: dict[str, Path] = {}
     if output is not None:
         settings: dict[str, str | int | float | bool | None] = {
@@ -186,9 +236,27 @@ def build(
         with stage("preview"):
             camera = aim_camera(rom, size)
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
-            save_picture(picture.frame, picture_file)
+            save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, seconds)
+    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+
+
+def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
+    colours = np.array([material.colour for material in rom.materials], np.uint8)
+    fit = octree.fit(rom.octree, words, colours=colours)
+    fitted = replace(rom, octree=fit.octree)
+    camera = aim_camera(rom, size)
+    before, after = (render(r, camera, size=size, engine="model", threads=threads).colour for r in (rom, fitted))
+    psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
+    return fitted, BudgetFit(words, fit, psnr, ssim)
+
+
+def _refuse(asset: Path, warnings: tuple[SceneWarning, ...]) -> None:
+    if warnings:
+        first, *others = warnings
+        kinds = sorted({warning.kind for warning in others})
+        more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
+        raise AssetError(asset, f"{first.message}{more}", fix="mend the asset, or build without strict")
 
 
 def _text(name: str) -> str:
@@ -203,6 +271,7 @@ def render(
     *,
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
+    config: str = "tiny",
     threads: int = 0,
 ) -> Frame:
     """Render a memory.
@@ -218,6 +287,8 @@ def render(
     engine
         ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact model. Both give the same
         pixels.
+    config
+        The configuration of the ray tracer that ``"rtl"`` runs.
     threads
         Threads of the model, 0 for one a core.
 
@@ -226,11 +297,11 @@ def render(
     SimulatorError
         The engine is not in this installation, or cannot hold the memory or the camera.
     """
-    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, threads=threads)
+    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
 
 
-def save_picture(frame: Frame, path: Path) -> None:
-    """Write a frame as a PNG file, all of it or nothing.
+def save_picture(colour: NDArray[np.uint8], path: Path) -> None:
+    """Write a picture (uint8, shape (H, W, 3), sRGB) as a PNG file, all of it or nothing.
 
     Raises
     ------
@@ -242,4 +313,4 @@ def save_picture(frame: Frame, path: Path) -> None:
         raise OutputError(f"{path}: is a folder; name a file")
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        sim.write_png(path, frame.colour)
+        sim.write_png(path, colour)

@@ -1,6 +1,9 @@
 #include "budget.h"
 
+#include <algorithm>
 #include <map>
+#include <ranges>
+#include <set>
 #include <unordered_map>
 
 #include "breadth_first.h"
@@ -53,6 +56,25 @@ private:
         return pattern;
     }
 
+    // What the patterns become in a world that is coarser by one level, ascending by cells.
+    static std::vector<Fine> coarser(const std::vector<Fine>& patterns) {
+        std::set<Cells64> seen;
+        for (Cells64 cells : (patterns | std::views::transform(&Fine::cells))) {
+            for (unsigned octant = 0; octant < 8; ++octant) {
+                std::uint8_t* eight = cells.data() + 8 * octant;
+                std::array<unsigned, 256> counts{};
+                for (unsigned cell = 0; cell < 8; ++cell)
+                    counts[eight[cell]] += eight[cell] != 0;
+                std::fill_n(eight, 8, std::max_element(counts.begin(), counts.end()) - counts.begin());
+            }
+            seen.insert(cells);
+        }
+        std::vector<Fine> result;
+        for (const Cells64& cells : seen)
+            result.push_back(pattern_of<1>(cells));
+        return result;
+    }
+
     // Equal patterns once, their octants summed, ascending by cells; `cells_of(block)` says what a block shows.
     template <unsigned Words, typename CellsOf>
     std::map<std::array<std::uint8_t, 64 * Words>, std::array<std::uint8_t, 64 * Words>>
@@ -80,8 +102,11 @@ private:
             patterns.back().octants = count.first == kFree ? kFree : std::min(count.first, kMostOctants);
             patterns.back().visible = std::min(count.second, kMostOctants);
         }
+        std::vector<Pattern<Words>> seeds;
+        if constexpr (Words == 1)
+            seeds = coarser(patterns);
         const StandIns<Words> found =
-            Clustering<Words>(patterns, recolour_, Words == 1 ? fine_price_ : coarse_price_).run();
+            Clustering<Words>(patterns, seeds, recolour_, Words == 1 ? fine_price_ : coarse_price_).run();
         std::map<Cells, Cells> result;
         for (std::size_t i = 0; i < patterns.size(); ++i)
             result.emplace(patterns[i].cells, found.cells[found.chosen[i]]);

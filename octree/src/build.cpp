@@ -215,4 +215,26 @@ std::vector<Word> build(const VoxelsView& voxels, unsigned threads) {
     return breadth_first_words(pool, root);
 }
 
+std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
+                               unsigned depth) {
+    BlockPool pool;
+    Node root = kEmpty;
+    Ascent ascent(pool, depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
+    Interrupt interrupt;
+    std::uint64_t behind = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        interrupt.poll();
+        if (codes[i] >= std::uint64_t{1} << (3 * depth))
+            refuse("voxel", i, "lies outside the grid");
+        if (codes[i] < behind)
+            refuse("voxel", i, "is out of Morton order or repeated");
+        if (materials[i] == 0)
+            refuse("voxel", i, "has no material");
+        ascent.add(0, codes[i], leaf(materials[i]));
+        behind = codes[i] + 1;
+    }
+    ascent.finish();
+    return breadth_first_words(pool, root);
+}
+
 } // namespace voxrt::octree

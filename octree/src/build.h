@@ -29,4 +29,9 @@ struct VoxelsView {
 /// std::invalid_argument where the arrays break their contract. The GIL must not be held.
 std::vector<Word> build(const VoxelsView& voxels, unsigned threads);
 
+/// The memory of a world of side 2**depth whose solid voxels are given one by one: Morton codes, strictly ascending,
+/// and a material each. Throws std::invalid_argument as above. The GIL must not be held.
+std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
+                               unsigned depth);
+
 } // namespace voxrt::octree

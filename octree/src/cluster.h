@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -42,8 +41,12 @@ template <unsigned Words> struct StandIns {
 /// and the stand-ins shrink to what they hold. Bounded by the scan of the stand-ins with nearly as many solid voxels.
 template <unsigned Words> class Clustering {
 public:
-    Clustering(const std::vector<Pattern<Words>>& patterns, const RecolourCosts& recolour, std::uint64_t price)
-        : patterns_(patterns), recolour_(recolour), price_(price), by_solid_(64 * Words + 1) {}
+    Clustering(const std::vector<Pattern<Words>>& patterns, const std::vector<Pattern<Words>>& seeds,
+               const RecolourCosts& recolour, std::uint64_t price)
+        : patterns_(patterns), recolour_(recolour), price_(price), by_solid_(64 * Words + 1) {
+        for (const Pattern<Words>& seed : seeds)
+            add({seed.mask, seed.cells, kFree, solid_cells(seed.mask), false});
+    }
 
     StandIns<Words> run() {
         std::vector<std::uint32_t> order(patterns_.size());
@@ -74,20 +77,35 @@ private:
         std::array<std::uint8_t, 64 * Words> cells;
         std::uint64_t octants; // of all that it stands for
         unsigned solid;
+        bool used;
     };
+
+    // Inline where the baseline of the processor has no instruction for it, which std::popcount is not.
+    static unsigned ones(std::uint64_t word) {
+        word -= word >> 1 & 0x5555555555555555u;
+        word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+        return static_cast<unsigned>(((word + (word >> 4)) & 0x0F0F0F0F0F0F0F0Fu) * 0x0101010101010101u >> 56);
+    }
 
     static unsigned solid_cells(const Mask& mask) {
         unsigned count = 0;
         for (const std::uint64_t word : mask)
-            count += static_cast<unsigned>(std::popcount(word));
+            count += ones(word);
         return count;
     }
 
-    // Voxels of `a` that `b` lacks.
-    static unsigned lacking(const Mask& a, const Mask& b) {
+    static bool holds(const Mask& mask, const Mask& part) {
+        std::uint64_t lacking = 0;
+        for (unsigned word = 0; word < Words; ++word)
+            lacking |= part[word] & ~mask[word];
+        return lacking == 0;
+    }
+
+    // Voxels of `part` that `mask` lacks.
+    static unsigned lacking(const Mask& mask, const Mask& part) {
         unsigned count = 0;
         for (unsigned word = 0; word < Words; ++word)
-            count += static_cast<unsigned>(std::popcount(a[word] & ~b[word]));
+            count += ones(part[word] & ~mask[word]);
         return count;
     }
 
@@ -124,9 +142,12 @@ private:
             const unsigned high = static_cast<unsigned>(std::min<std::uint64_t>(64 * Words, solid + reach));
             near(solid, low, high, [&](std::uint32_t i) {
                 const StandIn& stand_in = stand_ins_[i];
-                const unsigned missing = lacking(pattern.mask, stand_in.mask);
-                if (missing != 0 && missing > price_ / kAppeared / stand_in.octants)
-                    return;
+                unsigned missing = 0;
+                if (!holds(stand_in.mask, pattern.mask)) {
+                    const std::uint64_t affordable = price_ / kAppeared / stand_in.octants;
+                    if (affordable == 0 || affordable < (missing = lacking(stand_in.mask, pattern.mask)))
+                        return;
+                }
                 const unsigned extra = stand_in.solid + missing - solid;
                 std::uint64_t cost = kAppeared * (extra * pattern.octants + (missing ? missing * stand_in.octants : 0));
                 if (cost > least)
@@ -141,13 +162,20 @@ private:
             });
         }
         if (best == kNone) {
-            best = static_cast<std::uint32_t>(stand_ins_.size());
-            stand_ins_.push_back({pattern.mask, pattern.cells, pattern.octants, solid});
-            by_solid_[solid].push_back(best);
-        } else if (stand_ins_[best].octants != kFree) {
-            grow(best, pattern);
+            best = add({pattern.mask, pattern.cells, pattern.octants, solid, true});
+        } else {
+            stand_ins_[best].used = true;
+            if (stand_ins_[best].octants != kFree)
+                grow(best, pattern);
         }
         return best;
+    }
+
+    std::uint32_t add(const StandIn& stand_in) {
+        const std::uint32_t i = static_cast<std::uint32_t>(stand_ins_.size());
+        stand_ins_.push_back(stand_in);
+        by_solid_[stand_in.solid].push_back(i);
+        return i;
     }
 
     void grow(std::uint32_t i, const Pattern<Words>& pattern) {
@@ -178,8 +206,8 @@ private:
         std::uint64_t least = cost_of(stand_ins_[chosen]);
         near(solid, solid, stand_ins_[chosen].solid, [&](std::uint32_t i) {
             const StandIn& stand_in = stand_ins_[i];
-            if (kAppeared * (stand_in.solid - solid) * pattern.octants >= least ||
-                lacking(pattern.mask, stand_in.mask) != 0)
+            if (!stand_in.used || kAppeared * (stand_in.solid - solid) * pattern.octants >= least ||
+                !holds(stand_in.mask, pattern.mask))
                 return;
             const std::uint64_t cost = cost_of(stand_in);
             if (cost < least) {
@@ -190,10 +218,11 @@ private:
         return chosen;
     }
 
-    // The unions of what each stand-in holds, materials from the first that holds them.
+    // The unions of what each stand-in holds, materials from the first that holds them; seeds as they are.
     StandIns<Words> shrunk(const std::vector<std::uint32_t>& order, std::vector<std::uint32_t> chosen) const {
         StandIns<Words> result{{}, std::move(chosen)};
-        result.cells.resize(stand_ins_.size());
+        for (const StandIn& stand_in : stand_ins_)
+            result.cells.push_back(stand_in.octants == kFree ? stand_in.cells : decltype(stand_in.cells){});
         for (const std::uint32_t i : order)
             for (unsigned cell = 0; cell < 64 * Words; ++cell)
                 if (std::uint8_t& shown = result.cells[result.chosen[i]][cell]; shown == 0)

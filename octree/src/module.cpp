@@ -115,6 +115,17 @@ auto bind_build_dense(const Volume& cells, unsigned depth) {
     return words_to_numpy(std::move(words));
 }
 
+auto bind_build_points(const Vector<std::uint64_t>& codes, const Vector<std::uint8_t>& materials, unsigned depth) {
+    require_depth(depth);
+    require(codes.shape(0) == materials.shape(0), "codes and materials differ in length");
+    std::vector<Word> words;
+    {
+        nb::gil_scoped_release release;
+        words = build_points(codes.data(), materials.data(), codes.shape(0), depth);
+    }
+    return words_to_numpy(std::move(words));
+}
+
 const char* name_of(Fault fault) {
     switch (fault) {
     case Fault::length:
@@ -285,6 +296,7 @@ NB_MODULE(_native, m) {
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
           "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
     m.def("build_dense", &bind_build_dense, "cells"_a.noconvert(), "depth"_a);
+    m.def("build_points", &bind_build_points, "codes"_a.noconvert(), "materials"_a.noconvert(), "depth"_a);
     m.def("validate", &bind_validate, "words"_a.noconvert(), "depth"_a);
     m.def("materials_at", &bind_materials_at, "words"_a.noconvert(), "depth"_a, "points"_a.noconvert());
     m.def("leaf_counts", &bind_leaf_counts, "words"_a.noconvert(), "depth"_a);

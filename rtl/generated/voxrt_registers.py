@@ -1,4 +1,4 @@
-"""Registers of the ray tracer, made of rtl/registers.rdl: name, byte address, fields as (low, width)."""
+"""Made of rtl/registers.rdl: byte address and fields (lowest bit, width) by name."""
 
 REGISTERS = {
     "identity": (0x000, {"value": (0, 32)}),

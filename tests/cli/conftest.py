@@ -1,15 +1,21 @@
-"""The commands as a user runs them: in a process of their own, in a folder of their own."""
+"""The commands as a user runs them, in a folder of their own."""
 
 from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import pytest
+
+from voxrt.cli.app import run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -27,7 +33,7 @@ class Finished(NamedTuple):
 
 
 class Voxrt(Protocol):
-    def __call__(self, *arguments: object, env: dict[str, str] | None = None) -> Finished: ...
+    def __call__(self, *arguments: object) -> Finished: ...
 
 
 @pytest.fixture
@@ -39,9 +45,26 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def voxrt(folder: Path) -> Voxrt:
-    def run(*arguments: object, env: dict[str, str] | None = None) -> Finished:
-        process = subprocess.run(
+def voxrt(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Iterator[Voxrt]:
+    """``voxrt`` within the test's process: all but its start and its end."""
+
+    def command(*arguments: object) -> Finished:
+        capfd.readouterr()
+        code = run([str(argument) for argument in arguments])
+        return Finished(int(code), *capfd.readouterr())
+
+    monkeypatch.chdir(folder)
+    terminate = signal.getsignal(signal.SIGTERM)
+    yield command
+    signal.signal(signal.SIGTERM, terminate)
+
+
+@pytest.fixture
+def process(folder: Path) -> Callable[..., Finished]:
+    """``voxrt`` in a process of its own."""
+
+    def command(*arguments: object, env: dict[str, str] | None = None) -> Finished:
+        finished = subprocess.run(
             [sys.executable, "-m", "voxrt", *map(os.fsencode, map(str, arguments))],
             cwd=folder,
             env={**os.environ, **(env or {})},
@@ -50,6 +73,6 @@ def voxrt(folder: Path) -> Voxrt:
             check=False,
             timeout=300,
         )
-        return Finished(process.returncode, process.stdout.decode(), process.stderr.decode())
+        return Finished(finished.returncode, finished.stdout.decode(), finished.stderr.decode())
 
-    return run
+    return command

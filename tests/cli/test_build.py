@@ -46,8 +46,8 @@ def test_a_voxel_size_instead_of_a_depth(voxrt, folder):
     assert manifest["world"]["voxel_size"] == 0.5
 
 
-def test_json_is_all_that_stdout_gets_and_keeps_its_promise(voxrt, folder):
-    finished = voxrt("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json")
+def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
+    finished = process("build", "house.obj", "-o", "out", "--depth", "5", "--preview", "--engine", "model", "--json")
     assert finished.code == 0, finished.err
     report = msgspec.json.decode(finished.out, type=BuildReport, strict=True)
     result = json.loads(finished.out)
@@ -76,10 +76,10 @@ def test_without_preview_render_is_null(voxrt):
 
 
 @pytest.mark.parametrize("asset", ["house.obj", "dog.usda"])
-def test_the_same_input_gives_the_same_bytes(voxrt, folder, asset):
+def test_the_same_input_gives_the_same_bytes(process, folder, asset):
     for out in ("one", "two"):
         arguments = ("build", asset, "-o", out, "--depth", "6", "--preview", "--engine", "model", "--size", "80x60")
-        assert voxrt(*arguments, env={"PYTHONHASHSEED": str(len(out) + ord(out[0]))}).code == 0
+        assert process(*arguments, env={"PYTHONHASHSEED": str(len(out) + ord(out[0]))}).code == 0
     one, two = files(folder / "one"), files(folder / "two")
     name = asset.split(".")[0]
     assert one[f"{name}.mem"] == two[f"{name}.mem"]
@@ -131,8 +131,8 @@ def test_options_reach_their_stage(voxrt, folder):
     assert json.loads((folder / "house.json").read_bytes())["source"]["settings"]["up"] == "z"
     built("--unit", "0.01")
     assert json.loads((folder / "house.json").read_bytes())["world"]["voxel_size"] == pytest.approx(0.0775 / 32)
-    rounded = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json").out)
-    exact = json.loads(voxrt("build", "dog.usda", "--depth", "6", "--json", "--pow2", "none").out)
+    rounded = json.loads(voxrt("build", "dog.usda", "--json").out)
+    exact = json.loads(voxrt("build", "dog.usda", "--json", "--pow2", "none").out)
     assert rounded["voxels"] > exact["voxels"]
     assert rounded["words"] < exact["words"]
 
@@ -147,9 +147,9 @@ def test_warnings_go_to_people_and_to_programs(voxrt):
 @pytest.mark.parametrize(
     "name", [b"with space.obj", b"caf\xc3\xa9.obj", b"caf\xe9.obj", b"back\\slash.obj", b"-dash.obj"]
 )
-def test_names(voxrt, folder, name):
+def test_names(process, folder, name):
     shutil.copy(folder / "house.obj", folder / os.fsdecode(name))
-    finished = voxrt(
+    finished = process(
         "build", "--depth", "3", "-o", "out", "--preview", "--engine", "model", "--json", "--", os.fsdecode(name)
     )
     assert finished.code == 0, finished.err
@@ -182,3 +182,52 @@ def test_a_target_that_is_a_folder(voxrt, folder):
     finished = voxrt("build", "house.obj", "--depth", "3")
     assert finished.code == 2
     assert "cannot be written" in finished.error
+
+
+def test_strict_makes_warnings_errors(voxrt, folder):
+    before = sorted(folder.iterdir())
+    finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--strict")
+    assert finished.code == 3
+    assert finished.error.startswith("voxrt: error: dog.usda: ")
+    assert sorted(folder.iterdir()) == before
+    assert voxrt("build", "dog.usda", "--depth", "5", "--strict").code == 0
+
+
+def test_a_budget_is_kept_and_its_price_told(voxrt, folder):
+    arguments = ("build", "house.obj", "--depth", "6", "--json")
+    whole = json.loads(voxrt(*arguments).out)
+    assert whole["budget"] is None
+    fitted = json.loads(voxrt(*arguments, "--budget", whole["words"] // 2).out)
+    assert fitted["words"] <= whole["words"] // 2
+    assert fitted["voxels"] >= whole["voxels"]
+    assert fitted["budget"]["words_before"] == whole["words"]
+    assert 0 < fitted["budget"]["percent_changed"] < 50
+    assert 0 < fitted["budget"]["ssim"] < 1
+    assert len((folder / "house.mem").read_text().split()) == fitted["words"]
+    assert "% of the surface changed" in voxrt(*arguments[:-1], "--budget", whole["words"] // 2).err
+    enough = json.loads(voxrt(*arguments, "--board", "pynq-z1").out)
+    assert enough["words"] == whole["words"]
+    assert enough["budget"]["psnr"] is None
+
+
+def test_a_budget_that_cannot_be_met(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "6", "--budget", "5")
+    assert finished.code == 4
+    assert "give it at least" in finished.error
+
+
+def test_time_and_variants_reach_the_loader(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "3", "--time", "1", "--variant", "red", "--json")
+    assert finished.code == 0
+    kinds = [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
+    assert kinds.count("ignored-option") == 2
+
+
+def test_profile_has_a_row_a_stage(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "3", "--profile", "--json")
+    assert finished.code == 0
+    assert [line.split()[0] for line in finished.err.splitlines()] == [
+        "stage",
+        *json.loads(finished.out)["seconds"],
+        "all",
+    ]

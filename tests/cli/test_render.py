@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import msgspec
 import pytest
@@ -103,10 +104,10 @@ def test_directions_out_of_range(voxrt):
     assert "2**20" in finished.error
 
 
-def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder):
-    (folder / "sitecustomize.py").write_text("import sys\nsys.modules['voxrt.sim._rtl'] = None\n")
+def test_an_installation_without_the_ray_tracer_says_the_way_out(voxrt, folder, monkeypatch):
+    monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
     for arguments in (("build", "house.obj", "--depth", "3", "--preview"), ("render", "house.mem")):
-        finished = voxrt(*arguments, env={"PYTHONPATH": str(folder)})
+        finished = voxrt(*arguments)
         assert finished.code == 5
         assert "no verilated ray tracer" in finished.error
         assert "--engine model" in finished.error
@@ -139,16 +140,18 @@ def test_check_counts_wrong_pixels(voxrt):
     assert json.loads(finished.out)["wrong_pixels"] == 0
 
 
-@pytest.mark.usefixtures("ray_tracer")
-def test_check_fails_where_the_engines_differ(voxrt, built):
-    (built / "sitecustomize.py").write_text(
-        "import sys, voxrt.sim\nmodule = sys.modules['voxrt.sim.render']\nrender = module.render\n"
-        "def wrong(*arguments, engine, **options):\n    frame = render(*arguments, engine=engine, **options)\n"
-        "    frame.face[7, 5] ^= engine == 'model'\n    return frame\n"
-        "module.render = wrong\n"
-    )
-    arguments = ("render", "house.mem", "--size", "64x48", "--check", "--json")
-    finished = voxrt(*arguments, env={"PYTHONPATH": str(built)})
+@pytest.mark.usefixtures("ray_tracer", "built")
+def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
+    module = sys.modules["voxrt.sim.render"]
+    render = module.render
+
+    def wrong(*arguments, engine, **options):
+        frame = render(*arguments, engine=engine, **options)
+        frame.face[7, 5] ^= engine == "model"
+        return frame
+
+    monkeypatch.setattr(module, "render", wrong)
+    finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
     assert finished.code == 5
     assert json.loads(finished.out)["wrong_pixels"] == 1
     assert "1 pixels differ" in finished.error

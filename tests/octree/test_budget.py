@@ -3,10 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.octree import reference_words, unshared_words
-from oracles.worlds import dense_cubes
+from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
-from voxrt.octree import _native
 from voxrt.voxelize import DoesNotFitError
 
 
@@ -58,13 +57,15 @@ def test_surface_change_is_what_brute_force_counts(data):
     side = max(len(a), len(b))
     a, b = (np.pad(c, (0, side - len(c))) for c in (a, b))
     trees = octree.from_dense(a), octree.from_dense(b)
-    found = _native.surface_change(trees[0].words, trees[1].words, trees[0].depth)
+    found = octree.surface_change(*trees)
     seen = surface(a)
-    assert found == (np.count_nonzero(seen), np.count_nonzero(seen & ~(surface(b) & (a == b))))
+    assert found.surface == np.count_nonzero(seen)
+    assert found.changed == np.count_nonzero(seen & ~(surface(b) & (a == b)))
+    assert found.percent == (100 * found.changed / found.surface if found.surface else 0)
 
 
 @given(dense_cubes(5), st.floats(0, 1), st.booleans())
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_a_fit_fits_and_opens_no_hole(cube, share, coloured):
     tree = octree.from_dense(cube)
     words = max(1, int(share * len(tree.words)))
@@ -105,9 +106,9 @@ def test_sharing_comes_first():
 @pytest.mark.parametrize("materials", [1, 3])
 @pytest.mark.parametrize("level", [1, 2])
 def test_closer_than_a_coarser_world_of_the_same_size(materials, level):
-    tree = octree.from_dense(lumps(7, materials))
+    tree = octree.from_dense(lumps(6, materials))
     plain = octree.coarsen(tree, level)
-    _, plain_changed = _native.surface_change(tree.words, plain.words, tree.depth)
+    plain_changed = octree.surface_change(tree, plain).changed
     found = octree.fit(tree, len(plain.words))
     assert len(found.octree.words) <= len(plain.words)
     assert found.changed + found.appeared < plain_changed + octree.diff(tree, plain).appeared
@@ -128,15 +129,16 @@ def test_hidden_materials_go_first():
 
 
 def test_similar_colours_stand_for_each_other_first():
-    rng = np.random.default_rng(0)
     cube = np.zeros((32, 32, 32), np.uint8)
-    cube[:, :, :8] = 1 + rng.integers(0, 3, (32, 32, 8))
+    cube[:, :, :8] = np.random.default_rng(0).integers(1, 4, (32, 32, 8))
     colours = np.array([[0, 0, 0], [200, 0, 0], [204, 0, 0], [0, 0, 255]], np.uint8)
     tree = octree.from_dense(cube)
-    shown = octree.to_dense(octree.fit(tree, len(tree.words) // 2, colours=colours).octree)
-    near = np.count_nonzero((cube == 1) & (shown == 2)) + np.count_nonzero((cube == 2) & (shown == 1))
-    far = np.count_nonzero((cube == 3) & (shown != 3)) + np.count_nonzero((cube != 3) & (shown == 3))
-    assert near > far
+
+    def far_changes(colours):
+        shown = octree.to_dense(octree.fit(tree, len(tree.words) // 2, colours=colours).octree)
+        return np.count_nonzero((cube == 3) != (shown == 3))
+
+    assert far_changes(colours) < far_changes(None)
 
 
 def test_infeasible_budgets_name_the_smallest():
@@ -159,3 +161,5 @@ def test_refusals():
         octree.coarsen(tree, 2)
     with pytest.raises(ValueError, match=r"colours must have the shape \(M, 3\)"):
         octree.fit(octree.from_dense(lumps(4)), 9, colours=np.zeros((2, 4), np.uint8))
+    with pytest.raises(ValueError, match="depth 1 and 4"):
+        octree.surface_change(tree, octree.from_dense(lumps(4)))

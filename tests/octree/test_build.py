@@ -185,3 +185,86 @@ def test_arrays_that_are_no_materials_are_refused(array, message):
 def test_an_array_beyond_the_largest_depth_is_refused():
     with pytest.raises(DoesNotFitError, match="65537 voxels a side do not fit depth 16"):
         octree.from_dense(np.zeros((65537, 1, 1), np.uint8))
+
+
+@given(dense_cubes(), st.randoms())
+def test_from_points_is_the_reference_recursion_in_any_order(cube, rng):
+    points = np.argwhere(cube)
+    order = list(range(len(points)))
+    rng.shuffle(order)
+    materials = cube[tuple(points.T)][order]
+    twice = np.concatenate([points[order], points[order]])
+    tree = octree.from_points(twice, np.concatenate([materials, 255 - materials // 2]), len(cube).bit_length() - 1)
+    np.testing.assert_array_equal(tree.words, reference_words(cube))
+
+
+@pytest.mark.parametrize(
+    ("points", "materials", "message"),
+    [
+        ([[0, 0]], [1], r"must be \(N, 3\) and \(N,\)"),
+        ([[0, 0, 0]], [1, 2], r"must be \(N, 3\) and \(N,\)"),
+        ([[0, 0, 8]], [1], r"points must lie in 0 \.\.\. 7, not 0 \.\.\. 8"),
+        ([[0, -1, 0]], [1], r"points must lie in 0 \.\.\. 7, not -1 \.\.\. 0"),
+        ([[0, 0, 0]], [0], r"materials must be 1 \.\.\. 255, not 0 \.\.\. 0"),
+        ([[0, 0, 0]], [256], r"materials must be 1 \.\.\. 255, not 256"),
+    ],
+)
+def test_points_that_are_none_are_refused(points, materials, message):
+    with pytest.raises(ValueError, match=message):
+        octree.from_points(np.array(points), np.array(materials), 3)
+
+
+def shuffled_bricks(depth, count, seed):
+    """Voxels of many random bricks, some alike, one and several materials, with a solid octant of half the side."""
+    rng = np.random.default_rng(seed)
+    bricks = 8 ** (depth - 3)
+    codes = np.sort(rng.choice(bricks - bricks // 8, count, replace=False).astype(np.uint64))
+    kinds = rng.integers(0, 2**64, (count // 4, 8), dtype=np.uint64, endpoint=False)
+    masks = kinds[rng.integers(0, len(kinds), count)]
+    rows = np.where(rng.random(count) < 0.3, 0, -1).astype(np.int32)
+    rows[rows == 0] = np.arange(np.count_nonzero(rows == 0))
+    solid = np.unpackbits(masks.view(np.uint8).reshape(count, 64), axis=1, bitorder="little")
+    cells = (solid * rng.integers(1, 4, (count, 512)))[rows >= 0].astype(np.uint8)
+    materials = np.where(rows < 0, rng.integers(1, 4, count), 0).astype(np.uint8)
+    return Voxels(depth, codes, masks, materials, rows, cells, np.array([7], np.uint64),
+                  np.array([depth - 1], np.uint8), np.array([9], np.uint8))  # fmt: skip
+
+
+def dense_of(voxels):
+    """Every voxel of `voxels`, by their definition."""
+    side = 1 << voxels.depth
+    dense = np.zeros((side,) * 3, np.uint8)
+
+    def corner(codes):
+        return np.stack([sum((codes >> 3 * k + axis & 1) << k for k in range(voxels.depth)) for axis in range(3)], -1)
+
+    within = corner(np.arange(512))
+    solid = np.unpackbits(voxels.brick_masks.view(np.uint8).reshape(-1, 64), axis=1, bitorder="little")
+    one = solid * voxels.brick_materials[:, None]
+    rows = voxels.brick_rows >= 0
+    one[rows] = voxels.cells[voxels.brick_rows[rows]]
+    places = (corner(voxels.brick_codes.astype(np.int64)) * 8)[:, None] + within
+    dense[tuple(np.moveaxis(places, -1, 0))] = one
+    for code, level, material in zip(voxels.octant_codes, voxels.octant_levels, voxels.octant_materials, strict=True):
+        low = corner(np.int64(code)) << int(level)
+        dense[tuple(slice(c, c + (1 << int(level))) for c in low)] = material
+    return dense
+
+
+@pytest.mark.parametrize("threads", [0, 1, 2, 5])
+def test_many_bricks_give_the_same_bytes_on_any_number_of_threads(threads):
+    voxels = shuffled_bricks(8, 12_000, 1)
+    tree = octree.build(voxels, threads=threads)
+    np.testing.assert_array_equal(tree.words, octree.from_dense(dense_of(voxels)).words)
+
+
+def test_broken_bricks_are_refused_on_any_thread():
+    voxels = shuffled_bricks(8, 12_000, 2)
+    voxels.brick_masks[11_000] = 0
+    with pytest.raises(ValueError, match="brick 11000: is empty"):
+        octree.build(voxels, threads=3)
+    for wrong in (5_000, 11_999):
+        codes = voxels.brick_codes.copy()
+        codes[wrong] = codes[wrong - 1]
+        with pytest.raises(ValueError, match=r"is empty|Morton order"):
+            octree.build(Voxels(8, codes, *(getattr(voxels, n) for n in list(Voxels.__dataclass_fields__)[2:])))

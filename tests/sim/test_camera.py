@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voxrt.sim import Camera, camera_from_registers, frame_box, look_at, pixel_directions
+from voxrt.sim import Camera, camera_from_registers, frame_points, look_at, pixel_directions
 
 SIZES = [(640, 480), (480, 640), (256, 256), (97, 31), (1920, 1080)]
 voxel = st.floats(-1500, 1500, width=32)
@@ -70,8 +70,8 @@ def test_text_reads_from_left_to_right():
 def test_the_whole_scene_is_in_view_and_fills_it(corner, extent, size):
     low = np.array(corner)
     high = np.minimum(low + extent, 1024)
-    camera = frame_box(low, high, size)
     corners = np.array([[(low, high)[i >> a & 1][a] for a in range(3)] for i in range(8)])
+    camera = frame_points(corners, size)
     column, row, ahead = project(camera, size, corners)
     assert np.all(ahead)
     assert column.min() >= 0

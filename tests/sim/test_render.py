@@ -11,11 +11,12 @@ from oracles.ray_batch import trace_batch
 from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, PointQueries, seed_words
 from PIL import Image
 
-import voxrt.sim
 from voxrt.octree import Octree, Rom
 from voxrt.sim import (
     FACE_NONE,
     Camera,
+    Light,
+    Shading,
     SimulatorError,
     check,
     frame_scene,
@@ -84,6 +85,44 @@ def test_an_empty_memory_frames_its_world():
     assert not np.any(render(nothing, frame_scene(nothing, (64, 48)), (64, 48), engine="model").material)
 
 
+def test_a_shaded_rom_is_lit_and_reflects():
+    voxels = np.zeros((8, 8, 8), np.uint8)
+    voxels[:, 0] = 1
+    voxels[3:5, 1:4, 3:5] = 2
+    materials = (
+        Material("air", (9, 9, 30)),
+        Material("floor", (200, 200, 200), mirror=True),
+        Material("box", (250, 0, 0)),
+    )
+    rom = Rom("scene", Octree(3, memory_of(voxels)), materials)
+    camera = frame_scene(rom, (64, 48))
+    plain = render(rom, camera, (64, 48), engine="model")
+    floor = plain.material == 1
+    flat = render(rom, camera, (64, 48), engine="model", shading=Shading(flat=True))
+    np.testing.assert_array_equal(np.unique(flat.colour[floor], axis=0), [[200, 200, 200]])
+    light = Light((16 * 30, 16 * 40, 16 * 5), ambient=64)
+    lit = render(rom, camera, (64, 48), engine="model", shading=Shading(light=light))
+    dark = np.all(lit.colour == 50, axis=2) & floor  # the box's shadow on the floor
+    assert 0.02 < dark.sum() / floor.sum() < 0.5
+    mirrored = render(rom, camera, (64, 48), engine="model", shading=Shading(bounces=1))
+    assert np.any(mirrored.material[floor] == 2)
+    assert np.any(mirrored.material[floor] == 0)
+    np.testing.assert_array_equal(mirrored.colour[plain.material == 2], plain.colour[plain.material == 2])
+
+
+@pytest.mark.parametrize(
+    ("shading", "message"),
+    [
+        (Shading(bounces=16), "16 reflections are not 0 … 15"),
+        (Shading(light=Light((0, 0, 0), ambient=256)), "ambient brightness of 256 is not 0 … 255"),
+        (Shading(light=Light((0, 1 << 31, 0))), "the light at .* is not within signed 32 bits"),
+    ],
+)
+def test_shading_out_of_range_is_refused(rom, shading, message):
+    with pytest.raises(SimulatorError, match=message):
+        render(rom, ALONG_Z, (4, 4), engine="model", shading=shading)
+
+
 def test_directions_that_overflow_are_refused(rom):
     camera = Camera((0, 0, 0), (0, 0, 1), (32767, 0, 0), (0, 1, 0))
     with pytest.raises(SimulatorError, match=r"directions reach 1081311 at the .* not below 2\*\*20"):
@@ -98,7 +137,6 @@ def test_sizes_out_of_range_are_refused(rom, size):
 
 def test_a_missing_ray_tracer_says_what_to_do(rom, monkeypatch):
     monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
-    monkeypatch.delattr(voxrt.sim, "_rtl", raising=False)
     with pytest.raises(SimulatorError, match=r"no verilated ray tracer .*--engine model"):
         render(rom, ALONG_Z, (4, 4), engine="rtl")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles.meshes import MATERIALS, box_mesh, icosphere, scene_of
 from oracles.voxels import UNIT, dense
-from voxelize.shapes import MATERIALS, box_mesh, icosphere, scene_of
 
 from voxrt.voxelize import (
     BoxCollider,

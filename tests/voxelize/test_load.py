@@ -1,4 +1,6 @@
+import numpy as np
 import pytest
+from oracles.gltf_writer import GltfWriter
 
 from voxrt.voxelize import AssetError, load
 
@@ -16,3 +18,26 @@ def test_missing_file_and_folder_are_refused(tmp_path):
     (tmp_path / "folder.obj").mkdir()
     with pytest.raises(AssetError, match=r"folder\.obj: is a folder, not a file"):
         load(tmp_path / "folder.obj")
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def test_formats_say_which_options_they_ignore(tmp_path):
+    obj = tmp_path / "a.OBJ"
+    obj.write_text(TRIANGLE)
+    scene = load(obj, up="z", unit=0.5, time=1.0, variants=("x",))
+    assert [warning.message for warning in scene.warnings if warning.kind == "ignored-option"] == [
+        "the time was ignored: obj files have no animation",
+        "variants were ignored: obj files have none",
+    ]
+    corners = scene.objects[0].mesh.positions @ scene.objects[0].transform[:3, :3].T
+    np.testing.assert_allclose(np.ptp(corners, axis=0), [0.5, 0, 0.5], atol=1e-12)
+    writer = GltfWriter()
+    writer.show(mesh=writer.mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
+    scene = load(str(writer.save(tmp_path / "a.glb")), up="z", unit=0.5)
+    assert [warning.message for warning in scene.warnings if warning.kind == "ignored-option"] == [
+        "the up axis was ignored: glb files say it themselves",
+        "the unit was ignored: glb files say it themselves",
+    ]
+    assert np.ptp(scene.objects[0].mesh.positions, axis=0).tolist() == [1, 1, 0]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles.meshes import box_mesh, icosphere, one_object, scene_of
 from oracles.voxels import compete, dense, snap, voxelize_mesh
-from voxelize.shapes import box_mesh, icosphere, one_object, scene_of
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
 

@@ -133,8 +133,11 @@ def as_floats(document: Document, stored: NDArray[Any], index: int) -> NDArray[n
     document.charge(stored.size * 8, f"accessors[{index}]")
     if stored.dtype.kind != "f" and document.gltf.accessors[index].normalized:
         return normalized(stored)
-    elements: NDArray[np.float64] = stored.astype(np.float64)
-    if not np.isfinite(elements).all():
+    with np.errstate(invalid="ignore"):
+        elements: NDArray[np.float64] = stored.astype(np.float64)
+        total = elements.sum()
+    # What is stored is far smaller than a double can be: only elements that are not finite make the sum so.
+    if not np.isfinite(total):
         row = int(np.argmin(np.isfinite(elements).all(axis=1)))
         raise document.error(f"accessors[{index}]", f"element {row} is not a finite number")
     return elements

@@ -36,12 +36,12 @@ def posed(document: Document, time: float | None) -> Gltf:
     if time is None:
         if gltf.animations:
             message = "animations were not played: the nodes stand as the file places them"
-            document.warn("animation", message, len(gltf.animations))
+            document.notes.add("animation", message, len(gltf.animations))
         return gltf
     if not gltf.animations:
         raise document.error("animations", "a time was asked for and the file has no animation", "leave the time out")
     if len(gltf.animations) > 1:
-        document.warn("animation", "animations after the first were not played", len(gltf.animations) - 1)
+        document.notes.add("animation", "animations after the first were not played", len(gltf.animations) - 1)
     nodes = list(gltf.nodes)
     _play(document, gltf.animations[0], time, nodes)
     return structs.replace(gltf, nodes=nodes)
@@ -53,7 +53,7 @@ def _play(document: Document, animation: Animation, time: float, nodes: list[Nod
         place = f"animations[0].channels[{at}]"
         target = channel.target
         if target.node is None or target.path not in (*_COMPONENTS, "weights"):
-            document.warn("animation", f"animations of {target.path[:40]!r} were not played")
+            document.notes.add("animation", f"animations of {target.path[:40]!r} were not played")
             continue
         node = document.item(nodes, target.node, f"{place}.target.node", "node")
         sampler = document.item(animation.samplers, channel.sampler, f"{place}.sampler", "sampler")

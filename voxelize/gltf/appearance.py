@@ -11,7 +11,7 @@ from voxrt.voxelize.gltf.accessors import as_unit_floats
 from voxrt.voxelize.gltf.extensions import TEXTURE_TRANSFORM, VARIANTS, read_extension
 from voxrt.voxelize.gltf.materials import NO_MATERIAL, Finish, MaterialKey, finish
 from voxrt.voxelize.gltf.schema import FileVariants, PrimitiveVariants, TextureTransform
-from voxrt.voxelize.paint import Coat, Paint, mean_colours
+from voxrt.voxelize.paint import Coat, Paint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -50,22 +50,16 @@ class Dress:
     Attributes
     ----------
     keys
-        The materials in use.
+        The materials of triangles that have one colour.
     rows
-        int32, shape (T,): the key of each triangle.
-    solid
-        bool, shape (T,): False where the triangle is air, being transparent all over.
+        intp, shape (T,): the key of each triangle; -1 where it is painted, or air.
     coat
         The paint on painted triangles, or None.
-    means
-        float64, shape (T, 3): mean linear colour of painted triangles.
     """
 
     keys: tuple[MaterialKey, ...]
-    rows: NDArray[np.int32]
-    solid: NDArray[np.bool_]
+    rows: NDArray[np.intp]
     coat: Coat | None
-    means: NDArray[np.float64]
 
 
 def find_variant(document: Document, wanted: tuple[str, ...]) -> int | None:
@@ -94,29 +88,22 @@ def dress(document: Document, textures: Textures, surface: Surface, look: Look) 
     count = len(surface.triangles)
     document.charge(count * 8, f"meshes[{look.mesh}]")
     keys: dict[MaterialKey, int] = {}
-    rows = np.empty(count, np.int32)
-    solid = np.ones(count, np.bool_)
+    rows = np.full(count, -1, np.intp)
     painter = _Painter(document, textures, count)
     for span in surface.spans:
         place = f"meshes[{look.mesh}].primitives[{span.primitive}]"
         key = MaterialKey(_material(document, look, span, place), look.mirrored)
-        rows[span.start : span.stop] = keys.setdefault(key, len(keys))
         wears = finish(document, key)
-        if painter.paint(span, key, wears):
+        faces = span.stop - span.start
+        if not faces or painter.paint(span, key, wears):
             continue
         if wears.factor[3] < wears.cutoff:
-            solid[span.start : span.stop] = False
-        elif key.index == NO_MATERIAL:
-            faces = span.stop - span.start
-            document.warn("default-material", "faces without material took the default material", faces)
-    coat = painter.coat()
-    means = np.zeros((count, 3))
-    if coat is not None:
-        means, covered = mean_colours(coat)
-        solid &= covered | (coat.rows < 0)
-    if not solid.all():
-        document.warn("transparent", "faces that are transparent all over are air", int((~solid).sum()))
-    return Dress(tuple(keys), rows, solid, coat, means)
+            document.notes.add("transparent", "faces of transparent materials are air", faces)
+            continue
+        rows[span.start : span.stop] = keys.setdefault(key, len(keys))
+        if key.index == NO_MATERIAL:
+            document.notes.add("default-material", "faces without a material got the default one", faces)
+    return Dress(tuple(keys), rows, painter.coat())
 
 
 def _material(document: Document, look: Look, span: Span, place: str) -> int:
@@ -187,7 +174,7 @@ class _Painter:
             return None
         colours = as_unit_floats(span.attributes.stored("COLOR_0", {"VEC3", "VEC4"}))
         if not np.isfinite(colours).all():
-            self._document.warn("vertex-colour", "vertex colours that are not numbers were taken as black")
+            self._document.notes.add("vertex-colour", "vertex colours that are not numbers were taken as black")
             colours = np.nan_to_num(colours, nan=0.0, posinf=0.0, neginf=0.0)
         self._fits(span, colours, "COLOR_0")
         if colours.shape[1] == 3:
@@ -205,7 +192,7 @@ class _Painter:
         name = f"TEXCOORD_{number}"
         if name not in span.attributes:
             message = f"primitives without the {name} that their texture asks for took the colour of its factor"
-            self._document.warn("texture", message)
+            self._document.notes.add("texture", message)
             return None
         uv = span.attributes.floats(name, {"VEC2"})
         self._fits(span, uv, name)

@@ -12,6 +12,7 @@ import msgspec
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.schema import Gltf
+from voxrt.voxelize.gltf.schema_errors import explain
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,7 +24,7 @@ _RE_EXPORT = "the file is damaged: export or download it again"
 _decoder = msgspec.json.Decoder(Gltf)
 
 
-def read_container(path: Path) -> tuple[Gltf, bytes | None]:
+def read_container(path: Path) -> tuple[Gltf, memoryview | None]:
     """Read `path`, as GLB where it starts like one, else as JSON.
 
     Returns
@@ -43,11 +44,11 @@ def read_container(path: Path) -> tuple[Gltf, bytes | None]:
     if data[:4] == _MAGIC:
         text, binary = _split_glb(path, data)
     else:
-        text, binary = data, None
-    return _parse(path, text), binary
+        text, binary = memoryview(data), None
+    return _parse(path, bytes(text)), binary
 
 
-def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
+def _split_glb(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     if len(data) < 20:
         raise AssetError(path, f"a GLB of {len(data)} bytes ends before its JSON chunk", fix=_RE_EXPORT)
     version, length = struct.unpack_from("<II", data, 4)
@@ -55,7 +56,8 @@ def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
         raise AssetError(path, f"GLB version {version} is unknown", fix="export as glTF 2.0")
     if length != len(data):
         raise AssetError(path, f"the GLB says it has {length} bytes and has {len(data)}", fix=_RE_EXPORT)
-    chunks: dict[int, bytes] = {}
+    chunks: dict[int, memoryview] = {}
+    whole = memoryview(data)
     at = 12
     while at < length:
         if length - at < 8:
@@ -71,24 +73,24 @@ def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
             raise AssetError(path, "the JSON chunk is not the first", place=f"byte {at}", fix=_RE_EXPORT)
         if kind == _BINARY_CHUNK and len(chunks) != 1:
             raise AssetError(path, "the binary chunk is not the second", place=f"byte {at}", fix=_RE_EXPORT)
-        chunks[kind] = data[at + 8 : at + 8 + size]
+        chunks[kind] = whole[at + 8 : at + 8 + size]
         at += 8 + size
     return chunks[_JSON_CHUNK], chunks.get(_BINARY_CHUNK)
 
 
 def _parse(path: Path, text: bytes) -> Gltf:
     try:
+        str(text, "utf-8")  # the decoder looks only at the strings it needs
+    except UnicodeDecodeError as error:
+        raise AssetError(path, "the JSON is not UTF-8", place=f"byte {error.start}", fix=_RE_EXPORT) from None
+    try:
         gltf = _decoder.decode(text.removeprefix(b"\xef\xbb\xbf"))
     except msgspec.ValidationError as error:
-        problem, _, place = str(error).partition(" - at ")
-        place = place.strip("`").removeprefix("$").removeprefix(".")
-        problem = problem[:1].lower() + problem[1:]
-        raise AssetError(
-            path, problem, place=place, fix="the file breaks the glTF 2.0 schema: export it again"
-        ) from None
+        problem, place = explain(error)
+        fix = "the file breaks the glTF 2.0 schema: export it again"
+        raise AssetError(path, problem, place=place, fix=fix) from None
     except msgspec.DecodeError as error:
-        message = str(error)
-        raise AssetError(path, message[:4].replace("Inpu", "inpu") + message[4:], fix=_RE_EXPORT) from None
+        raise AssetError(path, f"the JSON cannot be read ({error})", fix=_RE_EXPORT) from None
     except RecursionError:
         raise AssetError(path, "the JSON is nested too deeply", fix=_RE_EXPORT) from None
     if gltf.asset.version.partition(".")[0] != "2" or gltf.asset.min_version != "2.0":

@@ -53,8 +53,9 @@ def morphed(
         moved = read_floats(document, target["POSITION"], here, {"VEC3"})
         if len(moved) != len(positions):
             raise document.error(here, f"moves {len(moved)} of {len(positions)} vertices")
-        positions = positions + weight * moved
-    return _finite(document, positions, place)
+        with np.errstate(over="ignore", invalid="ignore"):
+            positions = _finite(document, positions + weight * moved, place)
+    return positions
 
 
 def skinned(
@@ -84,7 +85,7 @@ def skinned(
             number += 1
         bare = total[:, 0] <= 0.0
         if bare.any():
-            document.warn("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
+            document.notes.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
             carried[bare] = positions[bare] @ pose.joints[0, :3, :3].T + pose.joints[0, :3, 3]
             total[bare] = 1.0
         carried /= total

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
 
-from voxrt.voxelize.errors import AssetError, SceneWarning
+from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.container import read_container
+from voxrt.voxelize.gltf.extensions import MESHOPT, read_extension
+from voxrt.voxelize.gltf.meshopt import BadStreamError, CompressedView, decode
+from voxrt.voxelize.notes import Notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voxrt.voxelize.gltf.schema import Gltf
+    from voxrt.voxelize.gltf.schema import BufferView, Gltf
 
 T = TypeVar("T")
 
@@ -36,29 +38,23 @@ class Document:
         The ``.gltf`` or ``.glb`` file.
     gltf
         Its JSON.
+    notes
+        What could not be honoured as it stands.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
-        self._buffers: dict[int, bytes] = {}
+        self._buffers: dict[int, memoryview] = {}
+        self._unpacked: dict[int, bytes] = {}
         self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
-        self._warnings: Counter[tuple[str, str]] = Counter()
+        self.notes = Notes()
         self._check_views()
 
     def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
         """Return the error that refuses this file for what stands at the JSON path `place`."""
         return AssetError(self.path, problem, place=place, fix=fix)
-
-    def warn(self, kind: str, message: str, count: int = 1) -> None:
-        """Note something that was not honoured as it stands; equal notes are counted."""
-        self._warnings[kind, message] += count
-
-    @property
-    def warnings(self) -> tuple[SceneWarning, ...]:
-        """What was noted, in order of first occurrence."""
-        return tuple(SceneWarning(kind, message, count) for (kind, message), count in self._warnings.items())
 
     def charge(self, amount: int, place: str) -> None:
         """Take `amount` bytes of the memory that an asset of this size may use."""
@@ -76,8 +72,29 @@ class Document:
     def view(self, index: int, place: str) -> memoryview:
         """Return the bytes of buffer view `index`, to which `place` refers."""
         view = self.item(self.gltf.buffer_views, index, place, "buffer view")
-        data = self._buffer(view.buffer)
-        return memoryview(data)[view.byte_offset : view.byte_offset + view.byte_length]
+        if index in self._unpacked:
+            return memoryview(self._unpacked[index])
+        compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
+        if compressed is None:
+            return self._buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
+        self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
+        return memoryview(self._unpacked[index])
+
+    def _decompressed(self, compressed: CompressedView, view: BufferView, place: str) -> bytes:
+        here = f"{place}.extensions.{MESHOPT}"
+        size = compressed.count * compressed.byte_stride
+        self.charge(size * 4, here)
+        buffer = self.item(self.gltf.buffers, compressed.buffer, f"{here}.buffer", "buffer")
+        end = compressed.byte_offset + compressed.byte_length
+        if end > buffer.byte_length:
+            raise self.error(here, f"ends at byte {end} of a buffer of {buffer.byte_length}")
+        if size != view.byte_length:
+            raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
+        data = self._buffer(compressed.buffer)[compressed.byte_offset : end]
+        try:
+            return decode(compressed, bytes(data))
+        except BadStreamError as error:
+            raise self.error(here, f"the compressed data is damaged: {error}") from None
 
     def _check_views(self) -> None:
         """Refuse the file where a buffer view leaves its buffer, in use or not: it is cut short."""
@@ -88,7 +105,7 @@ class Document:
             if end > buffer.byte_length:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
-    def _buffer(self, index: int) -> bytes:
+    def _buffer(self, index: int) -> memoryview:
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -98,7 +115,7 @@ class Document:
             if found is None:
                 problem = f"no file {buffer.uri[:60]!r} beside the asset"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
-            data = found
+            data = memoryview(found)
         elif index == 0 and self._binary is not None:
             data = self._binary
         else:
@@ -119,7 +136,8 @@ class Document:
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
         folder = self.path.parent.resolve()
-        for name in (unquote(uri), uri):
+        # Some exporters forget to encode names, or write paths as Windows does.
+        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
             try:
                 target = (folder / Path(name)).resolve()
                 found = target.is_file()

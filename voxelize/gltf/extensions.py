@@ -6,27 +6,33 @@ from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
+from voxrt.voxelize.gltf.schema_errors import explain
+
 if TYPE_CHECKING:
     from voxrt.voxelize.gltf.document import Document
     from voxrt.voxelize.gltf.schema import Property
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
+MESHOPT = "EXT_meshopt_compression"
 PHYSICS = "KHR_physics_rigid_bodies"
 SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
 TEXTURE_TRANSFORM = "KHR_texture_transform"
 VARIANTS = "KHR_materials_variants"
+VISIBILITY = "KHR_node_visibility"
 
 HONOURED = frozenset(
     {
         DRACO,
         INSTANCING,
+        MESHOPT,
         PHYSICS,
         SHAPES,
         SPECULAR_GLOSSINESS,
         TEXTURE_TRANSFORM,
         VARIANTS,
+        VISIBILITY,
         "EXT_texture_webp",
         "KHR_materials_unlit",
         "KHR_mesh_quantization",
@@ -57,6 +63,12 @@ NO_BEARING = frozenset(
 """Extensions that say nothing about where surfaces are or what base colour they have."""
 
 
+_WAYS_OUT = {
+    "KHR_meshopt_compression": "compress it with EXT_meshopt_compression, or not at all",
+    "KHR_texture_basisu": "export its images as PNG, JPEG or WebP",
+    "EXT_texture_avif": "export its images as PNG, JPEG or WebP",
+}
+
 _T = TypeVar("_T")
 
 
@@ -67,9 +79,8 @@ def read_extension(document: Document, owner: Property, name: str, kind: type[_T
     try:
         return msgspec.json.decode(owner.extensions[name], type=kind)
     except msgspec.ValidationError as error:
-        problem, _, where = str(error).partition(" - at ")
-        here = f"{place}.extensions.{name}{where.strip('`').removeprefix('$')}"
-        raise document.error(here.removeprefix("."), problem[:1].lower() + problem[1:]) from None
+        problem, here = explain(error, f"{place}.extensions.{name}")
+        raise document.error(here, problem) from None
     except (msgspec.DecodeError, RecursionError):
         raise document.error(f"{place}.extensions.{name}".removeprefix("."), "is not JSON that can be read") from None
 
@@ -80,8 +91,8 @@ def check_required(document: Document) -> None:
     known = HONOURED | NO_BEARING
     for at, name in enumerate(gltf.extensions_required):
         if name not in known:
-            fix = "export the file without it"
+            fix = _WAYS_OUT.get(name, "export the file without it")
             raise document.error(f"extensionsRequired[{at}]", f"the extension {name[:60]} is not supported", fix)
     for name in dict.fromkeys(gltf.extensions_used):
         if name not in known:
-            document.warn("unknown-extension", f"the extension {name[:60]} was ignored")
+            document.notes.add("unknown-extension", f"the extension {name[:60]} was ignored")

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
 import msgspec
 
+from voxrt.voxelize.gltf.schema_errors import explain
+
 if TYPE_CHECKING:
     from voxrt.voxelize.gltf.document import Document
 
@@ -30,6 +32,17 @@ class NodeExtras(MaterialExtras, frozen=True, kw_only=True):
     voxrt_collider: ColliderKind | None = None
 
 
+def refuse_misplaced(document: Document) -> None:
+    """Refuse properties for voxrt on scenes and meshes, where they would say nothing."""
+    for array, owners in (("scenes", document.gltf.scenes), ("meshes", document.gltf.meshes)):
+        for index, owner in enumerate(owners):
+            if _PREFIX in bytes(owner.extras):
+                place = f"{array}[{index}].extras"
+                problem = "voxrt's properties belong on nodes and materials"
+                raise document.error(place, problem, "move them there (in Blender: from the mesh to the object)")
+
+
+_PREFIX = b'"voxrt_'
 _T = TypeVar("_T", MaterialExtras, NodeExtras)
 
 
@@ -44,7 +57,7 @@ def material_extras(document: Document, index: int) -> MaterialExtras:
 
 
 def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -> _T:
-    if b'"voxrt_' not in bytes(extras):
+    if _PREFIX not in bytes(extras):
         return kind()
     try:
         authored = msgspec.json.decode(extras)
@@ -59,6 +72,5 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
     try:
         return msgspec.convert(authored, kind)
     except msgspec.ValidationError as error:
-        problem, _, where = str(error).partition(" - at ")
-        where = where.strip("`").removeprefix("$")
-        raise document.error(place + where, problem[:1].lower() + problem[1:], "correct the property") from None
+        problem, here = explain(error, place)
+        raise document.error(here, problem, "correct the property") from None

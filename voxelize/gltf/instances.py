@@ -37,7 +37,7 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         if name in instances.attributes:
             parts[name] = read_floats(document, instances.attributes[name], f"{here}.{name}", {kind})
     if not parts:
-        document.warn("instancing", "nodes with instances that are not placed are shown once")
+        document.notes.add("instancing", "nodes with instances that are not placed are shown once")
         return None
     count = len(next(iter(parts.values())))
     if any(len(part) != count for part in parts.values()):
@@ -49,5 +49,5 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         parts.get("TRANSLATION", np.zeros((count, 3))),
         parts.get("ROTATION", np.tile((0.0, 0.0, 0.0, 1.0), (count, 1))),
         parts.get("SCALE", np.ones((count, 3))),
-        here,
+        f"{here}.ROTATION[{{}}]",
     )

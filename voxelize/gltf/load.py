@@ -11,18 +11,22 @@ from voxrt.voxelize.gltf.appearance import dress, find_variant
 from voxrt.voxelize.gltf.colliders import collider_around, collider_points
 from voxrt.voxelize.gltf.document import Document
 from voxrt.voxelize.gltf.extensions import check_required
+from voxrt.voxelize.gltf.extras import refuse_misplaced
+from voxrt.voxelize.gltf.materials import number_materials
 from voxrt.voxelize.gltf.nodes import place_nodes
 from voxrt.voxelize.gltf.shown import Stage
-from voxrt.voxelize.gltf.table import finish_meshes
 from voxrt.voxelize.gltf.textures import Textures
+from voxrt.voxelize.material_table import MaterialTable
+from voxrt.voxelize.painted import Unfinished, finish
 from voxrt.voxelize.scene import Mesh, Scene, SceneObject
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from voxrt.voxelize.gltf.appearance import Look
+    from voxrt.voxelize.gltf.appearance import Dress, Look
     from voxrt.voxelize.gltf.materials import MaterialKey
+    from voxrt.voxelize.gltf.meshes import Surface
     from voxrt.voxelize.gltf.shown import Bend, Shown
 
 _NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
@@ -50,15 +54,18 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     """
     document = Document(path)
     check_required(document)
+    refuse_misplaced(document)
     document.gltf = posed(document, time)
     stage = Stage(document, place_nodes(document), find_variant(document, variants))
     shown = list(stage.shown())
     textures = Textures(document)
     worn = list(dict.fromkeys(seen.mesh for seen in shown if seen.mesh is not None))
-    dressed = [(stage.surface(bend), dress(document, textures, stage.surface(bend), look)) for bend, look in worn]
-    bare = [seen.material for seen in shown if seen.mesh is None]
-    made, materials, ids = finish_meshes(document, dressed, bare)
-    meshes = dict(zip(worn, made, strict=True))
+    dressed = [dress(document, textures, stage.surface(bend), look) for bend, look in worn]
+    bare = {seen.material for seen in shown if seen.mesh is None}
+    table = MaterialTable()
+    ids = number_materials(document, table, bare.union(*(wears.keys for wears in dressed)))
+    unfinished = [_unfinished(stage.surface(bend), wears, ids) for (bend, _), wears in zip(worn, dressed, strict=True)]
+    meshes = dict(zip(worn, finish(unfinished, table, document.notes), strict=True))
     objects = tuple(
         thing
         for name, seen in zip(stage.names(shown), shown, strict=True)
@@ -66,7 +73,12 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     )
     if not objects:
         raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
-    return Scene(path.stem, objects, materials, document.warnings)
+    return Scene(path.stem, objects, table.materials(), document.notes.warnings())
+
+
+def _unfinished(surface: Surface, wears: Dress, ids: Mapping[MaterialKey, int]) -> Unfinished:
+    by_row = np.array([*(ids[key] for key in wears.keys), 0], np.uint8)  # row -1 is the last
+    return Unfinished(surface.positions, surface.triangles, by_row[wears.rows], wears.coat)
 
 
 def _objects(
@@ -86,9 +98,12 @@ def _objects(
         material = int(mesh.materials[0])
     collider = collider_around(mesh, seen.around) if seen.around is not None else seen.collider
     colliders = () if collider is None else (collider,)
-    farthest = np.abs(np.concatenate([mesh.positions, *map(collider_points, colliders)])).max(axis=0)
+    if colliders and (mesh.materials != material).any():
+        document.notes.add("collider-material", "colliders of objects with several materials took the first of them")
+    clouds = (mesh.positions, *map(collider_points, colliders))
+    farthest = max(float(max(-points.min(), points.max())) for points in clouds if len(points))
     with np.errstate(over="ignore", invalid="ignore"):
-        reach = np.abs(seen.transforms[:, :3, :3]) @ farthest + np.abs(seen.transforms[:, :3, 3])
+        reach = np.abs(seen.transforms[:, :3, :3]).sum(axis=2) * farthest + np.abs(seen.transforms[:, :3, 3])
     if not np.isfinite(reach).all():
         raise document.error(f"nodes[{seen.node}]", "the transform leaves the range of numbers")
     for at, transform in enumerate(seen.transforms):

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.colour import srgb_from_linear
-from voxrt.voxelize.errors import DoesNotFitError
 from voxrt.voxelize.gltf.extensions import SPECULAR_GLOSSINESS, read_extension
 from voxrt.voxelize.gltf.extras import material_extras
 from voxrt.voxelize.gltf.schema import SpecularGlossiness
-from voxrt.voxelize.scene import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+from voxrt.voxelize.scene import DEFAULT_COLOUR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from voxrt.voxelize.gltf.document import Document
     from voxrt.voxelize.gltf.schema import TextureInfo, Vec4
+    from voxrt.voxelize.material_table import MaterialTable
 
 NO_MATERIAL = -1
 """Stands for the material of faces to which the file gives none."""
@@ -75,10 +75,11 @@ def finish(document: Document, key: MaterialKey) -> Finish:
     if glossy is not None:
         factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
         where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
+    red, green, blue, alpha = (min(max(component, 0.0), 1.0) for component in factor)
     return Finish(
         name=authored.voxrt_material or material.name or place,
         renamed=authored.voxrt_material is not None,
-        factor=factor,
+        factor=(red, green, blue, alpha),
         texture=texture,
         place=f"{place}.{where}",
         cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": BLEND_CUTOFF}[material.alpha_mode],
@@ -86,62 +87,35 @@ def finish(document: Document, key: MaterialKey) -> Finish:
     )
 
 
-def material_named(document: Document, name: str, place: str) -> int:
-    """Return the index of the file's material that goes by `name`, which `place` asks for."""
+def material_names(document: Document) -> dict[str, int]:
+    """Map the names by which nodes may ask for the file's materials to their indices, the first of a name winning."""
+    named: dict[str, int] = {}
     for index, material in enumerate(document.gltf.materials):
-        if name in (material.name, material_extras(document, index).voxrt_material):
-            return index
-    known = ", ".join(repr(material.name) for material in document.gltf.materials[:8] if material.name)
-    raise document.error(place, f"no material {name!r} in the file", f"it has {known or 'no named materials'}")
+        for name in (material.name, material_extras(document, index).voxrt_material):
+            if name:
+                named.setdefault(name, index)
+    return named
 
 
-def make_table(document: Document, used: Iterable[MaterialKey]) -> tuple[list[Material], dict[MaterialKey, int]]:
-    """Give every material in `used` an id: in the order of the file's list, the default material last.
+def number_materials(document: Document, table: MaterialTable, used: Iterable[MaterialKey]) -> dict[MaterialKey, int]:
+    """Give every material in `used` an id in `table`: in the order of the file's list, the default material last.
 
-    Returns
-    -------
-    materials, ids
-        The scene's table, entry 0 empty, and the id of each key.
+    Materials that their author renamed alike become one.
 
     Raises
     ------
     DoesNotFitError
         More than 255 materials are used.
     """
-    table = [EMPTY]
     ids: dict[MaterialKey, int] = {}
-    merged: dict[tuple[str, bool], int] = {}
     for key in sorted(set(used), key=lambda key: (key.index == NO_MATERIAL, key)):
         look = finish(document, key)
-        red, green, blue = srgb_from_linear(look.factor[:3]).tolist()
-        material = Material(look.name, (red, green, blue), look.mirror)
         if key.index == NO_MATERIAL:
-            material = replace(material, colour=DEFAULT_COLOUR, authored=False)
-        group = (look.name, look.mirror)
-        if look.renamed and group in merged:
-            ids[key] = merged[group]
-            if table[ids[key]].colour != material.colour:
-                document.warn("merged-materials", f"materials renamed {look.name!r} take the colour of the first")
+            ids[key] = table.id_of(key, look.name, DEFAULT_COLOUR, mirror=look.mirror, authored=False)
             continue
-        ids[key] = len(table)
-        if look.renamed:
-            merged[group] = ids[key]
-        append_named(table, material, _place(key))
-        if len(table) - 1 > MATERIAL_LIMIT:
-            raise DoesNotFitError(
-                f"{document.path}: uses more than the {MATERIAL_LIMIT} materials that a memory holds; "
-                "give materials that look alike one name in their voxrt_material property"
-            )
-    return table, ids
-
-
-def append_named(table: list[Material], material: Material, which: str) -> None:
-    """Append `material` to `table`, its name made unique by saying `which` where it is taken."""
-    if material.name in {other.name for other in table}:
-        material = replace(material, name=f"{material.name} ({which})")
-    table.append(material)
-
-
-def _place(key: MaterialKey) -> str:
-    where = "none in the file" if key.index == NO_MATERIAL else f"materials[{key.index}]"
-    return f"{where}, mirror" if key.mirrored else where
+        red, green, blue = srgb_from_linear(look.factor[:3]).tolist()
+        shared = (look.name, look.mirror) if look.renamed else key
+        ids[key] = table.id_of(shared, look.name, (red, green, blue), mirror=look.mirror)
+        if table.materials()[ids[key]].colour != (red, green, blue):
+            document.notes.add("merged-materials", f"materials renamed {look.name!r} take the colour of the first")
+    return ids

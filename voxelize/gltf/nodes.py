@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.gltf.extensions import VISIBILITY, read_extension
+from voxrt.voxelize.gltf.schema import Visibility
+
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
 
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
-    from voxrt.voxelize.gltf.schema import Node
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -28,11 +30,11 @@ class Hierarchy:
     shown
         The nodes that the scene shows, parents before children, siblings in authored order.
     transforms
-        float64, shape (4, 4) each: frame of each node of the file to the scene frame. May mirror.
+        float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
     """
 
     shown: tuple[int, ...]
-    transforms: tuple[NDArray[np.float64], ...]
+    transforms: NDArray[np.float64]
 
 
 def place_nodes(document: Document) -> Hierarchy:
@@ -48,25 +50,36 @@ def place_nodes(document: Document) -> Hierarchy:
     nodes = document.gltf.nodes
     parents = _parents(document)
     document.charge(len(nodes) * 1024, "nodes")
-    transforms = [np.eye(4)] * len(nodes)
-    for index in _descendants(document, [index for index in range(len(nodes)) if index not in parents]):
-        transform = local_transform(document, nodes[index], f"nodes[{index}]")
-        if index in parents:
-            with np.errstate(over="ignore", invalid="ignore"):
-                transform = transforms[parents[index]] @ transform
-        if not np.isfinite(transform).all():
-            raise document.error(f"nodes[{index}]", "the transform leaves the range of numbers")
-        transforms[index] = transform
-    return Hierarchy(tuple(_descendants(document, _roots(document, parents))), tuple(transforms))
+    transforms = _local_transforms(document)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for index in _descendants(document, [index for index in range(len(nodes)) if index not in parents]):
+            if index in parents:
+                transforms[index] = transforms[parents[index]] @ transforms[index]
+    lost = np.flatnonzero(~np.isfinite(transforms).all(axis=(1, 2)))
+    if len(lost):
+        raise document.error(f"nodes[{lost[0]}]", "the transform leaves the range of numbers")
+    hidden = {index for index in range(len(nodes)) if _is_hidden(document, index)}
+    shown = _descendants(document, _roots(document, parents), hidden)
+    return Hierarchy(tuple(shown), transforms)
 
 
-def _descendants(document: Document, roots: list[int]) -> Iterator[int]:
-    """Go through `roots` and what hangs below them, parents before children, in authored order."""
+def _descendants(document: Document, roots: list[int], hidden: Container[int] = ()) -> Iterator[int]:
+    """Go through `roots` and what hangs below them, parents before children, in authored order.
+
+    Nodes that are `hidden` are left out with what hangs below them.
+    """
     pending = roots[::-1]
     while pending:
         index = pending.pop()
-        yield index
-        pending.extend(reversed(document.gltf.nodes[index].children))
+        if index not in hidden:
+            yield index
+            pending.extend(reversed(document.gltf.nodes[index].children))
+
+
+def _is_hidden(document: Document, index: int) -> bool:
+    node = document.gltf.nodes[index]
+    visibility = read_extension(document, node, VISIBILITY, Visibility, f"nodes[{index}]")
+    return visibility is not None and not visibility.visible
 
 
 def _parents(document: Document) -> dict[int, int]:
@@ -100,52 +113,50 @@ def _roots(document: Document, parents: dict[int, int]) -> list[int]:
     gltf = document.gltf
     if gltf.scene is None and not gltf.scenes:
         if gltf.nodes:
-            document.warn("no-scene", "the file has no scene: all its root nodes are shown")
+            document.notes.add("no-scene", "the file has no scene: all its root nodes are shown")
         return [index for index in range(len(gltf.nodes)) if index not in parents]
     number = gltf.scene or 0
     scene = document.item(gltf.scenes, number, "scene", "scene")
     others = len(gltf.scenes) - 1
     if others:
         which = "the default scene" if gltf.scene is not None else "the first scene, as the file names no default,"
-        document.warn("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
+        document.notes.add("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
     for at, root in enumerate(scene.nodes):
         document.item(gltf.nodes, root, f"scenes[{number}].nodes[{at}]", "node")
     listed = dict.fromkeys(scene.nodes)
     if len(listed) != len(scene.nodes):
-        document.warn("repeated-root", "nodes that the scene lists twice are shown once")
-    return [root for root in listed if not _shown_by_ancestor(document, root, listed, parents)]
+        document.notes.add("repeated-root", "nodes that the scene lists twice are shown once")
+    # glTF allows roots only, but some exporters list the child of a helper node.
+    inner = sum(root in parents for root in listed)
+    if not inner:
+        return list(listed)
+    message = "nodes that the scene lists although they have a parent are shown where it puts them"
+    document.notes.add("not-a-root", message, inner)
+    below: set[int] = set()
+    for index in _descendants(document, [index for index in range(len(gltf.nodes)) if index not in parents]):
+        if index in parents and (parents[index] in listed or parents[index] in below):
+            below.add(index)
+    return [root for root in listed if root not in below]
 
 
-def _shown_by_ancestor(document: Document, root: int, listed: Container[int], parents: dict[int, int]) -> bool:
-    """Tell whether the scene shows `root` already as a descendant of another node that it lists.
-
-    glTF allows roots only, but some exporters list the child of a helper node.
-    """
-    if root not in parents:
-        return False
-    document.warn("not-a-root", "nodes that the scene lists although they have a parent are shown where it puts them")
-    ancestor = root
-    while ancestor in parents:
-        ancestor = parents[ancestor]
-        if ancestor in listed:
-            return True
-    return False
-
-
-def local_transform(document: Document, node: Node, place: str) -> NDArray[np.float64]:
-    """Return the transform of `node` in its parent's frame, float64, shape (4, 4)."""
-    if node.matrix is not None:
+def _local_transforms(document: Document) -> NDArray[np.float64]:
+    """Return the transform of each node of the file in its parent's frame, float64, shape (N, 4, 4)."""
+    nodes = document.gltf.nodes
+    translations = np.array([node.translation or (0.0, 0.0, 0.0) for node in nodes]).reshape(-1, 3)
+    rotations = np.array([node.rotation or (0.0, 0.0, 0.0, 1.0) for node in nodes]).reshape(-1, 4)
+    scales = np.array([node.scale or (1.0, 1.0, 1.0) for node in nodes]).reshape(-1, 3)
+    transforms = compose(document, translations, rotations, scales, "nodes[{}].rotation")
+    for index, node in enumerate(nodes):
+        if node.matrix is None:
+            continue
         if (node.translation, node.rotation, node.scale) != (None, None, None):
-            raise document.error(place, "has a matrix and translation, rotation or scale as well")
+            problem = "has a matrix and translation, rotation or scale as well"
+            raise document.error(f"nodes[{index}]", problem)
         matrix = np.array(node.matrix).reshape(4, 4).T
-        if not np.allclose(matrix[3], (0, 0, 0, 1), rtol=0, atol=1e-6):
-            raise document.error(f"{place}.matrix", "is not affine: its last row must be 0, 0, 0, 1")
-        matrix[3] = (0, 0, 0, 1)
-        return matrix
-    parts = (node.translation or (0.0, 0.0, 0.0), node.rotation or (0.0, 0.0, 0.0, 1.0), node.scale or (1.0, 1.0, 1.0))
-    translation, rotation, scale = (np.array([part]) for part in parts)
-    transform: NDArray[np.float64] = compose(document, translation, rotation, scale, place)[0]
-    return transform
+        if np.abs(matrix[3] - (0, 0, 0, 1)).max() > 1e-6:
+            raise document.error(f"nodes[{index}].matrix", "is not affine: its last row must be 0, 0, 0, 1")
+        transforms[index, :3] = matrix[:3]
+    return transforms
 
 
 def compose(
@@ -155,15 +166,19 @@ def compose(
     scale: NDArray[np.float64],
     place: str,
 ) -> NDArray[np.float64]:
-    """Return the transforms, shape (N, 4, 4), that scale, then rotate by quaternions (x, y, z, w), then translate."""
+    """Return the transforms, shape (N, 4, 4), that scale, then rotate by quaternions (x, y, z, w), then translate.
+
+    `place` is the JSON path of the rotations, with braces for the number of one.
+    """
     with np.errstate(over="ignore", under="ignore"):
         length = np.sqrt((rotation**2).sum(axis=1))
-    wrong = ~((length > 1e-6) & (length < 1e6))
-    if wrong.any():
-        raise document.error(f"{place}.rotation", f"a quaternion of length {length[wrong][0]:g}, it must be 1")
+    wrong = np.flatnonzero(~((length > 1e-6) & (length < 1e6)))
+    if len(wrong):
+        problem = f"a quaternion of length {length[wrong[0]]:g}, it must be 1"
+        raise document.error(place.format(wrong[0]), problem)
     uneven = np.abs(length - 1.0) > 1e-3
     if uneven.any():
-        document.warn("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
+        document.notes.add("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
     x, y, z, w = (rotation / length[:, None]).T
     transforms = np.tile(np.eye(4), (len(length), 1, 1))
     turn = [

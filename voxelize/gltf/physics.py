@@ -96,7 +96,14 @@ class Body(Struct, frozen=True):
     collider: AuthoredCollider | None = None
 
 
-def physics_collider(document: Document, index: int, read_mesh: Callable[[int, str], Surface]) -> Collider | None:
+def read_shapes(document: Document) -> list[Shape]:
+    """Return the file's shapes."""
+    return (read_extension(document, document.gltf, SHAPES, FileShapes, "") or FileShapes()).shapes
+
+
+def physics_collider(
+    document: Document, index: int, shapes: list[Shape], read_mesh: Callable[[int, str], Surface]
+) -> Collider | None:
     """Return what node `index` collides as, in its frame, or None.
 
     Parameters
@@ -105,6 +112,8 @@ def physics_collider(document: Document, index: int, read_mesh: Callable[[int, s
         The open asset.
     index
         Which node.
+    shapes
+        The file's shapes.
     read_mesh
         Reads a mesh by its index, to which a JSON path refers.
     """
@@ -127,8 +136,7 @@ def physics_collider(document: Document, index: int, read_mesh: Callable[[int, s
         return MeshCollider(surface.positions, surface.triangles)
     if geometry.shape is None:
         raise document.error(here, "names neither a shape nor a mesh")
-    shapes = read_extension(document, document.gltf, SHAPES, FileShapes, "") or FileShapes()
-    return _shaped(document, document.item(shapes.shapes, geometry.shape, f"{here}.shape", "shape"), geometry.shape)
+    return _shaped(document, document.item(shapes, geometry.shape, f"{here}.shape", "shape"), geometry.shape)
 
 
 def _shaped(document: Document, shape: Shape, index: int) -> Collider | None:
@@ -159,7 +167,7 @@ def _check_sizes(document: Document, place: str, *sizes: float) -> None:
 
 def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
     if plane.size_x is None or plane.size_z is None:
-        document.warn("endless-plane", "colliders that are planes without end were left out")
+        document.notes.add("endless-plane", "colliders that are planes without end were left out")
         return None
     _check_sizes(document, place, plane.size_x, plane.size_z)
     x, z = plane.size_x / 2, plane.size_z / 2

@@ -25,7 +25,7 @@ def has_area(document: Document, primitive: Primitive) -> bool:
     """Tell whether `primitive` is made of triangles; note that it is left out where it is not."""
     if primitive.mode >= TRIANGLES:
         return True
-    document.warn("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
+    document.notes.add("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
     return False
 
 
@@ -56,7 +56,8 @@ def read_triangles(
             at = int(np.argmax(stored >= vertices))
             problem = f"index {int(stored[at])} at {at} is out of range: there are {vertices} vertices"
             raise document.error(f"{place}.indices", problem)
-        corners = stored.astype(np.int32)
+        # Indices in range read the same as signed numbers of their size.
+        corners = np.ascontiguousarray(stored.view("<i4") if stored.itemsize == 4 else stored, np.int32)
     document.charge(len(corners) * 12, place)
     return _assembled(document, corners, TRIANGLES if attributes.is_compressed else mode)
 
@@ -66,10 +67,12 @@ def _assembled(document: Document, corners: NDArray[np.int32], mode: int) -> NDA
     if mode == TRIANGLES:
         whole = len(corners) // 3
         if whole * 3 != len(corners):
-            document.warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
+            document.notes.add(
+                "incomplete-triangle", "corners after the last whole triangle of a primitive were left out"
+            )
         return corners[: whole * 3].reshape(whole, 3)
     if len(corners) < 3:
-        document.warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
+        document.notes.add("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
         return np.empty((0, 3), np.int32)
     if mode == TRIANGLE_STRIP:
         triangles = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)

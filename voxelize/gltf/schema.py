@@ -143,6 +143,12 @@ class Instances(Struct, frozen=True, kw_only=True):
     attributes: dict[str, Index]
 
 
+class Visibility(Struct, frozen=True, kw_only=True):
+    """KHR_node_visibility: whether a node and what hangs below it are shown."""
+
+    visible: bool = True
+
+
 class Mesh(Named, frozen=True, kw_only=True):
     """Primitives that are placed together."""
 

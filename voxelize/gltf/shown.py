@@ -12,9 +12,9 @@ from voxrt.voxelize.gltf.appearance import Look
 from voxrt.voxelize.gltf.deform import Pose
 from voxrt.voxelize.gltf.extras import node_extras
 from voxrt.voxelize.gltf.instances import read_instances
-from voxrt.voxelize.gltf.materials import NO_MATERIAL, MaterialKey, material_named
+from voxrt.voxelize.gltf.materials import NO_MATERIAL, MaterialKey, material_names
 from voxrt.voxelize.gltf.meshes import read_surface
-from voxrt.voxelize.gltf.physics import physics_collider
+from voxrt.voxelize.gltf.physics import physics_collider, read_shapes
 from voxrt.voxelize.gltf.skins import joint_matrices
 
 if TYPE_CHECKING:
@@ -84,6 +84,8 @@ class Stage:
         self._hierarchy = hierarchy
         self._variant = variant
         self._surfaces: dict[Bend, Surface] = {}
+        self._shapes = read_shapes(document)
+        self._named: dict[str, int] | None = None
 
     def shown(self) -> Iterator[Shown]:
         """Go through what the scene shows, in authored order; meshes without triangles are left out."""
@@ -91,7 +93,7 @@ class Stage:
             authored = node_extras(self._document, node)
             override = self._override(node, authored)
             material = MaterialKey(NO_MATERIAL if override is None else override, bool(authored.voxrt_reflect))
-            collider = physics_collider(self._document, node, self._mesh_as_authored)
+            collider = physics_collider(self._document, node, self._shapes, self._mesh_as_authored)
             frame = self._hierarchy.transforms[node]
             mesh = self._mesh(node, override, authored)
             if mesh is not None:
@@ -103,8 +105,11 @@ class Stage:
                     continue
             elif authored.voxrt_collider is not None:
                 place = f"nodes[{node}].extras.voxrt_collider"
-                raise self._document.error(place, "the node has no mesh", "put the property on the node with the mesh")
+                raise self._document.error(place, "the node shows no triangles", "put it on the node with the mesh")
             if collider is not None:
+                if override is None:
+                    message = "colliders without a mesh or a material got the default one"
+                    self._document.notes.add("default-material", message)
                 yield Shown(node, None, material, None, collider, frame[None])
 
     def surface(self, bend: Bend) -> Surface:
@@ -118,8 +123,9 @@ class Stage:
         nodes, meshes = self._document.gltf.nodes, self._document.gltf.meshes
         plain = []
         for seen in shown:
-            mesh = meshes[seen.mesh[0].mesh].name if seen.mesh else ""
-            plain.append(nodes[seen.node].name or mesh or f"nodes[{seen.node}]")
+            node = nodes[seen.node]
+            name = node.name or (meshes[node.mesh].name if node.mesh is not None else "") or f"nodes[{seen.node}]"
+            plain.append(f"{name} collider" if node.mesh is not None and seen.mesh is None else name)
         repeats = Counter(plain)
         return [
             name if repeats[name] == 1 else f"{name} (nodes[{seen.node}])"
@@ -138,9 +144,16 @@ class Stage:
         return bend, Look(node.mesh, override, bool(authored.voxrt_reflect), self._variant)
 
     def _override(self, index: int, authored: NodeExtras) -> int | None:
-        if authored.voxrt_material is None:
+        wanted = authored.voxrt_material
+        if wanted is None:
             return None
-        return material_named(self._document, authored.voxrt_material, f"nodes[{index}].extras.voxrt_material")
+        if self._named is None:
+            self._named = material_names(self._document)
+        if wanted not in self._named:
+            known = ", ".join(map(repr, list(self._named)[:8])) or "no named materials"
+            place = f"nodes[{index}].extras.voxrt_material"
+            raise self._document.error(place, f"no material {wanted!r} in the file", f"it has {known}")
+        return self._named[wanted]
 
     def _placed(self, index: int, frame: NDArray[np.float64]) -> NDArray[np.float64]:
         instances = read_instances(self._document, index)

@@ -12,16 +12,12 @@ import numpy as np
 from voxrt.voxelize.gltf.accessors import read_floats
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
 
 
-def joint_matrices(
-    document: Document, index: int, transforms: Sequence[NDArray[np.float64]], place: str
-) -> NDArray[np.float64]:
+def joint_matrices(document: Document, index: int, transforms: NDArray[np.float64], place: str) -> NDArray[np.float64]:
     """Return, a joint each, the transform from the bind pose to the scene frame: float64, shape (J, 4, 4).
 
     Parameters
@@ -31,18 +27,16 @@ def joint_matrices(
     index
         Which skin.
     transforms
-        Where the nodes of the file stand, shape (4, 4) each.
+        Where the nodes of the file stand, float64, shape (N, 4, 4).
     place
         The JSON path that refers to the skin.
     """
     skin = document.item(document.gltf.skins, index, place, "skin")
     here = f"skins[{index}]"
     document.charge(len(skin.joints) * 256, here)
-    frames = []
     for at, joint in enumerate(skin.joints):
         document.item(document.gltf.nodes, joint, f"{here}.joints[{at}]", "node")
-        frames.append(transforms[joint])
-    matrices = np.stack(frames)
+    matrices = transforms[skin.joints]
     if skin.inverse_bind_matrices is None:
         return matrices
     bound = read_floats(document, skin.inverse_bind_matrices, f"{here}.inverseBindMatrices", {"MAT4"})

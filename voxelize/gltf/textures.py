@@ -1,23 +1,19 @@
-"""Images and textures of the file, decoded by Pillow.
+"""Images and textures of the file.
 
 Source: Khronos, glTF 2.0 specification, section 3.8: colour profiles and orientation that images carry are ignored.
 """
 
 from __future__ import annotations
 
-import io
-import struct
-import warnings
 from typing import TYPE_CHECKING
-
-import numpy as np
-from PIL import Image
 
 from voxrt.voxelize.gltf.extensions import read_extension
 from voxrt.voxelize.gltf.schema import Sampler, TextureSource
+from voxrt.voxelize.images import decode_image
 from voxrt.voxelize.paint import Texture
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
@@ -25,9 +21,6 @@ if TYPE_CHECKING:
 
 _NEAREST = 9728
 _WRAPS: dict[int, Wrap] = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
-_FORMATS = ("PNG", "JPEG", "WEBP")
-# What Pillow's decoders raise on broken images.
-_BROKEN = (OSError, SyntaxError, ValueError, EOFError, IndexError, struct.error, Image.DecompressionBombError)
 _UNREADABLE = {"KHR_texture_basisu": "KTX2", "MSFT_texture_dds": "DDS", "EXT_texture_avif": "AVIF"}
 
 
@@ -63,7 +56,7 @@ class Textures:
         if source is None:
             kinds = [kind for name, kind in _UNREADABLE.items() if name in texture.extensions]
             what = f"is a {kinds[0]} image alone" if kinds else "has no image"
-            document.warn("texture", f"{here} {what}: its materials took the colour of their factor")
+            document.notes.add("texture", f"{here} {what}: its materials took the colour of their factor")
             return None
         document.item(document.gltf.images, source, f"{here}.source", "image")
         if source not in self._images:
@@ -81,26 +74,10 @@ class Textures:
             data = document.resource(image.uri, f"{here}.uri")
             if data is None:
                 problem = f"no image {image.uri[:60]!r} beside the asset"
-                document.warn("texture", f"{here}: {problem}: its materials took the colour of their factor")
+                document.notes.add("texture", f"{here}: {problem}: its materials took the colour of their factor")
                 return None
         elif image.buffer_view is not None:
             data = document.view(image.buffer_view, f"{here}.bufferView").tobytes()
         else:
             raise document.error(here, "has neither a uri nor a buffer view")
-        return self._decoded(data, here)
-
-    def _decoded(self, data: bytes, place: str) -> NDArray[np.uint8]:
-        document = self._document
-        try:
-            with warnings.catch_warnings():
-                # Pillow's limit on pixels is ours to keep, by the size of the asset.
-                warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-                with Image.open(io.BytesIO(data), formats=_FORMATS) as opened:
-                    document.charge(opened.width * opened.height * 8, place)
-                    if opened.mode.startswith("I"):  # 16 bits of grey, which Pillow would clip
-                        grey = (np.asarray(opened).astype(np.uint32) >> 8).astype(np.uint8)
-                        return np.dstack([grey, grey, grey, np.full_like(grey, 255)])
-                    return np.array(opened.convert("RGBA"))
-        except _BROKEN as error:
-            problem = f"the image cannot be decoded ({type(error).__name__})"
-            raise document.error(place, problem, "save the image again as PNG or JPEG") from error
+        return decode_image(data, document.path, here)

@@ -56,7 +56,7 @@ def load_scene_toml(path: str | Path) -> Scene:
 class _Builder:
     def __init__(self, checked: Checked) -> None:
         self._checked = checked
-        self._assets: dict[tuple[str, str | None, float | None], Scene] = {}
+        self._assets: dict[tuple[object, ...], Scene] = {}
 
     def scene(self) -> Scene:
         checked, values = self._checked, self._checked.values
@@ -186,13 +186,15 @@ class _Builder:
         return reduce(Solid.__or__, parts)
 
     def _asset(self, asset: Asset, where: KeyPath) -> Scene:
-        key = (asset.file, asset.up, asset.unit)
+        key = (asset.file, asset.up, asset.unit, asset.time, tuple(asset.variants))
         if key not in self._assets:
             path = self._checked.path.parent / asset.file
             if path.suffix.lower() == ".toml":
                 raise self._checked.error((*where, "file"), "a scene file holds no other", "copy its objects")
             try:
-                self._assets[key] = load(path, up=asset.up, unit=asset.unit)
+                self._assets[key] = load(
+                    path, up=asset.up, unit=asset.unit, time=asset.time, variants=tuple(asset.variants)
+                )
             except AssetError as error:
                 if error.place:
                     raise

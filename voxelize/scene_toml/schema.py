@@ -92,6 +92,8 @@ class Asset(_Table, frozen=True, kw_only=True):
         Its path, from this file's folder.
     up, unit
         For formats that do not say: the up axis, and metres per unit.
+    time, variants
+        For formats that have them: seconds of its animation, and what to show of what it has in several ways.
     materials
         Its material names to those of this file. One of a name that this file declares is that one anyway.
     """
@@ -99,6 +101,8 @@ class Asset(_Table, frozen=True, kw_only=True):
     file: str
     up: Axis | None = None
     unit: Length | None = None
+    time: Number | None = None
+    variants: list[str] = []
     materials: dict[str, str] = {}
 
 

@@ -50,6 +50,44 @@ constexpr int column_bit(int x, int y) { return kSpread2[x & 7] | kSpread2[y & 7
 constexpr int column_x(int bit) { return (bit & 1) | (bit >> 1 & 2) | (bit >> 2 & 4); }
 constexpr int column_y(int bit) { return column_x(bit >> 1); }
 
+/// The other way to hold 512 voxels: a byte a column, its bits along z. An interval of a column is one operation.
+using Columns = std::array<uint8_t, 64>;
+
+/// The voxels from … to of a column.
+constexpr uint8_t column_interval(int from, int to) { return uint8_t(0xFF << from & 0xFF >> (7 - to)); }
+
+/// Exchanges the blocks of `size` bits off the diagonal, in 8x8 bits: one step of a transposition (Warren, "Hacker's
+/// Delight", 7-3).
+constexpr uint64_t exchange_blocks(uint64_t v, int distance, uint64_t mask) {
+    const uint64_t t = (v ^ v >> distance) & mask;
+    return v ^ t ^ t << distance;
+}
+
+inline Slices slices_of(const Columns& columns) {
+    // Eight columns make 8x8 bits, transposed to eight columns of each slice; then 8x8 bytes are transposed likewise.
+    Slices s;
+    for (int group = 0; group < 8; ++group) {
+        uint64_t v = 0;
+        for (int i = 0; i < 8; ++i)
+            v |= uint64_t{columns[8 * group + i]} << 8 * i;
+        v = exchange_blocks(v, 7, 0x00AA'00AA'00AA'00AA);
+        v = exchange_blocks(v, 14, 0x0000'CCCC'0000'CCCC);
+        s[group] = exchange_blocks(v, 28, 0x0000'0000'F0F0'F0F0);
+    }
+    auto exchange = [&s](int a, int b, int distance, uint64_t mask) {
+        const uint64_t t = (s[a] >> distance ^ s[b]) & mask;
+        s[a] ^= t << distance;
+        s[b] ^= t;
+    };
+    for (int i = 0; i < 4; ++i)
+        exchange(i, i + 4, 32, 0x0000'0000'FFFF'FFFF);
+    for (int i : {0, 1, 4, 5})
+        exchange(i, i + 2, 16, 0x0000'FFFF'0000'FFFF);
+    for (int i : {0, 2, 4, 6})
+        exchange(i, i + 1, 8, 0x00FF'00FF'00FF'00FF);
+    return s;
+}
+
 /// Slice order to Morton order: word {z2,y2,x2}, bit {z1,y1,x1,z0,y0,x0}.
 ///
 /// A nibble of a slice is a square of 2x2 columns. The nibbles of slices z0 = 0 and 1 alternate; 16 bits of a slice,

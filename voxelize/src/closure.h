@@ -24,6 +24,12 @@ inline uint64_t vertex_key(const Vertex& v) {
     return mix(mix(xy + 0x9E37'79B9'7F4A'7C15) + uint32_t(v.z));
 }
 
+/// The same for a position that is not snapped.
+inline uint64_t point_key(double x, double y, double z) {
+    return mix(mix(mix(std::bit_cast<uint64_t>(x) + 0x9E37'79B9'7F4A'7C15) + std::bit_cast<uint64_t>(y)) +
+               std::bit_cast<uint64_t>(z));
+}
+
 /// Antisymmetric in the vertices' keys.
 constexpr uint64_t edge_key(uint64_t a, uint64_t b) { return mix(a + std::rotl(b, 23)) - mix(b + std::rotl(a, 23)); }
 
@@ -31,8 +37,8 @@ constexpr uint64_t boundary_key(uint64_t a, uint64_t b, uint64_t c) {
     return edge_key(a, b) + edge_key(b, c) + edge_key(c, a);
 }
 
-/// Six times the signed volume between a triangle and the origin `o`, in (1/4096 voxel)^3, rounded.
-inline double volume6(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& o) {
+/// Six times the signed volume between a triangle and the origin `o`.
+template <class P> double volume6(const P& a, const P& b, const P& c, const P& o) {
     const double ax = double(a.x) - o.x, ay = double(a.y) - o.y, az = double(a.z) - o.z;
     const double bx = double(b.x) - o.x, by = double(b.y) - o.y, bz = double(b.z) - o.z;
     const double cx = double(c.x) - o.x, cy = double(c.y) - o.y, cz = double(c.z) - o.z;

@@ -14,6 +14,7 @@ namespace voxrt {
 inline constexpr int kFractionBits = 12;
 inline constexpr int64_t kUnit = int64_t{1} << kFractionBits;
 inline constexpr int64_t kReach = int64_t{1} << 30;
+inline constexpr int64_t kTinyExtent = int64_t{1} << 15;
 inline constexpr int64_t kNarrowExtent = int64_t{1} << 19;
 
 using int128 = __int128;

@@ -23,9 +23,10 @@ using Cells = std::array<uint8_t, kBrickVoxels>;
 inline constexpr uint32_t kNone = 0xFFFF'FFFF;
 
 struct ShellBrick {
-    Slices shell{}, enters{}, leaves{};
+    Columns shell{}, enters{}, leaves{};
     uint32_t cells = kNone; // row of materials where the shell has several
     uint8_t material = 0;   // the shell's only material, else 0
+    bool crossed = false;   // enters or leaves may hold something
     bool has_spill = false; // crossings of this brick are in the layer's list too
 };
 
@@ -61,35 +62,36 @@ public:
     /// Sink of cover_triangle.
     void cover(int x, int y, int lo, int hi) {
         const auto [column, bit] = locate(x, y);
-        const uint64_t one = uint64_t{1} << bit;
         for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
             ShellBrick& brick = at(column, k);
             const int from = std::max(lo - k * kBrickSide, 0), to = std::min(hi - k * kBrickSide, kBrickSide - 1);
-            if (brick.material == material_ || (brick.material == 0 && brick.cells == kNone)) {
-                brick.material = material_;
-                for (int z = from; z <= to; ++z)
-                    brick.shell[z] |= one;
-            } else {
-                cover_mixed(brick, from, to, bit);
+            const uint8_t interval = column_interval(from, to);
+            if (brick.material != material_) {
+                if (brick.material != 0 || brick.cells != kNone)
+                    cover_mixed(brick, interval, bit);
+                else
+                    brick.material = material_;
             }
+            brick.shell[bit] |= interval;
         }
     }
 
     /// Sink of cover_triangle.
     void cross(int x, int y, int z, bool enters) {
         const auto [column, bit] = locate(x, y);
-        const uint64_t one = uint64_t{1} << bit;
         ShellBrick& brick = at(column, z >> kBrickBits);
         const int slice = z & (kBrickSide - 1);
-        Slices& same = enters ? brick.enters : brick.leaves;
-        Slices& opposite = enters ? brick.leaves : brick.enters;
-        if (opposite[slice] & one) {
-            opposite[slice] ^= one;
-        } else if (same[slice] & one) {
+        const auto one = uint8_t(1 << slice);
+        Columns& same = enters ? brick.enters : brick.leaves;
+        Columns& opposite = enters ? brick.leaves : brick.enters;
+        brick.crossed = true;
+        if (opposite[bit] & one) {
+            opposite[bit] ^= one;
+        } else if (same[bit] & one) {
             brick.has_spill = true;
             spills_.push_back({uint32_t(&brick - bricks_.data()), uint8_t(slice), uint8_t(bit), enters});
         } else {
-            same[slice] |= one;
+            same[bit] |= one;
         }
     }
 
@@ -125,21 +127,18 @@ private:
     }
 
     /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.
-    void cover_mixed(ShellBrick& brick, int from, int to, int bit) {
+    void cover_mixed(ShellBrick& brick, uint8_t interval, int bit) {
         if (brick.cells == kNone) {
             brick.cells = uint32_t(cells_.size());
             Cells& row = cells_.emplace_back();
             for (int z = 0; z < kBrickSide; ++z)
                 for (int i = 0; i < 64; ++i)
-                    row[z * 64 + i] = brick.shell[z] >> i & 1 ? brick.material : 0;
+                    row[z * 64 + i] = brick.shell[i] >> z & 1 ? brick.material : 0;
             brick.material = 0;
         }
         Cells& row = cells_[brick.cells];
-        for (int z = from; z <= to; ++z) {
-            if (row[z * 64 + bit] == 0)
-                row[z * 64 + bit] = material_;
-            brick.shell[z] |= uint64_t{1} << bit;
-        }
+        for (uint32_t fresh = interval & ~uint32_t{brick.shell[bit]}; fresh != 0; fresh &= fresh - 1)
+            row[std::countr_zero(fresh) * 64 + bit] = material_;
     }
 
     int side_, height_;

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace voxrt {
 namespace {
 
 constexpr double kSheetShare = 0.6; // caps larger than this part of the surface: a sheet (a bowl's are one half)
 constexpr double kEnclosed = 0.75;  // sheets enclose what sees them with at least this winding number
-constexpr int kProbes = 16;         // a side, where sheets are asked
+constexpr int kProbes = 8;          // a side, where sheets are asked
+constexpr uint32_t kUnnumbered = 0xFFFF'FFFF;
 
 class Groups {
 public:
@@ -29,33 +32,28 @@ private:
     std::vector<uint32_t> parent_;
 };
 
-struct BoundaryEdge {
-    uint32_t from, to;
-    int times; // how much oftener it is walked this way than back
-};
-
-Point in_voxels(const Vertex& v) { return {double(v.x) / kUnit, double(v.y) / kUnit, double(v.z) / kUnit}; }
-
-double area(const Vertex& a, const Vertex& b, const Vertex& c) {
-    const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
-    const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+double area(const Point& a, const Point& b, const Point& c) {
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
+    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
     return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx) / 2;
 }
 
 /// For each vertex the first one at the same place.
-std::vector<uint32_t> weld(const std::vector<Vertex>& vertices) {
-    std::vector<uint32_t> order(vertices.size()), first(vertices.size());
+std::vector<uint32_t> weld(const std::vector<Point>& points) {
+    std::vector<uint32_t> order(points.size()), first(points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        const Vertex &p = vertices[a], &q = vertices[b];
-        return std::array<int64_t, 4>{p.x, p.y, p.z, a} < std::array<int64_t, 4>{q.x, q.y, q.z, b};
+        const Point &p = points[a], &q = points[b];
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     });
-    for (size_t i = 0; i < order.size(); ++i)
-        first[order[i]] = i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? first[order[i - 1]] : order[i];
+    for (size_t i = 0; i < order.size(); ++i) {
+        const bool again = i > 0 && points[order[i]] == points[order[i - 1]];
+        first[order[i]] = again ? first[order[i - 1]] : order[i];
+    }
     return first;
 }
 
-std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<uint32_t>& welded) {
+std::vector<Boundary::Edge> boundary_of(const MeshView& mesh, const std::vector<uint32_t>& welded) {
     struct Edge {
         uint32_t low, high;
         int way;
@@ -70,16 +68,16 @@ std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<ui
         }
     std::sort(edges.begin(), edges.end(),
               [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
-    std::vector<BoundaryEdge> boundary;
+    std::vector<Boundary::Edge> boundary;
     for (size_t i = 0; i < edges.size();) {
         int sum = 0;
         size_t j = i;
         for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
             sum += edges[j].way;
         if (sum > 0)
-            boundary.push_back({edges[i].low, edges[i].high, sum});
+            boundary.push_back({edges[i].low, edges[i].high, sum, 0});
         else if (sum < 0)
-            boundary.push_back({edges[i].high, edges[i].low, -sum});
+            boundary.push_back({edges[i].high, edges[i].low, -sum, 0});
         i = j;
     }
     return boundary;
@@ -93,7 +91,7 @@ double highest_winding(const std::vector<HoleWinding::Cap>& caps) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         }
-    const HoleWinding winding(caps);
+    const HoleWinding winding(caps, std::numeric_limits<double>::infinity());
     double highest = 0;
     for (int i = 0; i < kProbes * kProbes * kProbes; ++i) {
         const double u = (i % kProbes + 0.5) / kProbes, v = (i / kProbes % kProbes + 0.5) / kProbes;
@@ -106,74 +104,63 @@ double highest_winding(const std::vector<HoleWinding::Cap>& caps) {
 
 } // namespace
 
-OpenSurface open_surface(const MeshView& mesh, const std::vector<Vertex>& vertices) {
-    const std::vector<uint32_t> welded = weld(vertices);
-    const std::vector<BoundaryEdge> boundary = boundary_of(mesh, welded);
+Boundary find_boundary(const MeshView& mesh, const std::vector<Point>& points) {
+    const std::vector<uint32_t> welded = weld(points);
+    std::vector<Boundary::Edge> edges = boundary_of(mesh, welded);
 
-    Groups pieces(vertices.size()), holes(vertices.size());
+    Groups pieces(points.size()), holes(points.size());
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         pieces.join(welded[mesh.triangles[3 * t]], welded[mesh.triangles[3 * t + 1]]);
         pieces.join(welded[mesh.triangles[3 * t]], welded[mesh.triangles[3 * t + 2]]);
     }
-    struct Mean {
-        int64_t x = 0, y = 0, z = 0, count = 0;
-    };
-    for (const BoundaryEdge& edge : boundary)
+    for (const Boundary::Edge& edge : edges)
         holes.join(edge.from, edge.to);
-    std::vector<Mean> means(vertices.size());
-    for (const BoundaryEdge& edge : boundary)
-        for (uint32_t v : {edge.from, edge.to}) {
-            Mean& mean = means[holes.of(v)];
-            mean.x += vertices[v].x;
-            mean.y += vertices[v].y;
-            mean.z += vertices[v].z;
-            ++mean.count;
+    std::vector<uint32_t> numbers(points.size(), kUnnumbered);
+    Boundary boundary;
+    std::vector<Point> means;
+    std::vector<double> ends;
+    for (Boundary::Edge& edge : edges) {
+        uint32_t& number = numbers[holes.of(edge.from)];
+        if (number == kUnnumbered) {
+            number = boundary.holes++;
+            means.push_back({0, 0, 0});
+            ends.push_back(0);
         }
-    auto apex = [&](uint32_t v) {
-        const Mean& m = means[holes.of(v)];
-        return Vertex{int32_t(floor_div(m.x, m.count)), int32_t(floor_div(m.y, m.count)),
-                      int32_t(floor_div(m.z, m.count))};
+        edge.hole = number;
+        for (const Point& p : {points[edge.from], points[edge.to]})
+            means[number] = {means[number].x + p.x, means[number].y + p.y, means[number].z + p.z};
+        ends[number] += 2;
+    }
+    auto cap_of = [&](const Boundary::Edge& edge) {
+        const Point& sum = means[edge.hole];
+        const double n = ends[edge.hole];
+        return HoleWinding::Cap{{points[edge.to], points[edge.from], {sum.x / n, sum.y / n, sum.z / n}}, edge.times};
     };
 
-    std::vector<double> own(vertices.size(), 0), capped(vertices.size(), 0);
+    std::vector<double> own(points.size(), 0), capped(points.size(), 0);
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         const int32_t* corner = mesh.triangles.data() + 3 * t;
-        own[pieces.of(welded[corner[0]])] += area(vertices[corner[0]], vertices[corner[1]], vertices[corner[2]]);
+        own[pieces.of(welded[corner[0]])] += area(points[corner[0]], points[corner[1]], points[corner[2]]);
     }
-    for (const BoundaryEdge& edge : boundary)
-        capped[pieces.of(edge.from)] += edge.times * area(vertices[edge.to], vertices[edge.from], apex(edge.from));
+    for (const Boundary::Edge& edge : edges) {
+        const HoleWinding::Cap cap = cap_of(edge);
+        capped[pieces.of(edge.from)] += edge.times * area(cap.corners[0], cap.corners[1], cap.corners[2]);
+    }
 
-    // A cap closes its edge: it walks it backwards. Its solid angle is what the sheet itself would show, negated.
+    // A sheet's caps show what the sheet itself would, negated.
     auto is_sheet = [&](uint32_t vertex) { return capped[pieces.of(vertex)] > kSheetShare * own[pieces.of(vertex)]; };
-    auto cap_of = [&](const BoundaryEdge& edge) {
-        return HoleWinding::Cap{
-            {in_voxels(vertices[edge.to]), in_voxels(vertices[edge.from]), in_voxels(apex(edge.from))}, edge.times};
-    };
-    std::vector<HoleWinding::Cap> all;
     std::vector<HoleWinding::Cap> of_sheets;
-    for (const BoundaryEdge& edge : boundary) {
-        all.push_back(cap_of(edge));
+    for (const Boundary::Edge& edge : edges)
         if (is_sheet(edge.from))
-            of_sheets.push_back(all.back());
-    }
-    OpenSurface result;
-    const bool drop_sheets = !of_sheets.empty() && highest_winding(of_sheets) < kEnclosed;
-    if (drop_sheets) {
-        result.sheet.resize(mesh.triangle_count());
+            of_sheets.push_back(cap_of(edge));
+    if (!of_sheets.empty() && highest_winding(of_sheets) < kEnclosed) {
+        boundary.sheet.resize(mesh.triangle_count());
         for (size_t t = 0; t < mesh.triangle_count(); ++t)
-            result.sheet[t] = is_sheet(welded[mesh.triangles[3 * t]]);
-        all.clear();
+            boundary.sheet[t] = is_sheet(welded[mesh.triangles[3 * t]]);
+        std::erase_if(edges, [&](const Boundary::Edge& edge) { return is_sheet(edge.from); });
     }
-    for (const BoundaryEdge& edge : boundary) {
-        if (drop_sheets && is_sheet(edge.from))
-            continue;
-        for (int i = 0; i < edge.times; ++i)
-            result.caps.push_back({vertices[edge.to], vertices[edge.from], apex(edge.from)});
-        if (drop_sheets)
-            all.push_back(cap_of(edge));
-    }
-    result.holes = HoleWinding(std::move(all));
-    return result;
+    boundary.edges = std::move(edges);
+    return boundary;
 }
 
 } // namespace voxrt

@@ -30,8 +30,8 @@ public:
             const int column = int(place) / layer.height(), k = int(place) % layer.height();
             const ShellBrick& brick = *layer.find(column, k);
             const Cells* cells = brick.cells == kNone ? nullptr : &layer.cells(brick.cells);
-            if (!is_empty(brick.shell))
-                result.voxels += tile.claim(column, k, brick.shell, brick.material, cells);
+            if (brick.material != 0 || cells != nullptr)
+                result.voxels += tile.claim(column, k, slices_of(brick.shell), brick.material, cells);
         }
         return result;
     }
@@ -74,12 +74,23 @@ private:
         std::sort(spills_.begin(), spills_.end(), [](const Spill& a, const Spill& b) { return a.brick < b.brick; });
     }
 
+    /// A brick's crossings slice by slice.
+    struct Crossings {
+        explicit Crossings(const ShellBrick& brick) {
+            if (brick.crossed) {
+                enters = slices_of(brick.enters);
+                leaves = slices_of(brick.leaves);
+            }
+        }
+        Slices enters{}, leaves{};
+    };
+
     /// Adds a slice's crossings to the running winding numbers.
-    void advance(ColumnWinding& winding, const ObjectLayer& layer, const ShellBrick& brick, int z) {
-        if (brick.has_spill)
-            add_spills(winding, layer.index_of(brick), z);
-        if ((brick.enters[z] | brick.leaves[z]) != 0)
-            winding.add(brick.enters[z], brick.leaves[z]);
+    void advance(ColumnWinding& winding, const Crossings& crossings, uint32_t brick, bool has_spill, int z) {
+        if (has_spill)
+            add_spills(winding, brick, z);
+        if ((crossings.enters[z] | crossings.leaves[z]) != 0)
+            winding.add(crossings.enters[z], crossings.leaves[z]);
     }
 
     void sweep(TileVoxels& tile, ObjectLayer& layer, int column, int k, int highest, uint8_t interior, Claim& result) {
@@ -94,11 +105,13 @@ private:
                 continue;
             }
             Slices within{};
+            const Crossings crossings(*brick);
+            const uint32_t index = layer.index_of(*brick);
             for (int z = 0; z < slices; ++z) {
-                advance(winding, layer, *brick, z);
+                advance(winding, crossings, index, brick->has_spill, z);
                 within[z] = winding.inside();
             }
-            claim_brick(tile, layer, column, k, *brick, within, interior, result);
+            claim_brick(tile, layer, column, k, *brick, slices_of(brick->shell), within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
@@ -158,10 +171,14 @@ private:
             const ShellBrick* found = layer.find(column, k);
             const ShellBrick& brick = found != nullptr ? *found : nothing;
             const int value = settled_[size_t(column) * layer.height() + k];
+            if (found == nullptr && value == 0 && winding.inside() == 0)
+                continue;
             Slices within{};
+            const Slices shell = slices_of(brick.shell);
+            const Crossings crossings(brick);
             for (int z = 0; z < kBrickSide; ++z) {
                 if (found != nullptr)
-                    advance(winding, layer, brick, z);
+                    advance(winding, crossings, layer.index_of(brick), brick.has_spill, z);
                 const int at = k * kBrickSide + z;
                 if (at < box.low[2] || at > std::min(box.high[2], w.top))
                     continue;
@@ -169,7 +186,7 @@ private:
                     within[z] = winding.differs(value) & columns;
                     continue;
                 }
-                for (uint64_t left = columns & ~brick.shell[z]; left != 0; left &= left - 1) {
+                for (uint64_t left = columns & ~shell[z]; left != 0; left &= left - 1) {
                     const int bit = std::countr_zero(left);
                     constexpr double sample = 0.5 + 1.0 / 8192;
                     const double seen =
@@ -178,19 +195,19 @@ private:
                         within[z] |= uint64_t{1} << bit;
                 }
             }
-            if (is_full(within) && is_empty(brick.shell))
+            if (is_full(within) && is_empty(shell))
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
             else
-                claim_brick(tile, layer, column, k, brick, within, interior, result);
+                claim_brick(tile, layer, column, k, brick, shell, within, interior, result);
         }
     }
 
     void claim_brick(TileVoxels& tile, ObjectLayer& layer, int column, int k, const ShellBrick& brick,
-                     const Slices& within, uint8_t interior, Claim& result) {
+                     const Slices& shell, const Slices& within, uint8_t interior, Claim& result) {
         Slices mask, hidden;
         for (int z = 0; z < kBrickSide; ++z) {
-            mask[z] = brick.shell[z] | within[z];
-            hidden[z] = within[z] & ~brick.shell[z];
+            mask[z] = shell[z] | within[z];
+            hidden[z] = within[z] & ~shell[z];
         }
         if (is_empty(mask))
             return;
@@ -204,7 +221,7 @@ private:
             for (int bit = 0; bit < 64; ++bit) {
                 const int i = z * 64 + bit;
                 const uint8_t own = brick.cells == kNone ? brick.material : layer.cells(brick.cells)[i];
-                cells[i] = brick.shell[z] >> bit & 1 ? own : hidden[z] >> bit & 1 ? interior : 0;
+                cells[i] = shell[z] >> bit & 1 ? own : hidden[z] >> bit & 1 ? interior : 0;
             }
         result.voxels += tile.claim(column, k, mask, 0, &cells);
     }

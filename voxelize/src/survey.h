@@ -1,23 +1,18 @@
-// First pass over the parts: vertices snapped, closure tested, triangles counted into tiles.
+// First pass over the parts: vertices snapped, closure tested, triangles listed by tile.
+//
+// A part that few tiles need, or that has few triangles, is listed as a whole: its tiles snap its vertices themselves.
+// What instances of one mesh have in common is found once, so that millions of instanced triangles cost nothing here.
+//
+// Bound: 30 ns a triangle, in parallel; the listing's counting sort, 5 ns an item, is serial.
 #pragma once
 
-#include "closure.h"
 #include "open_surface.h"
 #include "parallel.h"
-#include "parts.h"
-#include "triangle_coverage.h"
+#include "tiling.h"
 
 #include <memory>
 
 namespace voxrt {
-
-inline constexpr uint32_t kWhole = 0xFFFF'FFFF;
-
-/// One entry of a tile: a triangle of a part, or the part as a whole. Triangles are followed by the caps of an open
-/// part, and these by one number that stands for nothing: it brings the tile to look inside.
-struct Item {
-    uint32_t part, triangle;
-};
 
 /// Voxels that a part may cover or enclose, inclusive.
 struct VoxelBox {

@@ -33,13 +33,34 @@ struct Window {
 
 namespace coverage {
 
+/// floor(n / divisor) for n >= -divisor. int64: n < 2^49 and divisor < 2^33, so that float64 errs by less than half
+/// of what parts n / divisor from the next integer.
+template <typename Wide> class Divisor {
+public:
+    explicit Divisor(Wide divisor) : divisor_(divisor) {}
+    int floor(Wide n) const { return static_cast<int>(floor_div<Wide>(n, divisor_)); }
+
+private:
+    Wide divisor_;
+};
+template <> class Divisor<int64_t> {
+public:
+    explicit Divisor(int64_t divisor) : reciprocal_(1.0 / static_cast<double>(divisor)) {}
+    int floor(int64_t n) const { return static_cast<int>((static_cast<double>(n) + 0.5) * reciprocal_ + 1.0) - 1; }
+
+private:
+    double reciprocal_;
+};
+
 /// Reach of a triangle inside consecutive slabs, as covered voxel indices.
 struct Reach {
     int lo[kTileSide], hi[kTileSide];
 
     void clear(int count) {
-        std::fill_n(lo, count, INT_MAX);
-        std::fill_n(hi, count, INT_MIN);
+        for (int i = 0; i < count; ++i) {
+            lo[i] = INT_MAX;
+            hi[i] = INT_MIN;
+        }
     }
     void extend(int slab, int low, int high) {
         lo[slab] = std::min(lo[slab], low);
@@ -57,40 +78,44 @@ template <typename Wide> void extend_vertex(Reach& reach, int first, int last, W
         reach.extend(b - first, low, high);
 }
 
-/// Adds the points where the edge (p0, q0) … (p1, q1) passes the planes between the slabs first … last. q >= 0.
-template <typename Wide> void extend_edge(Reach& reach, int first, int last, Wide p0, Wide q0, Wide p1, Wide q1) {
-    if (p0 > p1) {
-        std::swap(p0, p1);
-        std::swap(q0, q1);
-    }
-    const int from = std::max(voxel_floor(static_cast<int64_t>(p0)) + 1, first);
-    const int to = std::min(voxel_below(static_cast<int64_t>(p1)), last + 1);
-    if (from > to)
-        return;
-    const Wide rise = q1 - q0, run = p1 - p0, unit = run * kUnit;
-    const Wide start = q0 * run + rise * (from * static_cast<Wide>(kUnit) - p0);
-    Wide whole = start / unit, part = start % unit;
-    Wide step = 0, step_part = 0;
-    if (from < to) {
-        step = floor_div<Wide>(rise * kUnit, unit);
-        step_part = rise * kUnit - step * unit;
-    }
-    for (int plane = from;; ++plane) {
-        const int low = static_cast<int>(whole), high = low - (part == 0 ? 1 : 0);
-        if (plane > first)
-            reach.extend(plane - 1 - first, low, high);
-        if (plane <= last)
-            reach.extend(plane - first, low, high);
-        if (plane == to)
-            return;
-        whole += step;
-        part += step_part;
-        if (part >= unit) {
-            part -= unit;
-            ++whole;
+/// One edge, walked upwards along p: where it passes planes between slabs, and the sample lines within them.
+template <typename Wide> class EdgeWalk {
+public:
+    EdgeWalk(Wide p0, Wide p1) : p0_(p0), run_(p1 - p0), planes_(run_ * kUnit), samples_(2 * run_ * kUnit) {}
+
+    /// Adds the points where coordinate q (q0 … q0 + rise) passes the planes between the slabs first … last. q >= 0.
+    void extend(Reach& reach, int first, int last, Wide q0, Wide rise) const {
+        const int from = std::max(voxel_floor(static_cast<int64_t>(p0_)) + 1, first);
+        const int to = std::min(voxel_below(static_cast<int64_t>(p0_ + run_)), last + 1);
+        Wide at = q0 * run_ + rise * (from * static_cast<Wide>(kUnit) - p0_);
+        for (int plane = from; plane <= to; ++plane, at += rise * kUnit) {
+            const int low = planes_.floor(at), high = planes_.floor(at - 1);
+            if (plane > first)
+                reach.extend(plane - 1 - first, low, high);
+            if (plane <= last)
+                reach.extend(plane - first, low, high);
         }
     }
-}
+
+    /// Adds, for the rows first … last whose sample line the edge passes, the first column whose sample lies beyond.
+    void cross(Reach& ends, int first, int last, Wide q0, Wide rise) const {
+        const int from = std::max(line_above(2 * p0_), first), to = std::min(line_above(2 * (p0_ + run_)) - 1, last);
+        const Wide start = 2 * q0 * run_ - (kUnit + 1) * run_ - 2 * rise * p0_ + rise * (kUnit + 1);
+        for (int row = from; row <= to; ++row) {
+            const int end = samples_.floor(start + rise * (2 * kUnit * static_cast<Wide>(row))) + 1;
+            ends.extend(row - first, end, end);
+        }
+    }
+
+private:
+    /// The first row whose sample line lies above a coordinate in 1/8192 voxel (never on it: lines are odd).
+    static int line_above(Wide doubled) {
+        return static_cast<int>((static_cast<int64_t>(doubled) + kUnit - 1) >> (kFractionBits + 1));
+    }
+
+    Wide p0_, run_;
+    Divisor<Wide> planes_, samples_;
+};
 
 /// Columns first … last whose sample rays the triangle crosses in a row of voxels.
 template <typename Wide> void crossed_columns(const Wide* x, const Wide* y, int row, int& first, int& last) {
@@ -141,18 +166,80 @@ template <typename Wide> struct Local {
     Wide normal_z() const { return (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]); }
 };
 
+/// The triangle's reach along q in the slabs first … last along p.
 template <typename Wide> void reach_of(Reach& reach, int first, int last, const Wide* p, const Wide* q) {
     reach.clear(last - first + 1);
-    for (int i = 0; i < 3; ++i)
-        extend_vertex<Wide>(reach, first, last, p[i], q[i]);
-    if (first == last && voxel_floor(static_cast<int64_t>(std::min({p[0], p[1], p[2]}))) >= first &&
-        voxel_below(static_cast<int64_t>(std::max({p[0], p[1], p[2]}))) <= last)
-        return;
     for (int i = 0; i < 3; ++i) {
-        const int j = i == 2 ? 0 : i + 1;
-        extend_edge<Wide>(reach, first, last, p[i], q[i], p[j], q[j]);
+        extend_vertex<Wide>(reach, first, last, p[i], q[i]);
+        int a = i, b = i == 2 ? 0 : i + 1;
+        if (p[a] == p[b])
+            continue;
+        if (p[a] > p[b])
+            std::swap(a, b);
+        EdgeWalk<Wide>(p[a], p[b]).extend(reach, first, last, q[a], q[b] - q[a]);
     }
 }
+
+/// The voxels of a column that a plane passes, walked along a row: exact, by remainders.
+///
+/// The plane of normal n (n.z > 0) lies above a voxel's bottom corner and below its top corner where
+/// floor(below / unit) <= z <= floor((below + spread - 1) / unit); `below` falls by n.x * kUnit a column.
+template <typename Wide> class PlaneWalk {
+public:
+    PlaneWalk(Wide nx, Wide unit, Wide spread) : unit_(unit), spread_(spread) {
+        step_ = floor_div<Wide>(-nx * kUnit, unit);
+        step_part_ = -nx * kUnit - step_ * unit;
+    }
+    void start(Wide below) {
+        low_ = floor_div<Wide>(below, unit_);
+        low_part_ = below - low_ * unit_;
+        const Wide above = low_part_ + spread_ - 1;
+        const Wide more = floor_div<Wide>(above, unit_);
+        high_ = low_ + more;
+        high_part_ = above - more * unit_;
+    }
+    /// Narrows lo … hi to what the plane passes. Far from the triangle the plane leaves the range of int.
+    void clip(int& lo, int& hi) const {
+        if (low_ > lo)
+            lo = low_ > hi ? hi + 1 : static_cast<int>(low_);
+        if (high_ < hi)
+            hi = high_ < lo ? lo - 1 : static_cast<int>(high_);
+    }
+    void next() {
+        advance(low_, low_part_);
+        advance(high_, high_part_);
+    }
+
+private:
+    void advance(Wide& whole, Wide& part) const {
+        part += step_part_;
+        const bool carry = part >= unit_;
+        whole += step_ + carry;
+        part -= carry ? unit_ : 0;
+    }
+    Wide unit_, spread_, step_, step_part_;
+    Wide low_ = 0, low_part_ = 0, high_ = 0, high_part_ = 0;
+};
+
+/// The same by float64 reciprocal, for triangles up to kTinyExtent wide: below < 2^49, so that float64 errs by less
+/// than half of what parts a quotient from the next integer. Quotients below 0 come out below 1, and need no more: lo
+/// >= 0.
+class TinyPlaneWalk {
+public:
+    TinyPlaneWalk(int64_t nx, int64_t unit, int64_t spread)
+        : reciprocal_(1.0 / double(unit)), step_(double(nx * kUnit)), spread_(double(spread - 1)) {}
+    void start(int64_t below) { below_ = double(below) + 0.5; }
+    void clip(int& lo, int& hi) const {
+        const auto low = static_cast<int64_t>(below_ * reciprocal_);
+        const auto high = static_cast<int64_t>((below_ + spread_) * reciprocal_ + 1.0) - 1;
+        lo = static_cast<int>(std::max<int64_t>(lo, std::min<int64_t>(low, INT_MAX)));
+        hi = static_cast<int>(std::min<int64_t>(hi, std::max<int64_t>(high, -1)));
+    }
+    void next() { below_ -= step_; }
+
+private:
+    double reciprocal_, step_, spread_, below_ = 0;
+};
 
 /// The layer behind a triangle that lies in plane `plane`, clamped into 0 … top; -1 where the plane is outside.
 inline int layer_behind(int plane, bool facing_up, int top) {
@@ -209,7 +296,8 @@ void cover_flat(const Local<Wide>& t, const Window& w, bool inverted, Sink& sink
     }
 }
 
-template <typename Wide, bool Cross, class Sink> void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
+template <typename Wide, class Plane, bool Cross, class Sink>
+void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
     const int x0 = std::max(w.x0 - t.bx, 0), x1 = std::min(w.x1 - t.bx, t.x1);
     const int y0 = std::max(w.y0 - t.by, 0), y1 = std::min(w.y1 - t.by, t.y1);
     if (x0 > x1 || y0 > y1)
@@ -234,9 +322,25 @@ template <typename Wide, bool Cross, class Sink> void cover_local(const Local<Wi
         return;
     }
 
-    Reach rows_x, rows_z, columns_z;
-    reach_of<Wide>(rows_x, y0, y1, t.y, t.x);
-    reach_of<Wide>(rows_z, y0, y1, t.y, t.z);
+    Reach rows_x, rows_z, columns_z, ends;
+    rows_x.clear(y1 - y0 + 1);
+    rows_z.clear(y1 - y0 + 1);
+    if (Cross)
+        ends.clear(y1 - y0 + 1);
+    for (int i = 0; i < 3; ++i) {
+        extend_vertex<Wide>(rows_x, y0, y1, t.y[i], t.x[i]);
+        extend_vertex<Wide>(rows_z, y0, y1, t.y[i], t.z[i]);
+        int a = i, b = i == 2 ? 0 : i + 1;
+        if (t.y[a] == t.y[b])
+            continue;
+        if (t.y[a] > t.y[b])
+            std::swap(a, b);
+        const EdgeWalk<Wide> edge(t.y[a], t.y[b]);
+        edge.extend(rows_x, y0, y1, t.x[a], t.x[b] - t.x[a]);
+        edge.extend(rows_z, y0, y1, t.z[a], t.z[b] - t.z[a]);
+        if (Cross)
+            edge.cross(ends, y0, y1, t.x[a], t.x[b] - t.x[a]);
+    }
     reach_of<Wide>(columns_z, x0, x1, t.x, t.z);
 
     // The plane, its normal turned upwards: lowest z with the box's top corner above it, highest with the bottom below.
@@ -244,46 +348,21 @@ template <typename Wide, bool Cross, class Sink> void cover_local(const Local<Wi
     const Wide turn = enters ? -1 : 1;
     const Wide nx = turn * t.normal_x(), ny = turn * t.normal_y(), nz = turn * signed_nz;
     const Wide offset = nx * t.x[0] + ny * t.y[0] + nz * t.z[0];
-    const Wide unit = steep ? Wide{1} : nz * kUnit;
-    const Wide spread = ((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit;
-    const Wide step = floor_div<Wide>(-nx * kUnit, unit), step_part = -nx * kUnit - step * unit;
+    Plane plane(nx, steep ? Wide{1} : nz * kUnit, ((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit);
 
     for (int y = y0; y <= y1; ++y) {
         const int from = std::max(rows_x.lo[y - y0], x0), to = std::min(rows_x.hi[y - y0], x1);
         if (from > to)
             continue;
-        int first = 0, last = -1;
-        if (Cross && !steep)
-            crossed_columns<Wide>(t.x, t.y, y, first, last);
-        Wide low = 0, low_part = 0, high = 0, high_part = 0;
-        if (!steep) {
-            const Wide below = offset - (nx * (from + (nx > 0)) + ny * (y + (ny > 0))) * kUnit;
-            low = floor_div<Wide>(below, unit);
-            low_part = below - low * unit;
-            const Wide above = low_part + spread - 1;
-            high = low + floor_div<Wide>(above, unit);
-            high_part = below + spread - 1 - high * unit;
-        }
+        const int first = Cross ? ends.lo[y - y0] : 0, end = Cross ? ends.hi[y - y0] : 0; // none where steep
+        if (!steep)
+            plane.start(offset - (nx * (from + (nx > 0)) + ny * (y + (ny > 0))) * kUnit);
         const int row_lo = rows_z.lo[y - y0], row_hi = rows_z.hi[y - y0];
         for (int x = from; x <= to; ++x) {
             int lo = std::max(row_lo, columns_z.lo[x - x0]), hi = std::min(row_hi, columns_z.hi[x - x0]);
             if (!steep) {
-                if (low > lo) // far from the triangle the plane leaves the range of int
-                    lo = low > hi ? hi + 1 : static_cast<int>(low);
-                if (high < hi)
-                    hi = high < lo ? lo - 1 : static_cast<int>(high);
-                low += step;
-                low_part += step_part;
-                if (low_part >= unit) {
-                    low_part -= unit;
-                    ++low;
-                }
-                high += step;
-                high_part += step_part;
-                if (high_part >= unit) {
-                    high_part -= unit;
-                    ++high;
-                }
+                plane.clip(lo, hi);
+                plane.next();
             }
             if (lo > hi)
                 continue;
@@ -291,7 +370,7 @@ template <typename Wide, bool Cross, class Sink> void cover_local(const Local<Wi
             hi += t.bz;
             if (lo > w.top)
                 continue;
-            if (Cross && x >= first && x <= last)
+            if (Cross && x >= first && x < end)
                 sink.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
             if (hi >= 0)
                 sink.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
@@ -299,13 +378,13 @@ template <typename Wide, bool Cross, class Sink> void cover_local(const Local<Wi
     }
 }
 
-template <typename Wide, bool Cross, class Sink>
+template <typename Wide, class Plane, bool Cross, class Sink>
 void cover(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool inverted, Sink& sink) {
     const Local<Wide> t(a, b, c);
     if (t.x1 < 0 || t.y1 < 0 || t.z1 < 0)
         cover_flat<Wide, Cross>(t, w, inverted, sink);
     else
-        cover_local<Wide, Cross>(t, w, sink);
+        cover_local<Wide, Plane, Cross>(t, w, sink);
 }
 
 } // namespace coverage
@@ -322,10 +401,12 @@ void cover_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Win
     const int64_t extent = std::max({int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x}),
                                      int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y}),
                                      int64_t{std::max({a.z, b.z, c.z})} - std::min({a.z, b.z, c.z})});
-    if (extent < kNarrowExtent)
-        coverage::cover<int64_t, Cross>(a, b, c, w, inverted, sink);
+    if (extent < kTinyExtent)
+        coverage::cover<int64_t, coverage::TinyPlaneWalk, Cross>(a, b, c, w, inverted, sink);
+    else if (extent < kNarrowExtent)
+        coverage::cover<int64_t, coverage::PlaneWalk<int64_t>, Cross>(a, b, c, w, inverted, sink);
     else
-        coverage::cover<int128, Cross>(a, b, c, w, inverted, sink);
+        coverage::cover<int128, coverage::PlaneWalk<int128>, Cross>(a, b, c, w, inverted, sink);
 }
 
 /// Reports the columns whose rays cross triangle abc, which covers nothing: it only closes a hole.

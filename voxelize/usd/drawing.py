@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from pxr import Usd, UsdGeom, UsdPhysics, UsdShade
+from pxr import Usd, UsdGeom, UsdPhysics
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.material_table import MaterialTable
-from voxrt.voxelize.scene import Mesh, SceneObject
-from voxrt.voxelize.usd.geometry import Surface, surface_of
+from voxrt.voxelize.painted import Unfinished, finish
+from voxrt.voxelize.scene import SceneObject
+from voxrt.voxelize.usd.geometry import Surface, solid_key, surface_of
 from voxrt.voxelize.usd.instancer import placed_copies
 from voxrt.voxelize.usd.materials import Materials
 from voxrt.voxelize.usd.physics import colliders_of
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.scene import Collider
+    from voxrt.voxelize.usd.looks import Look
 
 MOST_OBJECTS = 1_000_000
 """A few lines of nested instancers may ask for more copies than there is memory."""
@@ -32,6 +35,16 @@ _WITHOUT_SHAPE = frozenset(("", "Xform", "Scope", "Material", "Shader", "NodeGra
 
 # Prototypes may hang below prims that are only spoken of (``over``) or abstract (``class``).
 _PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsLoaded)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Drawn:
+    """An object whose mesh, a row of the drawing's, is not finished yet."""
+
+    name: str
+    mesh: int
+    transform: NDArray[np.float64]
+    colliders: tuple[Collider, ...]
 
 
 @dataclass(eq=False, slots=True)
@@ -46,12 +59,13 @@ class Drawing:
     _placed: UsdGeom.XformCache = field(init=False)
     _deformed: dict[str, Deformed] = field(init=False)
     _surfaces: dict[str, Surface | None] = field(default_factory=dict)
-    _meshes: dict[tuple[str, bytes], Mesh] = field(default_factory=dict)
+    _rows: dict[tuple[str, tuple[Look, ...], bytes], int] = field(default_factory=dict)
+    _meshes: list[Unfinished] = field(default_factory=list)
     _within: list[str] = field(default_factory=list)
     _count: int = 0
 
     def __post_init__(self) -> None:
-        self.materials = Materials(MaterialTable(), self.notes, self.time)
+        self.materials = Materials(self.path, MaterialTable(), self.notes, self.time)
         self._placed = UsdGeom.XformCache(self.time)
         self._deformed = deformed_meshes(self.stage, self.time, self.notes)
 
@@ -67,11 +81,22 @@ class Drawing:
         for one in drawn:
             if not np.isfinite(one.transform).all():
                 raise AssetError(self.path, "its transform has no finite value", place=one.name)
-        return tuple(replace(one, transform=to_scene @ one.transform) for one in drawn)
+        meshes = finish(self._meshes, self.materials.table, self.notes)
+        return tuple(
+            SceneObject(
+                one.name,
+                meshes[one.mesh],
+                to_scene @ one.transform,
+                one.colliders,
+                int(meshes[one.mesh].materials[0]),
+            )
+            for one in drawn
+            if len(meshes[one.mesh].triangles)
+        )
 
-    def _below(self, root: Usd.Prim, predicate: object) -> list[SceneObject]:
+    def _below(self, root: Usd.Prim, predicate: object) -> list[_Drawn]:
         """Draw `root` and what is below it, in the stage's frame."""
-        drawn: list[SceneObject] = []
+        drawn: list[_Drawn] = []
         walk = iter(Usd.PrimRange(root, predicate))
         for prim in walk:
             if not self._is_drawn(prim):
@@ -83,27 +108,25 @@ class Drawing:
                 drawn += self._object(prim)
         return drawn
 
-    def _copies(self, prim: Usd.Prim) -> list[SceneObject]:
+    def _copies(self, prim: Usd.Prim) -> list[_Drawn]:
         place = str(prim.GetPath())
         if place in self._within:
             raise AssetError(self.path, "the point instancer copies itself", place=place, fix="repair its prototypes")
         self._within.append(place)
         prototypes, indices, transforms, numbers = placed_copies(prim, self.path, self.time, self.notes)
         here = self._to_stage(prim)
-        models: list[list[SceneObject]] = []
+        models: list[list[_Drawn]] = []
         for index, prototype in enumerate(prototypes):
             model = self._below(prototype, _PROTOTYPE_PREDICATE) if (indices == index).any() else []
             back = np.linalg.inv(self._to_stage(prototype)) if model else np.eye(4)
-            models.append([replace(one, transform=back @ one.transform) for one in model])
+            models.append([_Drawn(one.name, one.mesh, back @ one.transform, one.colliders) for one in model])
         self._within.pop()
         self._charge(int(sum(len(models[index]) for index in indices)))
-        drawn: list[SceneObject] = []
+        drawn: list[_Drawn] = []
         for index, to_instancer, number in zip(indices.tolist(), here @ transforms, numbers.tolist(), strict=True):
             for one in models[index]:
                 name = f"{place}[{number}]{one.name.removeprefix(str(prototypes[index].GetPath()))}"
-                drawn.append(
-                    SceneObject(name, one.mesh, to_instancer @ one.transform, one.colliders, one.collider_material)
-                )
+                drawn.append(_Drawn(name, one.mesh, to_instancer @ one.transform, one.colliders))
         return drawn
 
     def _charge(self, count: int) -> None:
@@ -128,31 +151,29 @@ class Drawing:
             return False
         return True
 
-    def _object(self, prim: Usd.Prim) -> list[SceneObject]:
+    def _object(self, prim: Usd.Prim) -> list[_Drawn]:
         """Draw one prim: an object, or none."""
         name = str(prim.GetPath())
-        # Instances of one prim share its surface, unless each has a pose of its own.
+        # Instances of one prim share its surface, unless each has a pose of its own; so do equal solids.
         source = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
         deformed = self._deformed.get(name)
-        key = name if deformed else str(source.GetPath())
+        key = name if deformed else solid_key(source, self.time) or str(source.GetPath())
         if key not in self._surfaces:
             self._surfaces[key] = surface_of(source, self.path, self.time, self.notes, deformed)
         surface = self._surfaces[key]
         if surface is None:
             self._note_undrawn(prim)
             return []
-        materials = self._materials_of_faces(prim, surface)[surface.faces]
-        solid = materials != 0
-        if not solid.any():
-            return []
-        shared = (key, materials.tobytes())
-        if shared not in self._meshes:
-            triangles = surface.triangles if solid.all() else surface.triangles[solid]
-            self._meshes[shared] = Mesh(surface.positions, triangles, materials[solid])
+        looks, rows = self.materials.looks_of_faces(prim, surface)
+        shared = (key, tuple(looks), rows.tobytes())
+        if shared not in self._rows:
+            materials, coat = self.materials.wear(prim, surface, looks, rows)
+            self._rows[shared] = len(self._meshes)
+            self._meshes.append(Unfinished(surface.positions, surface.triangles, materials, coat))
         self._charge(1)
         colliders = colliders_of(source, surface, self.time, self.notes)
         transform = self._to_stage(deformed.frame if deformed else prim)
-        return [SceneObject(name, self._meshes[shared], transform, colliders, int(materials[solid][0]))]
+        return [_Drawn(name, self._rows[shared], transform, colliders)]
 
     def _note_undrawn(self, prim: Usd.Prim) -> None:
         """Count a prim that has no surface."""
@@ -163,22 +184,3 @@ class Drawing:
             self.notes.add("unsupported-prim", f"{kind} prims are not honoured")
         elif not prim.IsA(UsdGeom.Mesh) and kind not in _WITHOUT_SHAPE and prim.IsA(UsdGeom.Imageable):
             self.notes.add("no-shape", f"{kind} prims have no shape and were left out")
-
-    def _materials_of_faces(self, prim: Usd.Prim, surface: Surface) -> NDArray[np.uint8]:
-        """Material ids, uint8, a face each; 0 for air."""
-        ids = np.zeros(surface.face_count, dtype=np.uint8)
-        left = np.ones(surface.face_count, dtype=bool)
-        for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
-            indices = np.array(subset.GetIndicesAttr().Get(self.time) or (), dtype=np.int64)
-            inside = indices[(indices >= 0) & (indices < surface.face_count)]
-            if len(inside) != len(indices):
-                problem = f"a face subset names faces beyond the mesh's {surface.face_count}"
-                raise AssetError(self.path, problem, place=str(subset.GetPath()), fix="export the mesh again")
-            number = self.materials.of_subset(subset, len(inside))
-            if number is not None:
-                ids[inside] = number
-                left[inside] = False
-        without = np.unique(surface.faces[left[surface.faces]])
-        if len(without):
-            ids[left] = self.materials.of_prim(prim, len(without))
-        return ids

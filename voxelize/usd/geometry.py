@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from voxrt.voxelize import shapes
+from voxrt.voxelize import primitives
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.polygons import triangulate
+from voxrt.voxelize.polygons import triangulate_corners
+from voxrt.voxelize.usd import values
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +24,29 @@ if TYPE_CHECKING:
 
 # Positions USD calls legal and no scene has: beyond it, squares overflow.
 _FARTHEST = 1e150
+
+
+# The attributes of each solid, in the order of what makes it.
+_MEASURES = {
+    "Cube": ("size",),
+    "Sphere": ("radius",),
+    "Cylinder": ("radius", "height", "axis"),
+    "Cylinder_1": ("radiusBottom", "radiusTop", "height", "axis"),
+    "Cone": ("radius", "height", "axis"),
+    "Capsule": ("radius", "height", "axis"),
+    "Capsule_1": ("radiusBottom", "radiusTop", "height", "axis"),
+    "Plane": ("width", "length", "axis"),
+}
+_MAKERS: dict[str, Callable[..., primitives.Surface]] = {
+    "Cube": primitives.cube,
+    "Sphere": primitives.sphere,
+    "Cylinder": lambda radius, height, axis: primitives.cylinder(radius, radius, height, axis),
+    "Cylinder_1": primitives.cylinder,
+    "Cone": primitives.cone,
+    "Capsule": lambda radius, height, axis: primitives.capsule(radius, radius, height, axis),
+    "Capsule_1": primitives.capsule,
+    "Plane": primitives.plane,
+}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -39,12 +63,18 @@ class Surface:
         int64, shape (T,): the prim's own face that each triangle is of.
     face_count
         How many faces the prim has, holes included.
+    corners
+        int64, shape (T, 3): the corners of its faces that each triangle has, among all of them.
+    corner_count
+        How many corners its faces have; 0 for solids.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     faces: NDArray[np.int64]
     face_count: int
+    corners: NDArray[np.int64]
+    corner_count: int
 
 
 def surface_of(
@@ -63,7 +93,8 @@ def surface_of(
     if solid is None:
         return None
     positions, triangles = solid
-    return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1)
+    none = np.zeros_like(triangles, dtype=np.int64)
+    return Surface(positions, triangles, np.zeros(len(triangles), dtype=np.int64), 1, none, 0)
 
 
 def _mesh(
@@ -71,32 +102,26 @@ def _mesh(
 ) -> Surface | None:
     prim = mesh.GetPrim()
     place = str(prim.GetPath())
-    points = mesh.GetPointsAttr().Get(time)
-    positions = np.array([] if points is None else points, dtype=np.float64).reshape(-1, 3)
-    if deformed is not None:
-        positions = deformed.positions
-    counts = _integers(mesh.GetFaceVertexCountsAttr(), time)
-    corners = _integers(mesh.GetFaceVertexIndicesAttr(), time)
+    positions = values.points(mesh.GetPointsAttr(), time, path) if deformed is None else deformed.positions
+    counts = values.integers(mesh.GetFaceVertexCountsAttr(), time, path)
+    corners = values.integers(mesh.GetFaceVertexIndicesAttr(), time, path)
     if not len(counts) or not len(positions):
         notes.add("empty-mesh", "meshes without faces were left out")
         return None
     _check_topology(path, place, positions, counts, corners)
     keep = counts >= 3
     notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
-    holes = _integers(mesh.GetHoleIndicesAttr(), time)
+    holes = values.integers(mesh.GetHoleIndicesAttr(), time, path)
     keep[holes[(holes >= 0) & (holes < len(counts))]] = False
     if mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none:
         notes.add("subdivision", "subdivision surfaces were taken as their control cage")
     kept = np.flatnonzero(keep)
-    triangles, faces = triangulate(positions, counts[kept], corners[np.repeat(keep, counts)])
+    places = np.flatnonzero(np.repeat(keep, counts))
+    cut, faces = triangulate_corners(positions, counts[kept], corners[places])
     if mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded:
-        triangles = np.ascontiguousarray(triangles[:, ::-1])
-    return Surface(positions, triangles, kept[faces], len(counts))
-
-
-def _integers(attribute: Usd.Attribute, time: Usd.TimeCode) -> NDArray[np.int64]:
-    value = attribute.Get(time)
-    return np.array([] if value is None else value, dtype=np.int64)
+        cut = np.ascontiguousarray(cut[:, ::-1])
+    chosen = places[cut]
+    return Surface(positions, corners[chosen].astype(np.int32), kept[faces], len(counts), chosen, len(corners))
 
 
 def _check_topology(
@@ -117,28 +142,25 @@ def _check_topology(
         raise AssetError(path, problem, place=place, fix="export the mesh again")
 
 
-def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> shapes.Surface | None:
-    def measure(name: str) -> float:
-        value = prim.GetAttribute(name).Get(time)
-        if value is None or not 0 <= value < _FARTHEST:
-            raise AssetError(path, f"{name} {value} is no length", place=str(prim.GetPath()), fix="give a positive one")
-        return float(value)
-
-    def axis() -> str:
-        value = str(prim.GetAttribute("axis").Get(time))
-        if value not in ("X", "Y", "Z"):
-            raise AssetError(path, f"axis {value!r} is none of X, Y, Z", place=str(prim.GetPath()), fix="give one")
-        return value
-
-    make: dict[str, Callable[[], shapes.Surface]] = {
-        "Cube": lambda: shapes.cube(measure("size")),
-        "Sphere": lambda: shapes.sphere(measure("radius")),
-        "Cylinder": lambda: shapes.cylinder(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Cylinder_1": lambda: shapes.cylinder(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Cone": lambda: shapes.cone(measure("radius"), measure("height"), axis()),
-        "Capsule": lambda: shapes.capsule(measure("radius"), measure("radius"), measure("height"), axis()),
-        "Capsule_1": lambda: shapes.capsule(measure("radiusBottom"), measure("radiusTop"), measure("height"), axis()),
-        "Plane": lambda: shapes.plane(measure("width"), measure("length"), axis()),
-    }
+def solid_key(prim: Usd.Prim, time: Usd.TimeCode) -> str | None:
+    """Return what tells a solid's surface from others': its kind and measures; None for prims that are no solid."""
     kind = str(prim.GetTypeName())
-    return make[kind]() if kind in make else None
+    if kind not in _MEASURES:
+        return None
+    return " ".join([kind, *(str(prim.GetAttribute(name).Get(time)) for name in _MEASURES[kind])])
+
+
+def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitives.Surface | None:
+    kind = str(prim.GetTypeName())
+    if kind not in _MEASURES:
+        return None
+    measures: list[float | str] = []
+    for name in _MEASURES[kind]:
+        value = prim.GetAttribute(name).Get(time)
+        place = str(prim.GetPath())
+        if name == "axis" and value not in ("X", "Y", "Z"):
+            raise AssetError(path, f"axis {str(value)!r} is none of X, Y, Z", place=place, fix="give one")
+        if name != "axis" and not (isinstance(value, (int, float)) and 0 <= value < _FARTHEST):
+            raise AssetError(path, f"{name} {value} is no length", place=place, fix="give a positive one")
+        measures.append(str(value) if name == "axis" else float(value))
+    return _MAKERS[kind](*measures)

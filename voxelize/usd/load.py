@@ -20,10 +20,10 @@ from voxrt.voxelize.usd.stage import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
 
 
-def load_usd(path: str | Path, *, variants: Mapping[str, str] | None = None, time: float | None = None) -> Scene:
+def load_usd(path: str | Path, *, variants: Sequence[str] = (), time: float | None = None) -> Scene:
     """Read a USD stage.
 
     Drawn are the active, visible prims of purpose ``default`` and ``render``, with instances and the copies of point
@@ -35,7 +35,7 @@ def load_usd(path: str | Path, *, variants: Mapping[str, str] | None = None, tim
     path
         A ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file.
     variants
-        Variants to select: ``"/prim/path:set"`` to the variant's name.
+        Variants to select, in this order: ``"/prim/path:set=name"``.
     time
         Seconds after the stage's start; None for the start.
 
@@ -54,7 +54,7 @@ def load_usd(path: str | Path, *, variants: Mapping[str, str] | None = None, tim
     path = Path(path)
     notes = Notes()
     with caught(path, notes):
-        stage = open_stage(path, variants or {})
+        stage = open_stage(path, variants)
         note_layers_that_disagree(stage, notes)
         to_scene = scene_transform(up_axis(stage, notes), metres_per_unit(stage, path))
         drawing = Drawing(path, stage, notes, time_code(stage, time))

@@ -1,4 +1,4 @@
-"""Which colour a USD prim's faces have."""
+"""What each face of a USD prim wears: a material's id, or paint."""
 
 from __future__ import annotations
 
@@ -6,157 +6,165 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from pxr import Usd, UsdGeom, UsdShade
+from pxr import Usd, UsdShade
 
-from voxrt.voxelize.colour import srgb_from_linear
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.paint import Coat, Paint
 from voxrt.voxelize.scene import DEFAULT_COLOUR
+from voxrt.voxelize.usd import primvars
+from voxrt.voxelize.usd.images import Images, laid_out
+from voxrt.voxelize.usd.looks import NO_LOOK, Look, display_srgb, read_look
+from voxrt.voxelize.usd.values import integers
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
     from voxrt.voxelize.material_table import MaterialTable
     from voxrt.voxelize.notes import Notes
-
-OPAQUE_FROM = 0.5
-"""A surface of lower opacity is air."""
-
-# What shaders other than UsdPreviewSurface call their base colour.
-_COLOUR_INPUTS = (
-    "diffuseColor",
-    "base_color",
-    "baseColor",
-    "diffuse_color_constant",
-    "diffuse_reflection_color",
-    "diffuse_color",
-    "color",
-)
+    from voxrt.voxelize.usd.geometry import Surface
 
 
 @dataclass(eq=False, slots=True)
 class Materials:
-    """Material ids of prims, by bound material or displayColor."""
+    """The materials of one stage; each is read once."""
 
+    path: Path
     table: MaterialTable
     notes: Notes
     time: Usd.TimeCode
-    _ids: dict[str, int] = field(default_factory=dict)
+    _images: Images = field(init=False)
+    _looks: dict[str, Look] = field(default_factory=dict)
 
-    def of_prim(self, prim: Usd.Prim, faces: int) -> int:
-        """Return the id of a prim's own binding, of its displayColor or of the default material; 0 for air.
+    def __post_init__(self) -> None:
+        self._images = Images(self.path, self.notes)
 
-        `faces` is how many faces depend on it, for the warnings.
+    def looks_of_faces(self, prim: Usd.Prim, surface: Surface) -> tuple[list[Look], NDArray[np.int32]]:
+        """Find the looks of a prim, and which of them each of its faces has (int32, shape (F,); -1 for holes).
+
+        Raises
+        ------
+        AssetError
+            A face subset names faces that are none.
         """
-        bound = self._bound(prim)
-        if bound is not None:
-            return self._of_material(bound, faces)
-        return self._of_display_colour(prim, faces)
+        looks: dict[Look, int] = {}
+        rows = np.full(surface.face_count, -1, dtype=np.int32)
+        for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
+            indices = integers(subset.GetIndicesAttr(), self.time, self.path)
+            if len(indices) and (indices.min() < 0 or indices.max() >= surface.face_count):
+                problem = f"a face subset names faces beyond the mesh's {surface.face_count}"
+                raise AssetError(self.path, problem, place=str(subset.GetPath()), fix="export the mesh again")
+            material = self._direct(subset.GetPrim(), len(indices))
+            if material is not None:
+                rows[indices] = looks.setdefault(self._look(material), len(looks))
+        left = np.unique(surface.faces[rows[surface.faces] < 0])
+        if len(left):
+            rows[left] = looks.setdefault(self._own_look(prim), len(looks))
+        return list(looks), rows
 
-    def of_subset(self, subset: UsdGeom.Subset, faces: int) -> int | None:
-        """Return the id of a face subset's binding, None where it has none."""
-        binding = UsdShade.MaterialBindingAPI(subset.GetPrim()).GetDirectBinding()
-        material = binding.GetMaterial()
-        if not material:
-            if binding.GetMaterialPath():
-                self.notes.add("missing-material", "bindings to materials that do not exist were ignored", faces)
-            return None
-        return self._of_material(material, faces)
+    def wear(
+        self, prim: Usd.Prim, surface: Surface, looks: list[Look], rows: NDArray[np.int32]
+    ) -> tuple[NDArray[np.uint8], Coat | None]:
+        """Dress a prim's triangles.
 
-    def _bound(self, prim: Usd.Prim) -> UsdShade.Material | None:
+        Returns
+        -------
+        materials
+            uint8, shape (T,): ids; 0 for air and for painted triangles.
+        coat
+            The paint, None where there is none.
+        """
+        by_triangle = rows[surface.faces]
+        materials = np.zeros(len(by_triangle), dtype=np.uint8)
+        painted = np.full(len(by_triangle), -1, dtype=np.int32)
+        paints: list[Paint] = []
+        uv = np.zeros((len(by_triangle), 3, 2))
+        colours = np.ones((len(by_triangle), 3, 4), dtype=np.float32)
+        for row, look in enumerate(looks):
+            here = by_triangle == row
+            faces = int((rows == row).sum())
+            if look.alpha is None and look.opacity < look.cutoff:
+                message = "faces of a material below its threshold of opacity (a half by default) were taken as air"
+                self.notes.add("transparent", message, faces)
+                continue
+            if look.image is not None or look.alpha is not None:
+                coordinates = self._textured(prim, surface, look, faces)
+                if coordinates is not None:
+                    paint, laid = coordinates
+                    uv[here], painted[here] = laid[here], len(paints)
+                    paints.append(paint)
+                    continue
+            if look.primvar is not None:
+                tint = primvars.at_corners(prim, look.primvar, surface, self.time, self.notes)
+                if tint is not None and tint.shape[2] >= 3:
+                    colours[here, :, :3], painted[here] = np.clip(tint[here, :, :3], 0.0, 1.0), len(paints)
+                    paints.append(Paint(look.name or look.primvar))
+                    continue
+            materials[here] = self._uniform(look, faces)
+        coat = Coat(tuple(paints), painted, uv, colours) if paints else None
+        return materials, coat
+
+    def _own_look(self, prim: Usd.Prim) -> Look:
+        """Return the look of the material bound to a prim, else of its displayColor."""
         api = UsdShade.MaterialBindingAPI(prim)
         for purpose in (UsdShade.Tokens.preview, UsdShade.Tokens.full):
             material = api.ComputeBoundMaterial(materialPurpose=purpose)[0]
             if material:
-                return material
+                return self._look(material)
+        opacity = primvars.constant(prim, "displayOpacity", self.time)
+        alpha = float(opacity[0]) if opacity is not None else 1.0
+        colour = primvars.constant(prim, "displayColor", self.time)
+        if colour is not None and len(colour) >= 3:
+            linear = (float(colour[0]), float(colour[1]), float(colour[2]))
+            red, green, blue = display_srgb(linear)
+            return Look(f"#{red:02x}{green:02x}{blue:02x}", linear, alpha)
+        if primvars.exists(prim, "displayColor", self.time):
+            return Look("displayColor", None, alpha, primvar="displayColor")
+        return NO_LOOK if alpha == 1.0 else Look(None, None, alpha)
+
+    def _direct(self, prim: Usd.Prim, faces: int) -> UsdShade.Material | None:
+        binding = UsdShade.MaterialBindingAPI(prim).GetDirectBinding()
+        material = binding.GetMaterial()
+        if material:
+            return material
+        if binding.GetMaterialPath():
+            self.notes.add("missing-material", "bindings to materials that do not exist were ignored", faces)
         return None
 
-    def _of_material(self, material: UsdShade.Material, faces: int) -> int:
+    def _look(self, material: UsdShade.Material) -> Look:
         prim = material.GetPrim()
         path = str((prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim).GetPath())
-        if path not in self._ids:
-            self._ids[path] = self._new(material, faces)
-        number = self._ids[path]
-        if number == 0:
-            self.notes.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were taken as air", faces)
-        return number
+        if path not in self._looks:
+            self._looks[path] = read_look(material, self.time, self.notes)
+        return self._looks[path]
 
-    def _new(self, material: UsdShade.Material, faces: int) -> int:
-        # Each reference to a file brings its own copy of the file's materials: one name and colour are one material.
-        name = material.GetPrim().GetName()
-        shader = _surface(material)
-        if shader is None:
-            self.notes.add("material-colour", "materials without a surface that is understood got the default colour")
-            return self.table.id_of((name, DEFAULT_COLOUR), name, DEFAULT_COLOUR)
-        opacity = self._constant(shader, ("opacity",), faces)
-        if isinstance(opacity, float) and opacity < OPAQUE_FROM:
-            return 0
-        colour = self._constant(shader, _COLOUR_INPUTS, faces)
-        if not isinstance(colour, tuple):
-            if shader.GetIdAttr().Get() == "UsdPreviewSurface":
-                colour = (0.18, 0.18, 0.18)  # the specification's fallback
-            else:
-                self.notes.add("material-colour", "materials whose shader has no colour got the default colour")
-                return self.table.id_of((name, DEFAULT_COLOUR), name, DEFAULT_COLOUR)
-        encoded = _encode(colour)
-        return self.table.id_of((name, encoded), name, encoded)
+    def _textured(
+        self, prim: Usd.Prim, surface: Surface, look: Look, faces: int
+    ) -> tuple[Paint, NDArray[np.float64]] | None:
+        """Return the paint of a textured look, and coordinates (float64, shape (T, 3, 2)); None where it cannot be."""
+        source = look.image or look.alpha
+        assert source is not None
+        texture = self._images.texture(look, faces)
+        if texture is None:
+            return None
+        stored = primvars.at_corners(prim, source.primvar, surface, self.time, self.notes)
+        if stored is None or stored.shape[2] < 2:
+            message = "textured faces without coordinates took the fallback of their texture or the default colour"
+            self.notes.add("texture", message, faces)
+            return None
+        plain = look.colour if look.image is None and look.colour else (1.0, 1.0, 1.0)
+        opacity = 1.0 if look.alpha is not None else look.opacity
+        cutoff = look.cutoff if look.alpha is not None else 0.0
+        return Paint(look.name or "texture", (*plain, opacity), texture, cutoff), laid_out(stored, source)
 
-    def _constant(
-        self, shader: UsdShade.Shader, names: tuple[str, ...], faces: int
-    ) -> float | tuple[float, float, float] | None:
-        for name in names:
-            source = shader.GetInput(name)
-            if not source:
-                continue
-            for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
-                producer = UsdShade.Shader(attribute.GetPrim())
-                if UsdShade.Output.IsOutput(attribute) or producer.GetPrim() != shader.GetPrim():
-                    self.notes.add("texture", "textures are not honoured; their fallback colour stands in", faces)
-                    fallback = producer.GetInput("fallback") if producer else None
-                    value = fallback.Get(self.time) if fallback else None
-                    return _plain(value)
-                value = attribute.Get(self.time)
-                if value is not None:
-                    return _plain(value)
-        return None
-
-    def _of_display_colour(self, prim: Usd.Prim, faces: int) -> int:
-        gprim = UsdGeom.Gprim(prim)
-        opacities = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("primvars:displayOpacity")
-        opacity = opacities.ComputeFlattened(self.time) if opacities and opacities.HasValue() else None
-        if opacity is not None and len(opacity) and float(np.mean(opacity)) < OPAQUE_FROM:
-            self.notes.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were taken as air", faces)
-            return 0
-        if not gprim:
+    def _uniform(self, look: Look, faces: int) -> int:
+        """Return the id of one colour. Each reference to a file brings copies of the file's materials: one name and
+        colour are one material.
+        """  # noqa: D205
+        if look.name is None:
             return self.table.default(self.notes, faces)
-        primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("primvars:displayColor")
-        value = primvar.Get(self.time) if primvar and primvar.HasValue() else None
-        if value is None or not len(value):
-            return self.table.default(self.notes, faces)
-        colours = np.asarray(value, dtype=np.float64).reshape(-1, 3)
-        if len(colours) > 1 and (colours != colours[0]).any():
-            self.notes.add("vertex-colours", "a displayColor that varies is not honoured; its mean stands in", faces)
-        red, green, blue = _encode(tuple(colours.mean(axis=0).tolist()))
-        return self.table.id_of(
-            ("displayColor", red, green, blue), f"#{red:02x}{green:02x}{blue:02x}", (red, green, blue)
-        )
-
-
-def _surface(material: UsdShade.Material) -> UsdShade.Shader | None:
-    for context in ("", "mtlx", "mdl", "ri", "glslfx"):
-        source = material.ComputeSurfaceSource(context)
-        if source and source[0]:
-            return source[0]
-    return None
-
-
-def _plain(value: object) -> float | tuple[float, float, float] | None:
-    if isinstance(value, (int, float)):
-        return float(value)
-    try:
-        numbers = [float(number) for number in value]  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        return None
-    return (numbers[0], numbers[1], numbers[2]) if len(numbers) >= 3 else None
-
-
-def _encode(linear: tuple[float, ...]) -> tuple[int, int, int]:
-    finite = np.nan_to_num(np.array(linear[:3]), nan=0.0, posinf=1.0, neginf=0.0)
-    red, green, blue = (int(value) for value in srgb_from_linear(finite))
-    return red, green, blue
+        if look.colour is None:
+            return self.table.id_of((look.name, DEFAULT_COLOUR), look.name, DEFAULT_COLOUR)
+        colour = display_srgb(look.colour)
+        return self.table.id_of((look.name, colour), look.name, colour)

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 from pxr import Tf, Usd, UsdGeom
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.usd.values import numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
     from pathlib import Path
 
     from voxrt.voxelize.notes import Notes
 
 
-def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
+def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
     """Open a stage with all payloads and select variants, in the order given, for this reading alone.
 
     Parameters
@@ -24,7 +25,7 @@ def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
     path
         The root layer.
     variants
-        Selections: ``"/prim:set"`` to the variant's name.
+        Selections: ``"/prim/path:set=name"``.
 
     Raises
     ------
@@ -33,11 +34,12 @@ def open_stage(path: Path, variants: Mapping[str, str]) -> Usd.Stage:
     """
     stage = Usd.Stage.Open(str(path))
     stage.SetEditTarget(stage.GetSessionLayer())
-    for key, name in variants.items():
+    for selection in variants:
+        key, _, name = selection.partition("=")
         prim_path, _, set_name = key.rpartition(":")
         prim = stage.GetPrimAtPath("/" + prim_path.strip("/")) if prim_path.strip("/") else None
         if not prim:
-            raise AssetError(path, f"variant {key}={name}: no such prim", fix="write it as /prim/path:set=name")
+            raise AssetError(path, f"variant {selection!r}: no such prim", fix="write it as /prim/path:set=name")
         sets = prim.GetVariantSets().GetNames()
         if set_name not in sets:
             known = ", ".join(sets) or "none"
@@ -80,7 +82,7 @@ def metres_per_unit(stage: Usd.Stage, path: Path) -> float:
     try:
         unit = float(UsdGeom.GetStageMetersPerUnit(stage))
     except Tf.ErrorException:  # some exporters store a float where USD wants a double
-        unit = float(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"))
+        unit = (numbers(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"), 1) or (math.nan,))[0]
     if not (math.isfinite(unit) and unit > 0):
         raise AssetError(path, f"metersPerUnit {unit} is no length", fix="give a positive number of metres")
     return unit

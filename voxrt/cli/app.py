@@ -70,6 +70,29 @@ _add_command(
     "Render a picture of a memory, pixel by pixel what the hardware shows.",
     "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
 )
+_add_command(
+    "compare",
+    "Compare a memory with the meshes that it was built from.",
+    "voxrt compare courtyard.mem courtyard.glb -o likeness.png",
+)
+_add_command(
+    "serve",
+    "Show scenes live in the browser, until interrupted.",
+    "voxrt serve courtyard.mem dog.usda",
+)
+_add_command(
+    "upload",
+    "Let a running board show another scene.",
+    "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
+)
+_add_command("convert", "Write a memory in another format.", "voxrt convert courtyard.mem courtyard.blob")
+_add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
+_add_command(
+    "completion",
+    "Print a script that completes command lines, for a shell to read at its start.",
+    'echo "source <(voxrt completion bash)" >> ~/.bashrc',
+)
+_add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")
 
 
 def run(arguments: Sequence[str]) -> ExitCode:

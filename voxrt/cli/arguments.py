@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,6 +67,41 @@ def whole(_type: type, tokens: Sequence[Token]) -> int:
         raise ValueError(f"{tokens[0].value!r} is not a whole number") from None
 
 
+def levels(kind: type, tokens: Sequence[Token]) -> int:
+    """Read an octree's depth."""
+    number = whole(kind, tokens)
+    if not 1 <= number <= 16:
+        raise ValueError(f"{number} is not 1 to 16")
+    return number
+
+
+def words(kind: type, tokens: Sequence[Token]) -> int:
+    """Read a number of memory words."""
+    number = whole(kind, tokens)
+    if number < 1:
+        raise ValueError(f"{number} is not a number of words")
+    return number
+
+
+def metres(kind: type, tokens: Sequence[Token]) -> float:
+    """Read a length."""
+    number = seconds(kind, tokens)
+    if number <= 0:
+        raise ValueError(f"{tokens[0].value} is not a positive number of metres")
+    return number
+
+
+def seconds(_type: type, tokens: Sequence[Token]) -> float:
+    """Read a time."""
+    try:
+        number = float(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is not a number") from None
+    if not isfinite(number):
+        raise ValueError(f"{tokens[0].value} is not a finite number")
+    return number
+
+
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a picture's size, ``640x480``."""
     parts = tokens[0].value.lower().split("x")
@@ -116,3 +154,6 @@ def _sixteenths(text: str) -> int:
     if value != int(value):
         raise ValueError(f"{text} is not a multiple of 1/16 voxel (0.0625)")
     return int(value)
+
+
+Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]

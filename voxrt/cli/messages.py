@@ -47,6 +47,20 @@ def summarize(title: str, rows: Iterable[tuple[str, str]]) -> None:
         _print(f"  {name:<10} {printable(value)}")
 
 
+def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
+    """Print a table, numbers to the right."""
+    rows = [tuple(map(printable, row)) for row in rows]
+    widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
+    right = [
+        all(row[column].replace(",", "").replace(".", "").isdigit() for row in rows) for column in range(len(heads))
+    ]
+    for row in [heads, *rows]:
+        cells = zip(row, widths, right, strict=True)
+        _print(
+            "  " + "  ".join(cell.rjust(wide) if number else cell.ljust(wide) for cell, wide, number in cells).rstrip()
+        )
+
+
 def picture_cost(frame: Frame, engine: str) -> str:
     """Say what a picture cost."""
     height, width = frame.material.shape
@@ -80,6 +94,21 @@ def stage_bar(stages: int) -> Iterator[Callable[[str], None]]:
             begun += 1
 
         yield begin
+
+
+@contextmanager
+def transfer_bar() -> Iterator[Callable[[str, int, int], None]]:
+    """Show how far a transfer is, while standard error is a terminal; yields what to call with stage, done, total."""
+    if not sys.stderr.isatty():
+        yield lambda _stage, _done, _total: None
+        return
+    from rich.console import Console  # noqa: PLC0415 - only terminals need it
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+
+    columns = (SpinnerColumn(), TextColumn("{task.description:<10}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda stage, done, total: progress.update(task, description=stage, completed=done, total=total)
 
 
 def _print(line: str) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, pixels, place, png, register, whole
+from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
@@ -22,17 +22,15 @@ def render(
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     engine: Literal["rtl", "model"] = "rtl",
-    size: Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)] = (
-        640,
-        480,
-    ),
+    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    size: Pixels = (640, 480),
     position: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
     ] = None,
     look: Annotated[Triple | None, _register] = None,
     right: Annotated[Triple | None, _register] = None,
     up: Annotated[Triple | None, _register] = None,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
@@ -42,11 +40,14 @@ def render(
     Parameters
     ----------
     rom
-        A .mem file. Its manifest, the .json beside it, gives materials, depth and dialect.
+        A .mem file or a memory in another format. Its manifest, the .json beside it, gives materials, depth and
+        dialect.
     output
         The picture, a .png; NAME.png in this folder when not given.
     engine
         The verilated hardware, or the exact model of it. Both give the same pixels.
+    config
+        The configuration of the hardware: how many lanes, which memory.
     size
         Width and height, pixels. [default: 640x480]
     position
@@ -69,16 +70,20 @@ def render(
         How to tell what was done.
     """
     file = png(Path(f"{rom.stem}.png") if output is None else output)
-    memory, warnings = voxrt.read_rom(rom, depth=depth, dialect=dialect)
+    blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
-    camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
+    memory, view = blob.rom, blob.view
+    if view is not None and (position, look, right, up) == (None, None, None, None):
+        camera = voxrt.Camera(view.position, view.look, view.right, view.up)
+    else:
+        camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size)
+        checked = voxrt.check(memory, camera, size, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine)
-    voxrt.save_picture(frame, file)
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
+    voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:

@@ -1,13 +1,13 @@
 """What ``--json`` prints: the shape of each command's result.
 
-The field names are a promise to programs: they may gain company, never change. ``schema()`` describes them to
-validators.
+The field names are a promise to programs: they may gain company, never change.
 """
 
 from __future__ import annotations
 
+import math
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -15,9 +15,11 @@ from voxrt.cli.messages import name_file
 from voxrt.outputs import OutputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.pipeline import BuildResult, Picture
+    from voxrt.pipeline import BudgetFit, BuildResult, Picture
+    from voxrt.voxelize import SceneWarning
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -69,6 +71,24 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """With ``--check``: pixels on which the two engines differ."""
 
 
+class BudgetEntry(msgspec.Struct, frozen=True):
+    """What fitting a memory to a budget took."""
+
+    words: int
+    """The budget."""
+    words_before: int
+    """What the memory takes without it."""
+    percent_changed: float
+    """Percent of the surface voxels that vanished or took another material."""
+    appeared: int
+    """Voxels that became solid."""
+    recoloured: int
+    """Voxels that took another material, hidden ones included."""
+    psnr: float | None
+    """Of the scene's picture against that without a budget, decibel; null where they are equal."""
+    ssim: float
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -84,12 +104,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Wall seconds a stage, in order."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
-
-
-def schema() -> dict[str, Any]:
-    """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components((BuildReport, RenderResult))
-    return definitions
+    budget: BudgetEntry | None = None
+    """Null when there was none."""
 
 
 def build_report(result: BuildResult) -> BuildReport:
@@ -105,10 +121,29 @@ def build_report(result: BuildResult) -> BuildReport:
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
         ],
-        warnings=[WarningEntry(warning.kind, warning.message, warning.count) for warning in result.warnings],
+        warnings=warning_entries(result.warnings),
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
+        budget=None if result.budget is None else _budget_entry(result.budget),
     )
+
+
+def _budget_entry(budget: BudgetFit) -> BudgetEntry:
+    fit = budget.fit
+    return BudgetEntry(
+        words=budget.words,
+        words_before=fit.words_shared,
+        percent_changed=fit.percent_changed,
+        appeared=fit.appeared,
+        recoloured=fit.recoloured,
+        psnr=budget.psnr if math.isfinite(budget.psnr) else None,
+        ssim=budget.ssim,
+    )
+
+
+def warning_entries(warnings: Iterable[SceneWarning]) -> list[WarningEntry]:
+    """Tell programs what was not honoured as it stands."""
+    return [WarningEntry(warning.kind, warning.message, warning.count) for warning in warnings]
 
 
 def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int | None = None) -> RenderResult:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "memory.h"
+#include "pixel.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -46,10 +47,10 @@ using Interrupted = std::function<bool()>;
 // Throws std::invalid_argument where a pixel's direction reaches kDirectionLimit on an axis.
 void check_directions(const Camera& camera, int32_t width, int32_t height);
 
-// Renders a frame of a verified memory. `materials` holds 256 sRGB triples, entry 0 the background. `threads` = 0
+// Renders a frame of a verified memory. `threads` = 0
 // takes every core. `render_tile` is one of tile_engines (frame_tile.h). Returns how many octree words were read.
-uint64_t render(const Memory& memory, const uint8_t* materials, const Camera& camera, const FrameView& frame,
-                int threads, RenderTile render_tile, const Interrupted& interrupted);
+uint64_t render(const Memory& memory, const Shading& shading, const Camera& camera, const FrameView& frame, int threads,
+                RenderTile render_tile, const Interrupted& interrupted);
 
 // Traces a list of rays through a verified memory; directions are below kDirectionLimit. Returns words read.
 uint64_t trace_all(const Memory& memory, const RaysView& rays, int threads, const Interrupted& interrupted);

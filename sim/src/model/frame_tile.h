@@ -1,4 +1,5 @@
-// One tile of a frame: its rays, their walk and their colours. frame_tile_body.h is compiled once an instruction set.
+// One tile of a frame: its rays, their walk and their colours by the camera's light or flat, without reflections.
+// frame_tile_body.h is compiled once an instruction set.
 #pragma once
 
 #include "frame.h"
@@ -12,8 +13,8 @@ namespace voxrt::model {
 inline constexpr int32_t kTileSide = 16; // pixels
 
 struct FrameJob {
-    const Memory& memory;     // verified
-    const uint8_t* materials; // 256 sRGB triples, entry 0 the background
+    const Memory& memory; // verified
+    const Shading& shading;
     const Camera& camera;
     const FrameView& frame;
     uint8_t material_at_camera; // of the camera's own voxel: what a ray without direction hits

@@ -24,13 +24,12 @@ struct Directions {
     Lanes d[3];
 };
 inline Directions directions_of(const FrameJob& job, Place place) {
-    constexpr Lanes kSteps{0, 1, 2, 3, 4, 5, 6, 7};
     Directions out;
     for (int axis = 0; axis < 3; ++axis) {
         const double right = job.camera.right[axis];
         const double first = job.camera.look[axis] + right * (place.column - job.frame.width / 2) +
                              static_cast<double>(job.camera.up[axis]) * (job.frame.height / 2 - place.row);
-        out.d[axis] = all(first) + right * kSteps;
+        out.d[axis] = ramp(first, right);
     }
     return out;
 }
@@ -53,14 +52,14 @@ inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
             const Lanes d = rays.d[axis];
             tile.mirrored[group][axis] = less(d, zero);
             still &= equal(d, zero);
-            size[axis] = larger(larger(d, -d), all(1));
+            size[axis] = larger(larger(d, zero - d), all(1));
             tile.face[group][axis] = 0;
         }
         for (int axis = 0; axis < 3; ++axis) {
             const double origin = job.camera.position[axis];
-            const Lanes weight = 4 * size[(axis + 1) % 3] * size[(axis + 2) % 3];
+            const Lanes weight = all(4) * size[(axis + 1) % 3] * size[(axis + 2) % 3];
             const Lanes start = choose(tile.mirrored[group][axis], all(world - origin), all(origin));
-            tile.scale[group][axis] = 16 * weight;
+            tile.scale[group][axis] = all(16) * weight;
             tile.offset[group][axis] = all(axis) - start * weight;
             if (const Mask dead = equal(rays.d[axis], zero)) {
                 const double rest = (job.camera.position[axis] >> 4) + 0.5; // in the middle of a cell: on no plane
@@ -81,7 +80,7 @@ struct Pixels {
 };
 inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Directions& rays) {
     const Mask x = tile.face[group][0], y = tile.face[group][1], z = tile.face[group][2];
-    const Mask none = static_cast<Mask>(~(x | y | z));
+    const Mask none = static_cast<Mask>(~(x | y | z)), plain = job.shading.flat ? 0xFF : none;
     Pixels out;
     out.material = tile.material[group];
     out.face = bytes_of(y | none) | bytes_of(z | none) << 1;
@@ -91,23 +90,23 @@ inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Dire
     double colours[3][kLanes];
     for (int channel = 0; channel < 3; ++channel)
         for (int lane = 0; lane < kLanes; ++lane)
-            colours[channel][lane] = job.materials[3 * material[lane] + channel];
+            colours[channel][lane] = job.shading.materials[3 * material[lane] + channel];
     Lanes surface[3];
     std::memcpy(surface, colours, sizeof surface);
 
-    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed. The quotient in doubles has the exact one's
-    // floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <= 255, more than half an ulp of
-    // k.
+    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed or the picture is flat. The quotient in
+    // doubles has the exact one's floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <=
+    // 255, more than half an ulp of k.
     const Lanes square[3] = {rays.d[0] * rays.d[0], rays.d[1] * rays.d[1], rays.d[2] * rays.d[2]};
-    const Lanes length = choose(none, all(1), square[0] + square[1] + square[2]);
-    const Lanes across = choose(x, square[0], choose(y, square[1], choose(z, square[2], all(1))));
-    IntLanes packed{};
-    for (int channel = 0; channel < 3; ++channel) {
-        const Lanes shaded = (2 * surface[channel] * across + length) / (2 * length);
-        packed |= __builtin_convertvector(shaded, IntLanes) << 8 * channel;
-    }
+    const Lanes length = choose(plain, all(1), square[0] + square[1] + square[2]);
+    const Lanes facing = choose(x, square[0], choose(y, square[1], square[2]));
+    const Lanes across = choose(plain, all(1), facing);
+    int32_t channels[3][kLanes];
+    const Lanes two = all(2);
+    for (int channel = 0; channel < 3; ++channel)
+        store_as_int(channels[channel], (two * surface[channel] * across + length) / (two * length));
     for (int lane = 0; lane < kLanes; ++lane) {
-        const int32_t pixel = packed[lane];
+        const int32_t pixel = channels[0][lane] | channels[1][lane] << 8 | channels[2][lane] << 16;
         std::memcpy(out.colour + 3 * lane, &pixel, 4); // the fourth byte is the next pixel's to overwrite
     }
     return out;

@@ -1,10 +1,10 @@
-// Eight doubles side by side, in the widest registers that the including file is compiled for.
+// Eight doubles side by side, in registers as wide as the including file is compiled for.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
 
-#if defined(__AVX2__)
+#if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
@@ -12,11 +12,6 @@ namespace voxrt::model {
 namespace { // internal: the same names are compiled for several instruction sets
 
 constexpr int kLanes = 8;
-
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
-typedef int32_t IntLanes __attribute__((vector_size(kLanes * sizeof(int32_t))));
-
-inline Lanes all(double x) { return Lanes{x, x, x, x, x, x, x, x}; }
 
 // Masks are bytes: bit i stands for lane i.
 using Mask = uint8_t;
@@ -27,78 +22,128 @@ inline uint64_t bytes_of(Mask mask) {
     return (bits + 0x7F7F7F7F7F7F7F7Fu) >> 7 & 0x0101010101010101u;
 }
 
+// A register's worth of lanes, and what compilers have no operator for. choose() takes `yes` where the mask is set.
 #if defined(__AVX512F__)
 
-inline Lanes larger(Lanes a, Lanes b) { return _mm512_maskz_max_pd(0xFF, a, b); }
-inline Lanes smaller(Lanes a, Lanes b) { return _mm512_maskz_min_pd(0xFF, a, b); }
-inline Mask less(Lanes a, Lanes b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
-inline Mask equal(Lanes a, Lanes b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
-inline Lanes choose(Mask mask, Lanes yes, Lanes no) { return _mm512_mask_blend_pd(mask, no, yes); }
-
-#else
-
-// Halves of the width of an AVX register; two of them, or four of SSE2 or NEON, are as fast as the compiler makes them.
-typedef double Half __attribute__((vector_size(kLanes * sizeof(double) / 2)));
-struct Halves {
-    Half low, high;
-};
-inline Halves halves(Lanes a) {
-    Halves out;
-    std::memcpy(&out, &a, sizeof out);
-    return out;
-}
-inline Lanes joined(Half low, Half high) {
-    const Halves both{low, high};
-    Lanes out;
-    std::memcpy(&out, &both, sizeof out);
-    return out;
+constexpr int kPartLanes = 8;
+typedef double Part __attribute__((vector_size(kPartLanes * sizeof(double))));
+inline Part larger(Part a, Part b) { return _mm512_maskz_max_pd(0xFF, a, b); }
+inline Part smaller(Part a, Part b) { return _mm512_maskz_min_pd(0xFF, a, b); }
+inline uint32_t less(Part a, Part b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+inline uint32_t equal(Part a, Part b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+inline Part choose(uint32_t mask, Part yes, Part no) {
+    return _mm512_mask_blend_pd(static_cast<__mmask8>(mask), no, yes);
 }
 
-#if defined(__AVX2__)
+#elif defined(__AVX2__)
 
-inline Lanes larger(Lanes a, Lanes b) {
-    return joined(_mm256_max_pd(halves(a).low, halves(b).low), _mm256_max_pd(halves(a).high, halves(b).high));
+constexpr int kPartLanes = 4;
+typedef double Part __attribute__((vector_size(kPartLanes * sizeof(double))));
+inline Part larger(Part a, Part b) { return _mm256_max_pd(a, b); }
+inline Part smaller(Part a, Part b) { return _mm256_min_pd(a, b); }
+inline uint32_t less(Part a, Part b) {
+    return static_cast<uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ)));
 }
-inline Lanes smaller(Lanes a, Lanes b) {
-    return joined(_mm256_min_pd(halves(a).low, halves(b).low), _mm256_min_pd(halves(a).high, halves(b).high));
+inline uint32_t equal(Part a, Part b) {
+    return static_cast<uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_EQ_OQ)));
 }
-template <int Relation> inline Mask compared(Lanes a, Lanes b) {
-    const int low = _mm256_movemask_pd(_mm256_cmp_pd(halves(a).low, halves(b).low, Relation));
-    const int high = _mm256_movemask_pd(_mm256_cmp_pd(halves(a).high, halves(b).high, Relation));
-    return static_cast<Mask>(low | high << 4);
-}
-inline Mask less(Lanes a, Lanes b) { return compared<_CMP_LT_OQ>(a, b); }
-inline Mask equal(Lanes a, Lanes b) { return compared<_CMP_EQ_OQ>(a, b); }
-inline Lanes choose(Mask mask, Lanes yes, Lanes no) {
+inline Part choose(uint32_t mask, Part yes, Part no) {
     const __m256i bits = _mm256_setr_epi64x(1, 2, 4, 8);
-    const auto blended = [&](int four, Half if_set, Half if_not) -> Half {
-        const __m256i set = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(four), bits), bits);
-        return _mm256_blendv_pd(if_not, if_set, _mm256_castsi256_pd(set));
-    };
-    return joined(blended(mask, halves(yes).low, halves(no).low),
-                  blended(mask >> 4, halves(yes).high, halves(no).high));
+    const __m256i set = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(mask), bits), bits);
+    return _mm256_blendv_pd(no, yes, _mm256_castsi256_pd(set));
 }
 
 #else
 
-inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
-inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
-template <class Truth> inline Mask mask_of(Truth truth) {
-    int mask = 0;
-    for (int lane = 0; lane < kLanes; ++lane)
-        mask |= static_cast<int>(truth[lane] & 1) << lane;
+constexpr int kPartLanes = 2;
+typedef double Part __attribute__((vector_size(kPartLanes * sizeof(double))));
+typedef int64_t PartTruth __attribute__((vector_size(kPartLanes * sizeof(int64_t))));
+#if defined(__SSE2__)
+inline Part larger(Part a, Part b) { return _mm_max_pd(a, b); }
+inline Part smaller(Part a, Part b) { return _mm_min_pd(a, b); }
+inline uint32_t mask_of(PartTruth truth) {
+    return static_cast<uint32_t>(_mm_movemask_pd(_mm_castsi128_pd(reinterpret_cast<__m128i>(truth))));
+}
+#else
+inline Part larger(Part a, Part b) { return a > b ? a : b; }
+inline Part smaller(Part a, Part b) { return a < b ? a : b; }
+inline uint32_t mask_of(PartTruth truth) { return static_cast<uint32_t>((truth[0] & 1) | (truth[1] & 2)); }
+#endif
+inline uint32_t less(Part a, Part b) { return mask_of(a < b); }
+inline uint32_t equal(Part a, Part b) { return mask_of(a == b); }
+inline Part choose(uint32_t mask, Part yes, Part no) {
+    const PartTruth set{-static_cast<int64_t>(mask & 1), -static_cast<int64_t>(mask >> 1 & 1)};
+    return set ? yes : no;
+}
+
+#endif
+
+constexpr int kParts = kLanes / kPartLanes;
+
+struct Lanes {
+    Part part[kParts];
+};
+
+template <class Operation> inline Lanes each(const Operation& operation) {
+    Lanes out;
+    for (int i = 0; i < kParts; ++i)
+        out.part[i] = operation(i);
+    return out;
+}
+template <class Relation> inline Mask joined(const Relation& relation) {
+    uint32_t mask = 0;
+    for (int i = 0; i < kParts; ++i)
+        mask |= relation(i) << i * kPartLanes;
     return static_cast<Mask>(mask);
 }
-inline Mask less(Lanes a, Lanes b) { return mask_of(a < b); }
-inline Mask equal(Lanes a, Lanes b) { return mask_of(a == b); }
-inline Lanes choose(Mask mask, Lanes yes, Lanes no) {
-    for (int lane = 0; lane < kLanes; ++lane)
-        no[lane] = mask >> lane & 1 ? yes[lane] : no[lane];
-    return no;
-}
 
-#endif
-#endif
+inline Lanes all(double x) {
+    return each([&](int) { return Part{} + x; });
+}
+// x, x + step, x + 2 step ...
+inline Lanes ramp(double x, double step) {
+    alignas(64) double values[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane)
+        values[lane] = x + step * lane;
+    Lanes out;
+    std::memcpy(&out, values, sizeof out);
+    return out;
+}
+inline Lanes operator+(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a.part[i] + b.part[i]; });
+}
+inline Lanes operator-(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a.part[i] - b.part[i]; });
+}
+inline Lanes operator*(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a.part[i] * b.part[i]; });
+}
+inline Lanes operator/(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a.part[i] / b.part[i]; });
+}
+inline Lanes larger(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return larger(a.part[i], b.part[i]); });
+}
+inline Lanes smaller(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return smaller(a.part[i], b.part[i]); });
+}
+inline Mask less(const Lanes& a, const Lanes& b) {
+    return joined([&](int i) { return less(a.part[i], b.part[i]); });
+}
+inline Mask equal(const Lanes& a, const Lanes& b) {
+    return joined([&](int i) { return equal(a.part[i], b.part[i]); });
+}
+inline Lanes choose(Mask mask, const Lanes& yes, const Lanes& no) {
+    return each([&](int i) { return choose(mask >> i * kPartLanes, yes.part[i], no.part[i]); });
+}
+// Rounds toward zero; values must fit.
+inline void store_as_int(int32_t* out, const Lanes& a) {
+    typedef int32_t IntPart __attribute__((vector_size(kPartLanes * sizeof(int32_t))));
+    for (int i = 0; i < kParts; ++i) {
+        const IntPart rounded = __builtin_convertvector(a.part[i], IntPart);
+        std::memcpy(out + i * kPartLanes, &rounded, sizeof rounded);
+    }
+}
 
 } // namespace
 } // namespace voxrt::model

@@ -5,9 +5,11 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,6 +24,10 @@ using Palette = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::
 using Registers = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
 using Triples = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
+using Position = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
+
+constexpr int kBounceLimit = 15;
 constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
@@ -62,7 +68,17 @@ bool signal_waits() {
 }
 
 nb::dict render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
-                      int height, int threads, const std::string& instructions) {
+                      int height, int threads, const std::string& instructions, bool flat,
+                      const std::optional<Position>& light, int ambient, int bounces,
+                      const std::optional<Flags>& mirrors) {
+    if (ambient < 0 || ambient > 255)
+        throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
+    if (bounces < 0 || bounces > kBounceLimit)
+        throw std::invalid_argument("bounces is " + std::to_string(bounces) + ", not 0 ... 15");
+    const uint8_t no_mirrors[256] = {};
+    Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}};
+    if (light)
+        shading.light = Light{{(*light)(0), (*light)(1), (*light)(2)}, static_cast<uint8_t>(ambient)};
     check_threads(threads);
     if (width < 1 || height < 1 || width > kSizeLimit || height > kSizeLimit)
         throw std::invalid_argument("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
@@ -86,7 +102,7 @@ nb::dict render_frame(const OwnedMemory& memory, const Palette& materials, const
     bool stopped = false;
     {
         nb::gil_scoped_release release;
-        words_read = render(memory.view(), materials.data(), camera,
+        words_read = render(memory.view(), shading, camera,
                             {width, height, colour.data.get(), material.data.get(), face.data.get()}, threads,
                             engine->render_tile, [&] { return stopped = signal_waits(); });
     }
@@ -142,10 +158,15 @@ NB_MODULE(_model, m) {
         .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
              "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
         .def("render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
-             nb::arg("threads") = 0, nb::arg("instructions") = "",
+             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
+             nb::arg("light") = nb::none(), nb::arg("ambient") = 0, nb::arg("bounces") = 0,
+             nb::arg("mirrors") = nb::none(),
              "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
              "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
-             "which is the fastest. Gives colour (H, W, 3), material (H, W), face (H, W), uint8, and words_read.\n"
+             "which is the fastest. docs/shading.md defines the rest: flat; light, None or (3,) int32 in 1/16 voxel, "
+             "with\n"
+             "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Gives colour (H, W, "
+             "3), material (H, W), face (H, W), uint8, and words_read.\n"
              "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"

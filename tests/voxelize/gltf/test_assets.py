@@ -41,6 +41,9 @@ def world(scene):
         ("gltf/glTF-Transform/functions/test/in/DenseSphere.glb", 30720, (1.85, 1.86, 1.85), 1),
         ("gltf/glTF-Transform/extensions/test/in/DracoSparseMesh.gltf", 102, (0.0262, 0.0395, 0.00295), 1),
         ("gltf/bevy/animated/MorphStressTest.gltf", 2412, (4, 0.6, 1), 0),
+        ("gltf/3d-demo-data/scene.glb", 21883, (11.4, 7.01, 11.4), 13),
+        ("gltf/meshoptimizer/pirate.glb", 5010, (1.52, 1.91, 0.455), 1),
+        ("gltf/gltf-pipeline/meshopt-no-fallback/meshopt-no-fallback.gltf", 60, (2, 4.71, 2), 2),
         ("gltf/cesium-native/0.gltf", 21, (1.78e5, 1.56e5, 3.31e5), 1),
     ],
 )

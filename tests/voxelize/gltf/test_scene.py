@@ -1,5 +1,8 @@
 """Triangles, materials and what authors say in extras, on files made by hand."""
 
+import json
+import tracemalloc
+
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
@@ -118,6 +121,30 @@ def test_a_small_file_that_asks_for_much_is_refused(tmp_path):
         load(path)
 
 
+@pytest.mark.parametrize("count", [900_000, 3_000_000, 3_600_000, 2**31, 2**62])
+@pytest.mark.parametrize("shared", [1, 40])
+def test_the_memory_of_a_small_file_is_bounded_whatever_it_asks_for(count, shared, tmp_path):
+    zeros = {"componentType": 5126, "type": "VEC3", "count": count}
+    primitive = {"attributes": {"POSITION": 0}}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive | {"attributes": {"POSITION": at}} for at in range(shared)]}],
+        "accessors": [zeros] * shared,
+    }
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps(gltf))
+    tracemalloc.start()
+    try:
+        load(path)
+    except AssetError as error:
+        assert "more than a file of this size may use in all" in str(error)  # noqa: PT017
+    finally:
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert peak < 500 << 20
+
+
 def materials_of(writer, path):
     scene = load(writer.save(path))
     return scene, [[scene.materials[m].name for m in thing.mesh.materials] for thing in scene.objects]
@@ -161,8 +188,7 @@ def test_materials_get_unique_names(tmp_path):
     writer.show(mesh=writer.mesh(TRIANGLE))
     scene = load(writer.save(tmp_path / "a.glb"))
     assert [material.name for material in scene.materials] == [
-        *("empty", "a", "a (materials[1])", "materials[2]", "default", "empty (materials[4])"),
-        "default (none in the file)",
+        *("empty", "a", "a (2)", "materials[2]", "default", "empty (2)", "default (2)"),
     ]
 
 
@@ -177,7 +203,7 @@ def test_more_than_255_materials_do_not_fit(count, fits, tmp_path):
     if fits:
         assert len(load(path).materials) == 256
     else:
-        with pytest.raises(DoesNotFitError, match=r"a\.glb: uses more than the 255 materials that a memory"):
+        with pytest.raises(DoesNotFitError, match=r"a\.glb: more than 255 materials are in use; merge some"):
             load(path)
 
 
@@ -228,6 +254,7 @@ def test_voxrt_collider_stands_in_for_the_mesh(tmp_path):
     assert isinstance(mesh, MeshCollider)
     assert mesh.triangles.tolist() == [[0, 1, 2], [1, 2, 3], [3, 4, 5]]
     assert {scene.materials[thing.collider_material].name for thing in scene.objects} == {"red"}
+    assert kinds(scene)["collider-material"] == 4
 
 
 @pytest.mark.parametrize(
@@ -250,11 +277,24 @@ def test_properties_in_the_wrong_place_are_refused(tmp_path):
     writer = two_coloured()
     writer.show(mesh=0)
     empty = writer.show(extras={"voxrt_collider": "box"})
-    with pytest.raises(AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node has no mesh; put "):
+    with pytest.raises(
+        AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node shows no triangles; put "
+    ):
         load(writer.save(tmp_path / "a.gltf"))
     writer.json["nodes"][empty] = {}
     writer.json["materials"][0]["extras"] = {"voxrt_collider": "box"}
     with pytest.raises(AssetError, match=r"materials\[0\]\.extras\.voxrt_collider: voxrt knows no such property here"):
+        load(writer.save(tmp_path / "a.gltf"))
+
+
+@pytest.mark.parametrize("array", ["scenes", "meshes"])
+def test_properties_on_scenes_and_meshes_are_refused(array, tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json[array][0]["extras"] = {"voxrt_collider": "box"}
+    with pytest.raises(
+        AssetError, match=rf"{array}\[0\]\.extras: voxrt's properties belong on nodes and materials; move"
+    ):
         load(writer.save(tmp_path / "a.gltf"))
 
 
@@ -263,3 +303,12 @@ def test_extras_of_others_are_left_alone(extras, tmp_path):
     writer = two_coloured()
     writer.show(mesh=0, extras=extras)
     assert len(load(writer.save(tmp_path / "a.gltf")).objects) == 1
+
+
+def test_primitives_without_positions_are_counted(tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json["meshes"][0]["primitives"].append({"attributes": {"NORMAL": 0}})
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert len(scene.objects[0].mesh.triangles) == 3
+    assert kinds(scene)["no-positions"] == 1

@@ -58,9 +58,27 @@ def test_a_pyramid_of_a_quad_and_triangles(ply, encoding):
     assert volume(triangles) == pytest.approx(4.0)
 
 
-def test_colours_are_counted(ply):
-    data = header("ascii", 3, 1, colour=True) + b"0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2 0\n"
-    assert {one.kind: one.count for one in ply(data).warnings} == {"vertex-colours": 3, "default-material": 1}
+def test_vertex_colours(ply):
+    data = header("ascii", 3, 1, colour=True) + b"0 0 0 10 20 255\n1 0 0 10 20 255\n0 1 0 10 20 255\n3 0 1 2 0\n"
+    scene = ply(data)
+    assert [one.colour for one in scene.materials[1:]] == [(10, 20, 255)]
+    assert {one.kind: one.count for one in scene.warnings} == {"painted": 1}
+
+
+def test_colours_of_faces_come_before_those_of_vertices(ply):
+    text = header("ascii", 3, 2, colour=True).replace(
+        b"property short", b"property float red\nproperty float green\nproperty float blue\nproperty short"
+    )
+    vertices = b"0 0 0 10 20 255\n1 0 0 10 20 255\n0 1 0 10 20 255\n"
+    scene = ply(text + vertices + b"3 0 1 2 1 0 0 0\n3 2 1 0 0 1 0 0\n")
+    assert [scene.materials[number].colour for number in scene.objects[0].mesh.materials] == [(255, 0, 0), (0, 255, 0)]
+
+
+def test_faces_that_are_transparent_are_air(ply):
+    text = header("ascii", 6, 2, colour=True).replace(b"blue\n", b"blue\nproperty uchar alpha\n")
+    rows = b"".join(b"%d %d 0 9 9 9 %d\n" % (x, y, alpha) for alpha in (255, 0) for x, y in ((0, 0), (1, 0), (0, 1)))
+    scene = ply(text + rows + b"3 0 1 2 0\n3 3 4 5 0\n")
+    assert len(scene.objects[0].mesh.triangles) == 1
 
 
 @pytest.mark.parametrize(

@@ -1,21 +1,17 @@
-"""PLY, ASCII and binary of both byte orders."""
+"""The PLY format: a header that describes tables, and their rows."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.material_table import MaterialTable
-from voxrt.voxelize.notes import Notes
-from voxrt.voxelize.polygons import triangulate
-from voxrt.voxelize.scene import Mesh, Scene, SceneObject
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
 _TYPES = {
@@ -55,15 +51,15 @@ class _Element:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _List:
+class ListColumn:
     """A list property of all rows: their lengths, int64 (N,), and their values end to end."""
 
     counts: NDArray[np.int64]
-    values: _Column
+    values: Column
 
 
-_Column: TypeAlias = "NDArray[np.float64] | NDArray[np.integer]"
-_Table: TypeAlias = "dict[str, _Column | _List]"
+Column: TypeAlias = "NDArray[np.float64] | NDArray[np.integer]"
+Table: TypeAlias = "dict[str, Column | ListColumn]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,77 +71,23 @@ class _Binary:
     order: str
 
 
-def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
-    """Read a PLY file: vertices and polygons.
+def read_tables(path: Path, data: bytes) -> dict[str, Table]:
+    """Read all tables.
 
     Parameters
     ----------
-    path
-        The file.
-    up
-        The file's up axis; None means y.
-    unit
-        Metres per unit of the file; None means 1.
+    path, data
+        The file and its bytes.
+
+    Returns
+    -------
+    Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
 
     Raises
     ------
     AssetError
-        The file cannot be read, contradicts its header, or has no faces.
+        The header is none, or the rows are not what it says.
     """
-    path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
-    notes = Notes()
-    tables = _read(path, data)
-    positions, counts, corners = _geometry(path, tables, notes)
-    triangles, _ = triangulate(positions, counts, corners)
-    table = MaterialTable()
-    material = table.default(notes, len(counts))
-    mesh = Mesh(positions, triangles, np.full(len(triangles), material, dtype=np.uint8))
-    one = SceneObject(path.stem, mesh, scene_transform(up, unit))
-    return Scene(path.stem, (one,), table.materials(), notes.warnings())
-
-
-def _geometry(
-    path: Path, tables: dict[str, _Table], notes: Notes
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Positions, corners per face and corners."""
-    vertices, faces = tables.get("vertex", {}), tables.get("face", {})
-    if "tristrips" in tables:
-        notes.add("tristrips", "triangle strips are not honoured; export triangles")
-    axes = [vertices.get(axis) for axis in "xyz"]
-    polygons = faces.get("vertex_indices", faces.get("vertex_index"))
-    if not isinstance(polygons, _List) or not len(polygons.counts):
-        raise AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
-    if any(axis is None or isinstance(axis, _List) for axis in axes):
-        raise AssetError(path, "has vertices without x, y and z", fix="export it again")
-    positions = np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1)
-    counts = polygons.counts
-    # Out of range before the cast, for ASCII numbers may be anything; NaN compares false.
-    wrong = np.flatnonzero(~((polygons.values >= 0) & (polygons.values < len(positions))))
-    if len(wrong):
-        face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
-        problem = f"vertex {polygons.values[wrong[0]]} is none of the file's {len(positions)}"
-        raise AssetError(path, problem, place=f"face {face}", fix="export it again")
-    corners = polygons.values.astype(np.int64)
-    if not np.isfinite(positions[corners]).all():
-        raise AssetError(path, "a face has a vertex whose coordinates are no numbers", fix="export it again")
-    keep = counts >= 3
-    notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
-    for name, colours in (("vertex", vertices), ("face", faces)):
-        if {"red", "green", "blue"} <= colours.keys():
-            notes.add(
-                "vertex-colours", f"{name} colours are not honoured", len(counts if name == "face" else positions)
-            )
-    corners, counts = corners[np.repeat(keep, counts)], counts[keep]
-    if not len(counts):
-        raise AssetError(path, "has no faces of three corners or more", fix="export it again")
-    return positions, counts, corners
-
-
-def _read(path: Path, data: bytes) -> dict[str, _Table]:
     order, elements, body = _header(path, data)
     if order:
         return _binary(_Binary(path, data, order), body, elements)
@@ -200,9 +142,9 @@ def _cut_short(path: Path, element: _Element) -> AssetError:
     return AssetError(path, f"ends before its {element.count} {element.name} rows do", fix="copy or export it again")
 
 
-def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, _Table]:
+def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table]:
     words = body.split()
-    tables: dict[str, _Table] = {}
+    tables: dict[str, Table] = {}
     at = 0
     for element in elements:
         if not any(one.count_kind for one in element.properties):
@@ -228,7 +170,7 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, _Tabl
                 column.extend(words[at : at + length])
                 at += length
         tables[element.name] = {
-            one.name: _List(np.array(lengths, dtype=np.int64), _numbers(path, element, column))
+            one.name: ListColumn(np.array(lengths, dtype=np.int64), _numbers(path, element, column))
             if one.count_kind
             else _numbers(path, element, column)
             for column, lengths, one in zip(columns, counts, element.properties, strict=True)
@@ -245,18 +187,18 @@ def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.fl
         raise AssetError(path, f"{element.name}: {error}", fix="export it again") from None
 
 
-def _binary(file: _Binary, at: int, elements: list[_Element]) -> dict[str, _Table]:
-    tables: dict[str, _Table] = {}
+def _binary(file: _Binary, at: int, elements: list[_Element]) -> dict[str, Table]:
+    tables: dict[str, Table] = {}
     for element in elements:
         table, at = _binary_element(file, at, element)
         tables[element.name] = table
     return tables
 
 
-def _binary_element(file: _Binary, at: int, element: _Element) -> tuple[_Table, int]:
+def _binary_element(file: _Binary, at: int, element: _Element) -> tuple[Table, int]:
     if not element.count or not element.properties:
         empty = np.zeros(0)
-        no_list = _List(np.zeros(0, dtype=np.int64), empty)
+        no_list = ListColumn(np.zeros(0, dtype=np.int64), empty)
         return {one.name: no_list if one.count_kind else empty for one in element.properties}, at
     lengths = _first_lengths(file, at, element)
     row = _row_type(file.order, element, lengths)
@@ -264,7 +206,9 @@ def _binary_element(file: _Binary, at: int, element: _Element) -> tuple[_Table, 
         rows = np.frombuffer(file.data, dtype=row, count=element.count, offset=at)
         if all((rows[f"{name} count"] == length).all() for name, length in lengths.items()):
             return {
-                one.name: _List(np.full(element.count, lengths[one.name], dtype=np.int64), rows[one.name].reshape(-1))
+                one.name: ListColumn(
+                    np.full(element.count, lengths[one.name], dtype=np.int64), rows[one.name].reshape(-1)
+                )
                 if one.count_kind
                 else rows[one.name]
                 for one in element.properties
@@ -305,7 +249,7 @@ def _row_type(order: str, element: _Element, lengths: dict[str, int]) -> np.dtyp
     return np.dtype(fields)
 
 
-def _binary_rows(file: _Binary, at: int, element: _Element) -> tuple[_Table, int]:
+def _binary_rows(file: _Binary, at: int, element: _Element) -> tuple[Table, int]:
     """Rows whose lists differ in length, one after another."""
     columns: list[list[bytes]] = [[] for _ in element.properties]
     counts: list[list[int]] = [[] for _ in element.properties]
@@ -320,8 +264,8 @@ def _binary_rows(file: _Binary, at: int, element: _Element) -> tuple[_Table, int
             column.append(file.data[at : at + size])
             lengths.append(length)
             at += size
-    table: _Table = {}
+    table: Table = {}
     for column, lengths, one in zip(columns, counts, element.properties, strict=True):
         values = np.frombuffer(b"".join(column), dtype=file.order + one.kind)
-        table[one.name] = _List(np.array(lengths, dtype=np.int64), values) if one.count_kind else values
+        table[one.name] = ListColumn(np.array(lengths, dtype=np.int64), values) if one.count_kind else values
     return table, at

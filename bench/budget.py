@@ -1,0 +1,89 @@
+"""Benchmark of fitting to a budget: ours against a coarser world of the same size, on scenes and generated bodies.
+
+Usage: ``python bench/budget.py [--write]``. ``--write`` puts the table into ``bench/results/budget.md`` as well. For
+each scene the budgets are the sizes of the worlds coarser by one and by two levels. Both are measured against the whole
+octree: percent of the surface voxels that changed, voxels that appeared.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import voxrt
+from voxrt import octree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[1]
+ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
+RESULTS = ROOT / "bench" / "results" / "budget.md"
+HEAD = ("scene", "words", "budget", "coarser: changed", "appeared", "ours: changed", "appeared", "words", "seconds")
+
+
+def scenes() -> Iterator[octree.Rom]:
+    """Give the project's own scenes, MagicaVoxel scenes where they are there, and two bodies with rough skins."""
+    for path in sorted((ROOT / "examples").glob("*.glb")):
+        yield voxrt.build(path, depth=8).rom
+    for path in sorted(ASSETS.glob("vox/*/vox/scene_*.vox")):
+        yield octree.read_vox(path)[0]
+    for materials in (1, 3):
+        yield octree.Rom(f"rough bodies, {materials} materials", octree.from_dense(bodies(7, materials)), ())
+
+
+def bodies(depth: int, materials: int) -> np.ndarray:
+    """Four overlapping balls with rough skins; uint8, a cube indexed [x, y, z]."""
+    rng = np.random.default_rng(0)
+    side = 1 << depth
+    grid = np.stack(np.indices((side,) * 3), -1) + 0.5
+    cube = np.zeros((side,) * 3, np.uint8)
+    for i in range(4):
+        centre, radius = rng.uniform(0.3, 0.7, 3) * side, rng.uniform(0.1, 0.25) * side
+        skin = 0.05 * radius * np.sin(grid @ rng.normal(size=3) * 40 / side)
+        cube[np.linalg.norm(grid - centre, axis=-1) < radius + skin] = 1 + i % materials
+    return cube
+
+
+def compare(rom: octree.Rom) -> Iterator[tuple[str, ...]]:
+    """Give the rows of one scene."""
+    whole = octree.share(rom.octree)
+    colours = np.array([material.colour for material in rom.materials], np.uint8) if rom.materials else None
+    for level in (1, 2):
+        plain = octree.coarsen(whole, level)
+        start = time.perf_counter()
+        fit = octree.fit(whole, len(plain.words), colours=colours)
+        seconds = time.perf_counter() - start
+        yield (
+            rom.name,
+            f"{len(whole.words):,}",
+            f"{len(plain.words):,}",
+            f"{octree.surface_change(whole, plain).percent:.1f} %",
+            f"{octree.diff(whole, plain).appeared:,}",
+            f"{fit.percent_changed:.1f} %",
+            f"{fit.appeared:,}",
+            f"{len(fit.octree.words):,}",
+            f"{seconds:.1f}",
+        )
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
+    rows = [HEAD, ("---",) * len(HEAD), *(row for rom in scenes() for row in compare(rom))]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    print(text, end="")
+    if options.write:
+        RESULTS.parent.mkdir(exist_ok=True)
+        RESULTS.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

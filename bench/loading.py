@@ -1,0 +1,97 @@
+"""Benchmark of loading: seconds for large files beside trimesh's own load of the same file.
+
+Usage: ``python bench/loading.py [--assets FOLDER] [--write]``. Each time is the least of five, in turns. Files are
+some of the folder of assets, and balls that are written for the purpose; ``--write`` puts the table into
+``bench/results/loading.md`` as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import trimesh
+
+from voxrt.voxelize.load import load
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = Path(__file__).resolve().parent / "results" / "loading.md"
+REPEATS = 5
+ASSETS = (
+    "obj/odedstein-meshes/skull/skull.obj",
+    "ply/USD-Fileformat-plugins/gargo.ply",
+    "ply/trimesh/cycloidal.ply",
+    "gltf/glTF-Transform/functions/test/in/DenseSphere.glb",
+)
+
+
+def write_spheres(folder: Path) -> list[Path]:
+    """Write one ball of 327,680 triangles in every format that trimesh writes."""
+    ball = trimesh.creation.icosphere(subdivisions=7)
+    paths = [folder / f"ball.{suffix}" for suffix in ("obj", "stl", "ply", "glb")]
+    for path in paths:
+        ball.export(path)
+    textured = folder / "ball_with_normals_and_coordinates.obj"
+    uv = np.column_stack([np.arctan2(ball.vertices[:, 0], ball.vertices[:, 2]), ball.vertices[:, 1]])
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in ball.vertices]
+    lines += [f"vt {u:.6f} {v:.6f}" for u, v in uv]
+    lines += [f"vn {x:.6f} {y:.6f} {z:.6f}" for x, y, z in ball.vertices]
+    lines += ["f " + " ".join(f"{i}/{i}/{i}" for i in face) for face in (ball.faces + 1).tolist()]
+    textured.write_text("\n".join(lines) + "\n")
+    return [*paths, textured]
+
+
+def seconds(action: Callable[[], object]) -> float:
+    """Time one call."""
+    start = time.perf_counter()
+    action()
+    return time.perf_counter() - start
+
+
+def measure(path: Path) -> tuple[int, float, float, float]:
+    """Return triangles, and the least seconds of voxrt, of trimesh, and of trimesh without merging vertices."""
+    ours, theirs, raw = [], [], []
+    for _ in range(REPEATS):
+        ours.append(seconds(lambda: load(path)))
+        theirs.append(seconds(lambda: trimesh.load(path)))
+        raw.append(seconds(lambda: trimesh.load(path, process=False)))
+    triangles = sum(len(one.mesh.triangles) for one in load(path).objects)
+    return triangles, min(ours), min(theirs), min(raw)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    default = os.environ.get("VOXRT_ASSETS", str(ROOT.parent / "shared" / "assets"))
+    parser.add_argument("--assets", type=Path, default=Path(default))
+    parser.add_argument("--write", action="store_true")
+    arguments = parser.parse_args()
+    table = [
+        f"Milliseconds; {platform.machine()}, Python {platform.python_version()}, trimesh {trimesh.__version__}.",
+        "",
+        "| file | triangles | voxrt | trimesh | trimesh, `process=False` |",
+        "|---|---|---|---|---|",
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        paths = write_spheres(Path(folder)) + [arguments.assets / name for name in ASSETS]
+        for path in paths:
+            if path.exists():
+                count, ours, theirs, raw = measure(path)
+                table.append(f"| {path.name} | {count:,} | {ours * 1e3:.0f} | {theirs * 1e3:.0f} | {raw * 1e3:.0f} |")
+    print("\n".join(table))
+    if arguments.write:
+        RESULTS.parent.mkdir(exist_ok=True)
+        RESULTS.write_text("# Loading\n\n" + "\n".join(table) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,147 @@
+"""Benchmark of the exact model: pixels a second a core, against the report's C++ algorithm and the simulated hardware.
+
+Usage: ``python bench/model.py [MEMORY.mem ...] [--size N] [--clock MHZ] [--write]``. Without memories it takes the
+demo scene at two depths. ``original.cpp``, the report's algorithm, is compiled with ``c++ -O2`` and run beside it,
+with the data handling of its appendix and without, from a camera that it can stand (in the world, on whole voxels,
+along an axis). ``--clock`` is the hardware's clock, by which its counted cycles become time. ``--write`` puts the
+table into ``bench/results/model.md`` as well. Each time is the least of seven; on one core it is the processor's
+time, so that other work on the machine does not count.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import voxrt
+from voxrt.octree import Rom, material_at
+from voxrt.sim import Camera, SimulatorError, _model, render
+
+HERE = Path(__file__).resolve().parent
+SCENE = HERE.parent / "examples" / "courtyard.glb"
+RESULTS = HERE / "results" / "model.md"
+REPEATS = 7
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A memory and a camera in it that all contestants can take."""
+
+    name: str
+    rom: Rom
+    camera: Camera
+
+
+def subject(rom: Rom, size: int) -> Subject:
+    """Put the camera at the front of the world, in the first free voxel from its middle upwards, looking in."""
+    side = rom.octree.size
+    middle, front = side // 2, side - 1
+    free = [y for y in range(middle, side) if material_at(rom.octree, (middle, y, front)) == 0]
+    if not free:
+        raise SystemExit(f"{rom.name}: no free voxel at its front for the camera to stand in")
+    position = tuple(16 * value for value in (middle, free[0], front))
+    return Subject(
+        f"{rom.name}, depth {rom.octree.depth}", rom, Camera(position, (0, 0, -size // 2), (1, 0, 0), (0, 1, 0))
+    )
+
+
+def compile_original(program: Path, *flags: str) -> Path:
+    """Compile the report's algorithm as its authors did."""
+    command = [os.environ.get("CXX", "c++"), "-O2", "-std=c++20", *flags, HERE / "original.cpp", "-o", program]
+    subprocess.run(command, check=True)
+    return program
+
+
+def original_seconds(program: Path, subject: Subject, size: int) -> float:
+    """Give the least seconds of a frame by the report's algorithm, on one core."""
+    memory = program.with_suffix(".mem")
+    memory.write_text("".join(f"{word:08X}\n" for word in subject.rom.octree.words))
+    camera = subject.camera
+    position = [value // 16 for value in camera.position]
+    numbers = [subject.rom.octree.depth, size, size, *position, *camera.look, *camera.right, *camera.up]
+    runs = [
+        subprocess.run([program, memory, *map(str, numbers)], check=True, capture_output=True, text=True).stdout
+        for _ in range(REPEATS)
+    ]
+    return min(float(run.split()[0]) for run in runs)
+
+
+def model_seconds(subject: Subject, size: int, threads: int, instructions: str) -> float:
+    """Give the least seconds of a frame by the model, its memory loaded before."""
+    rom, camera = subject.rom, subject.camera
+    memory = _model.Memory(rom.octree.words, rom.octree.depth)
+    palette = np.zeros((256, 3), np.uint8)
+    palette[: len(rom.materials)] = [material.colour for material in rom.materials]
+    registers = np.array([camera.position, camera.look, camera.right, camera.up], np.int32)
+    clock = time.process_time if threads == 1 else time.perf_counter
+    times = []
+    for _ in range(REPEATS):
+        started = clock()
+        memory.render(palette, registers, size, size, threads, instructions)
+        times.append(clock() - started)
+    return min(times)
+
+
+def measure(subject: Subject, published: Path, bare: Path, size: int, clock: float) -> list[tuple[str, str]]:
+    """Give the rows of one subject's table."""
+    pixels = size * size
+    original = original_seconds(published, subject, size)
+    at_its_best = original_seconds(bare, subject, size)
+    rows = [
+        (f"**{subject.name}**", f"{size}x{size} pixels"),
+        ("report's program, 1 core", nanoseconds(original, pixels)),
+        ("its algorithm on plain arrays, 1 core", nanoseconds(at_its_best, pixels, original)),
+    ]
+    for instructions in _model.INSTRUCTION_SETS:
+        seconds = model_seconds(subject, size, 1, instructions)
+        rows.append((f"model, 1 core, {instructions}", nanoseconds(seconds, pixels, original)))
+    cores = os.cpu_count()
+    rows.append((f"model, {cores} cores", nanoseconds(model_seconds(subject, size, 0, ""), pixels, original)))
+    try:
+        cost = render(subject.rom, subject.camera, (size, size), engine="rtl").cost
+    except SimulatorError as error:
+        return [*rows, ("hardware, tiny", str(error))]
+    hardware = cost.cycles / (clock * 1e6)
+    rows.append((f"hardware, tiny, at {clock:g} MHz", nanoseconds(hardware, pixels, original)))
+    return [*rows, ("hardware, cycles a pixel", f"{cost.cycles / pixels:.2f}")]
+
+
+def nanoseconds(seconds: float, pixels: int, original: float | None = None) -> str:
+    """Say a time a pixel, and how many times as fast that is."""
+    text = f"{seconds / pixels * 1e9:.1f} ns a pixel"
+    return text if original is None else f"{text}, {original / seconds:.0f} times as fast"
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("memories", nargs="*", type=Path)
+    parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--clock", type=float, default=100.0)
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
+    roms = [voxrt.read_rom(path)[0] for path in options.memories]
+    roms = roms or [voxrt.build(SCENE, depth=depth).rom for depth in (7, 9)]
+    table = [("what", "measured"), ("---", "---"), ("machine", f"{platform.machine()}, {os.cpu_count()} cores")]
+    with tempfile.TemporaryDirectory() as folder:
+        published = compile_original(Path(folder) / "published", "-DAS_PUBLISHED")
+        bare = compile_original(Path(folder) / "bare")
+        for rom in roms:
+            table += measure(subject(rom, options.size), published, bare, options.size, options.clock)
+    text = "".join(f"| {name} | {value} |\n" for name, value in table)
+    print(text, end="")
+    if options.write:
+        RESULTS.parent.mkdir(exist_ok=True)
+        RESULTS.write_text(f"# The exact model, measured by bench/model.py\n\n{text}")
+
+
+if __name__ == "__main__":
+    main()

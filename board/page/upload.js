@@ -1,0 +1,55 @@
+// Scenes from files: announced, sent in chunks with a CRC-32 each, then the server's own progress until the swap.
+
+const WINDOW = 8; // chunks under way
+const TABLE = Uint32Array.from({ length: 256 }, (_, n) => {
+  for (let bit = 0; bit < 8; bit++) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
+  return n >>> 0;
+});
+
+export function crc32(bytes) {
+  let crc = 0xffffffff;
+  for (let i = 0; i < bytes.length; i++) crc = TABLE[(crc ^ bytes[i]) & 255] ^ (crc >>> 8);
+  return (crc ^ 0xffffffff) >>> 0;
+}
+
+function chunk(upload, offset, bytes) {
+  const message = new Uint8Array(16 + bytes.length);
+  const view = new DataView(message.buffer);
+  message.set([0x56, 0x58, 0x43, 0x48]); // VXCH
+  view.setUint32(4, upload, true);
+  view.setUint32(8, offset, true);
+  view.setUint32(12, crc32(bytes), true);
+  message.set(bytes, 16);
+  return message;
+}
+
+// `report(stage, done, total)`; resolves with the scene, rejects with the server's reason.
+export async function upload(link, files, report) {
+  const parts = await Promise.all(files.map(async (file) => new Uint8Array(await file.arrayBuffer())));
+  const total = parts.reduce((sum, part) => sum + part.length, 0);
+  const { upload: limit, chunk: step } = link.hello.limits;
+  if (total === 0) throw new Error("the file is empty");
+  if (total > limit) throw new Error(`${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the board takes`);
+  const data = new Uint8Array(total);
+  parts.reduce((at, part) => (data.set(part, at), at + part.length), 0);
+
+  let received = 0;
+  let wake = () => {};
+  const progress = (message) => {
+    if (message.type === "received") {
+      received = message.bytes;
+      report("send", received, total);
+    } else report(message.stage, message.done, message.total);
+    wake();
+  };
+  const announced = files.map((file, i) => ({ name: file.name, size: parts[i].length, crc32: crc32(parts[i]) }));
+  const ready = await link.ask("upload", { files: announced });
+  let fault = null;
+  const done = new Promise((resolve, reject) => link.pending.set(ready.request, { resolve, reject, progress }));
+  done.catch((error) => { fault = error; wake(); });
+  for (let offset = 0; offset < total && !fault; offset += step) {
+    while (offset - received >= WINDOW * step && !fault) await new Promise((resolve) => { wake = resolve; });
+    if (!fault) link.socket.send(chunk(ready.upload, offset, data.subarray(offset, offset + step)));
+  }
+  return (await done).scene;
+}

@@ -1,0 +1,48 @@
+"""The browser page, read once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+HEADERS = (
+    ("Cache-Control", "no-cache"),
+    ("X-Content-Type-Options", "nosniff"),
+    ("Referrer-Policy", "no-referrer"),
+    ("Cross-Origin-Resource-Policy", "same-origin"),
+    (
+        "Content-Security-Policy",
+        (
+            "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
+            "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        ),
+    ),
+)
+"""What every file is sent with: nothing of it runs, or is framed, anywhere else."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageFile:
+    """A file's bytes and their media type."""
+
+    data: bytes
+    media_type: str
+
+
+@cache
+def page_files() -> dict[str, PageFile]:
+    """Give the files of the page by their path in URLs."""
+    folder = Path(__file__).with_name("page")
+    files = {
+        f"/{path.name}": PageFile(path.read_bytes(), _TYPES[path.suffix])
+        for path in sorted(folder.iterdir())
+        if path.suffix in _TYPES
+    }
+    return {"/": files["/index.html"], **files}

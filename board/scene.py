@@ -1,0 +1,105 @@
+"""A scene as a board takes it, checked before the first word is written."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import Refused
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .view import Camera, Triple
+
+MAX_DEPTH = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Lighting:
+    """How a scene wants to be lit at first, as :class:`~.view.View` has it: light, ambient, bounces, features."""
+
+    position: Triple
+    ambient: int
+    bounces: int
+    features: frozenset[str]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """An octree memory with its materials and what to see it by.
+
+    Attributes
+    ----------
+    name
+        For people.
+    depth
+        Levels; the world is 2**depth voxels a side.
+    words
+        uint32, shape (N,), report dialect: word 0 is the root, blocks stand at 1 + 8k.
+    colours
+        uint8, shape (256, 3), sRGB by material id; row 0 is the background.
+    mirrors
+        bool, shape (256,): materials that reflect.
+    camera
+        Where to look from at first, in frames of 640 x 480; None where the file does not say.
+    lighting
+        None where the file does not say.
+    """
+
+    name: str
+    depth: int
+    words: NDArray[np.uint32]
+    colours: NDArray[np.uint8]
+    mirrors: NDArray[np.bool_]
+    camera: Camera | None = None
+    lighting: Lighting | None = None
+
+    @property
+    def background(self) -> Triple:
+        """The colour of row 0."""
+        red, green, blue = (int(channel) for channel in self.colours[0])
+        return red, green, blue
+
+    @property
+    def crc32(self) -> int:
+        """CRC-32 of the words, little-endian bytes."""
+        return zlib.crc32(self.words.astype("<u4").tobytes())
+
+
+def check_memory(words: NDArray[np.uint32], depth: int) -> None:
+    """Refuse a memory that is no octree of `depth` levels, so that the ray tracer never meets one.
+
+    Raises
+    ------
+    Refused
+        A pointer that leaves the memory, stands beside the blocks, or leads deeper than `depth` (a cycle always does);
+        a leaf that is no tag of the report dialect. Names the word.
+    """
+    if not 1 <= depth <= MAX_DEPTH:
+        raise Refused(f"a depth of {depth} is not 1 to {MAX_DEPTH}; build the scene again")
+    if len(words) % 8 != 1:
+        raise Refused(f"{len(words)} words are not a root and blocks of 8; build the scene again")
+    addresses = np.zeros(1, dtype=np.int64)
+    for level in range(depth + 1):
+        reached = words[addresses]
+        is_pointer = reached >> 31 == 0
+        _refuse_any(addresses, ~is_pointer & (reached >> 8 != 0xFFFFFF), "is neither a pointer nor a material tag")
+        at, pointers = addresses[is_pointer], reached[is_pointer].astype(np.int64)
+        if level == depth:
+            _refuse_any(at, np.ones(len(at), dtype=bool), f"points deeper than {depth} levels")
+        _refuse_any(at, (pointers % 8 != 1) | (pointers + 8 > len(words)), "points to no block of the memory")
+        addresses = (np.unique(pointers)[:, None] + np.arange(8)).ravel()
+
+
+def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:
+    """Give the words of a memory as they read when its root stands at `base`, a multiple of 8."""
+    return np.where(words >> 31 == 0, words + np.uint32(base), words)
+
+
+def _refuse_any(addresses: NDArray[np.int64], wrong: NDArray[np.bool_], what: str) -> None:
+    if wrong.any():
+        raise Refused(f"word 0x{int(addresses[wrong][0]):X} {what}; build the scene again")

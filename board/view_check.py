@@ -1,0 +1,53 @@
+"""Views that a device cannot show, refused before it sees them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .errors import Refused
+
+if TYPE_CHECKING:
+    from .device import Identity
+    from .view import View
+
+DIRECTION_LIMIT = 1 << 20
+"""Every component of a pixel's direction is smaller than this."""
+
+
+def check_view(view: View, identity: Identity) -> None:
+    """Refuse a view that is out of the device's range.
+
+    Raises
+    ------
+    Refused
+        The frame is too large, the camera too far out, a direction too long, or a feature is not there.
+    """
+    columns, rows = view.size
+    if columns > identity.size[0] or rows > identity.size[1]:
+        raise Refused(
+            f"{columns}x{rows} pixels are more than {identity.name} has: {identity.size[0]}x{identity.size[1]}"
+        )
+    missing = view.features - identity.features
+    if missing:
+        raise Refused(f"{identity.name} has no {', '.join(sorted(missing))}")
+    for name, position in (("camera", view.camera.position), ("light", view.light)):
+        if not all(-identity.position_limit <= value < identity.position_limit for value in position):
+            limit = identity.position_limit // 16
+            raise Refused(f"the {name} stands more than {limit} voxels from the world's corner; move it closer")
+    longest = max(_longest(view, axis) for axis in range(3))
+    if longest >= DIRECTION_LIMIT:
+        raise Refused(
+            f"the camera's directions reach {longest} at the frame's corners, which is not below {DIRECTION_LIMIT}; "
+            "scale look, right and up down together"
+        )
+
+
+def _longest(view: View, axis: int) -> int:
+    # Directions are linear in the pixel: the largest stand in the corners.
+    columns, rows = view.size
+    camera = view.camera
+    return max(
+        abs(camera.look[axis] + camera.right[axis] * column + camera.up[axis] * row)
+        for column in (-(columns // 2), columns - 1 - columns // 2)
+        for row in (rows // 2, rows // 2 - rows + 1)
+    )

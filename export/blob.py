@@ -1,0 +1,205 @@
+"""The blob: a whole scene in one file, for a board that reads no other.
+
+``docs/blob.md`` describes it byte by byte, ``docs/voxrt_blob.h`` for C and ``docs/voxrt_blob.ksy`` for Kaitai Struct.
+All numbers are little-endian. A header and a table name the sections, each with its CRC-32; a reader passes over
+sections that it does not know.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.export.atomic import write_atomically
+from voxrt.export.word_file import read_bytes
+from voxrt.octree import Rom, RomError, census, decode
+from voxrt.voxelize import Grid, Material
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MAGIC = b"VOXRTBLB"
+VERSION = 1
+
+_HEADER = struct.Struct("<8sIIII")  # magic, version, sections, bytes of the file, CRC-32 of the table
+_ENTRY = struct.Struct("<4sIII")  # name, offset, bytes, CRC-32
+_WORLD = struct.Struct("<II4d")  # depth, 1 where the grid is known, origin, voxel size
+_MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
+_VIEW = struct.Struct("<12i")  # position, look, right, up
+_LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
+
+_MIRROR, _AUTHORED = 1, 2
+_LIGHT_ON, _FLAT = 1, 2
+
+Triple = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """The camera to start with: what its registers take, position in 1/16 voxel, grid frame."""
+
+    position: Triple
+    look: Triple
+    right: Triple
+    up: Triple
+
+
+@dataclass(frozen=True, slots=True)
+class Lighting:
+    """How to start shading.
+
+    Attributes
+    ----------
+    position
+        The light, 1/16 voxel, grid frame.
+    ambient
+        0 … 255.
+    on, flat
+        Whether that light shines, instead of one in the camera; whether colours are shown unshaded.
+    bounces
+        How often a ray may be reflected, 0 … 15.
+    """
+
+    position: Triple = (0, 0, 0)
+    ambient: int = 0
+    on: bool = False
+    flat: bool = False
+    bounces: int = 0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Blob:
+    """What a blob holds; `view` and `lighting` are None where the file leaves them to the board.
+
+    The background is the colour of material 0.
+    """
+
+    rom: Rom
+    view: View | None = None
+    lighting: Lighting | None = None
+
+
+def blob_bytes(blob: Blob) -> bytes:
+    """Format a blob as the bytes of its file."""
+    rom = blob.rom
+    sections = {
+        b"NAME": rom.name.encode(),
+        b"WRLD": _WORLD.pack(rom.octree.depth, *((1, *rom.grid.origin, rom.grid.voxel_size) if rom.grid else (0,) * 5)),
+        b"MATL": struct.pack("<I", len(rom.materials)) + b"".join(_pack_material(entry) for entry in rom.materials),
+        b"WORD": rom.octree.words.astype("<u4").tobytes(),
+    }
+    if view := blob.view:
+        sections[b"VIEW"] = _VIEW.pack(*view.position, *view.look, *view.right, *view.up)
+    if light := blob.lighting:
+        flags = light.on * _LIGHT_ON | light.flat * _FLAT
+        sections[b"LITE"] = _LIGHT.pack(*light.position, light.ambient, flags, light.bounces, 0)
+    offset = _HEADER.size + _ENTRY.size * len(sections)
+    table, body = b"", b""
+    for name, data in sections.items():
+        table += _ENTRY.pack(name, offset + len(body), len(data), zlib.crc32(data))
+        body += data + bytes(-len(data) % 8)
+    return _HEADER.pack(MAGIC, VERSION, len(sections), offset + len(body), zlib.crc32(table)) + table + body
+
+
+def write_blob(path: Path, blob: Blob) -> None:
+    """Write a blob to `path`, atomically."""
+    write_atomically(path, blob_bytes(blob))
+
+
+def read_blob(path: Path) -> Blob:
+    """Read a blob.
+
+    Raises
+    ------
+    RomError
+        Where the file cannot be read, is damaged, or its octree is no octree: names the section.
+    """
+    sections = _sections(path, read_bytes(path))
+    for name in (b"NAME", b"WRLD", b"MATL", b"WORD"):
+        if name not in sections:
+            raise _damaged(path, f"section {name.decode()}", "is missing")
+    try:
+        depth, known, *place = _WORLD.unpack(sections[b"WRLD"])
+        view = _VIEW.unpack(sections[b"VIEW"]) if b"VIEW" in sections else None
+        light = _LIGHT.unpack(sections[b"LITE"]) if b"LITE" in sections else None
+        title = sections[b"NAME"].decode()
+    except (struct.error, UnicodeDecodeError):
+        raise _damaged(path, "section NAME, WRLD, VIEW or LITE", "has another layout than that of version 1") from None
+    words = sections[b"WORD"]
+    if len(words) % 4:
+        raise _damaged(path, "section WORD", f"{len(words)} bytes are not words of 4")
+    octree = decode(np.frombuffer(words, dtype="<u4").astype(np.uint32), "report", depth, source=str(path))
+    materials = _materials(path, sections[b"MATL"])
+    if (highest := max(census(octree).voxels)) >= len(materials):
+        raise _damaged(path, "section MATL", f"ends at material {len(materials) - 1} and {highest} is in use")
+    return Blob(
+        Rom(title, octree, materials, _grid(path, depth, place) if known else None),
+        None if view is None else View(view[:3], view[3:6], view[6:9], view[9:]),
+        None if light is None else _lighting(light),
+    )
+
+
+def _sections(path: Path, data: bytes) -> dict[bytes, bytes]:
+    if not data.startswith(MAGIC):
+        raise RomError(f"{path}: does not start with {MAGIC.decode()}; name a blob")
+    if len(data) < _HEADER.size:
+        raise _damaged(path, "header", "is cut short")
+    _, version, count, size, crc32 = _HEADER.unpack_from(data)
+    if version != VERSION:
+        raise RomError(f"{path}: blob version {version} is not known to this version ({VERSION}); upgrade voxrt")
+    table = data[_HEADER.size : _HEADER.size + _ENTRY.size * min(count, len(data))]
+    if size != len(data) or len(table) != _ENTRY.size * count or zlib.crc32(table) != crc32:
+        raise _damaged(
+            path, "header", f"speaks of {size} bytes and another table of sections than the {len(data)} here"
+        )
+    sections = {}
+    for name, offset, length, section_crc32 in _ENTRY.iter_unpack(table):
+        section = data[offset : offset + length]
+        if len(section) != length or zlib.crc32(section) != section_crc32:
+            raise _damaged(path, f"section {name.decode('ascii', 'backslashreplace')}", "is damaged (CRC-32)")
+        sections[name] = section
+    return sections
+
+
+def _damaged(path: Path, place: str, problem: str) -> RomError:
+    return RomError(f"{path}: {place}: {problem}; write the blob again")
+
+
+def _pack_material(material: Material) -> bytes:
+    name = material.name.encode()[:0xFFFF]
+    flags = material.mirror * _MIRROR | material.authored * _AUTHORED
+    return _MATERIAL.pack(*material.colour, flags, len(name)) + name + bytes(-len(name) % 8)
+
+
+def _materials(path: Path, section: bytes) -> tuple[Material, ...]:
+    entries = []
+    try:
+        (count,) = struct.unpack_from("<I", section)
+        position = 4
+        if not 1 <= count <= 256:
+            raise _damaged(path, "section MATL", f"{count} materials are not 1 ... 256")
+        for _ in range(count):
+            red, green, blue, flags, length = _MATERIAL.unpack_from(section, position)
+            position += _MATERIAL.size
+            name = section[position : position + length].decode()
+            position += length + -length % 8
+            entries.append(Material(name, (red, green, blue), bool(flags & _MIRROR), bool(flags & _AUTHORED)))
+    except (struct.error, UnicodeDecodeError):
+        raise _damaged(path, "section MATL", "is cut short or no text") from None
+    return tuple(entries)
+
+
+def _grid(path: Path, depth: int, place: list[float]) -> Grid:
+    x, y, z, voxel_size = place
+    if not all(map(np.isfinite, place)) or voxel_size <= 0:
+        raise _damaged(path, "section WRLD", "the grid stands nowhere")
+    return Grid(depth, (x, y, z), voxel_size)
+
+
+def _lighting(fields: tuple[int, ...]) -> Lighting:
+    x, y, z, ambient, flags, bounces, _ = fields
+    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, 15))

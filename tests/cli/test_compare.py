@@ -1,0 +1,41 @@
+"""``voxrt compare``: a memory held against its source."""
+
+from __future__ import annotations
+
+import sys
+
+import msgspec
+import pytest
+from PIL import Image
+
+from voxrt.cli.memory_results import CompareResult
+
+
+@pytest.fixture
+def built(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "6").code == 0
+    return folder
+
+
+def test_a_memory_is_like_its_source(voxrt, built):
+    pytest.importorskip("open3d", reason="the extra voxrt[compare] is not installed")
+    arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
+    finished = voxrt(*arguments, "-o", "like.png", "--json")
+    assert finished.code == 0, finished.err
+    result = msgspec.json.decode(finished.out, type=CompareResult, strict=True)
+    assert result.silhouette_iou is not None
+    assert result.silhouette_iou > 0.9
+    assert result.depth_median is not None
+    assert result.depth_median < 1
+    assert result.outputs == {"picture": "like.png"}
+    with Image.open(built / "like.png") as sheet:
+        assert sheet.size == (3 * 96, 72)
+    assert "silhouette" in voxrt(*arguments).err
+
+
+@pytest.mark.usefixtures("built")
+def test_without_open3d(voxrt, monkeypatch):
+    monkeypatch.setitem(sys.modules, "open3d", None)
+    finished = voxrt("compare", "house.mem", "house.obj")
+    assert finished.code == 5
+    assert "pip install 'voxrt[compare]'" in finished.error

@@ -1,0 +1,83 @@
+"""``voxrt info`` and ``voxrt diff``: what a memory holds, and what sets two apart."""
+
+from __future__ import annotations
+
+import json
+
+import msgspec
+import numpy as np
+import pytest
+
+from voxrt import Material, Rom
+from voxrt.cli.memory_results import DiffResult, InfoResult
+from voxrt.export import write_rom
+from voxrt.octree import from_dense
+from voxrt.voxelize import EMPTY, Grid
+
+
+@pytest.fixture
+def worlds(folder):
+    """Two memories of 8 voxels a side: an octant and a voxel; the same with the voxel elsewhere, another material."""
+    names = (EMPTY, Material("stone", (200, 100, 50)), Material("glass", (1, 2, 3)))
+    for name, place in (("before", (7, 0, 0)), ("after", (7, 7, 0))):
+        world = np.zeros((8, 8, 8), np.uint8)
+        world[:4, :4, :4] = 1
+        world[place] = 2
+        world[0, 0, 0] = 1 + (name == "after")
+        write_rom(folder, Rom(name, from_dense(world), names, Grid(3, (1.0, 2.0, 3.0), 0.5)))
+    return folder
+
+
+@pytest.mark.usefixtures("worlds")
+def test_info(voxrt):
+    finished = voxrt("info", "before.mem", "--json")
+    assert finished.code == 0
+    told = msgspec.json.decode(finished.out, type=InfoResult, strict=True)
+    assert (told.name, told.depth, told.words, told.blocks, told.voxels) == ("before", 3, 25, 3, 65)
+    assert told.world is not None
+    assert (told.world.origin, told.world.voxel_size) == ((1, 2, 3), 0.5)
+    assert [(row.level, row.solid, row.empty) for row in told.levels] == [(3, 0, 0), (2, 1, 6), (1, 0, 7), (0, 1, 7)]
+    assert told.bounds == ((0, 0, 0), (8, 4, 4))
+    assert [(board.name, board.fits) for board in told.boards] == [("pynq-z1", True)]
+    assert [(row.id, row.name, row.voxels) for row in told.materials] == [
+        (0, "empty", 512 - 65),
+        (1, "stone", 64),
+        (2, "glass", 1),
+    ]
+
+
+@pytest.mark.usefixtures("worlds")
+def test_info_for_people(voxrt):
+    finished = voxrt("info", "before.mem")
+    assert (finished.code, finished.out) == (0, "")
+    lines = [line.split() for line in finished.err.splitlines()]
+    assert ["memory", "25", "words,", "0.1", "KiB;", "25", "words", "without", "sharing"] in lines
+    assert ["1", "stone", "#c86432", "64"] in lines
+
+
+@pytest.mark.usefixtures("worlds")
+def test_diff(voxrt):
+    finished = voxrt("diff", "before.mem", "after.mem", "--json")
+    assert finished.code == 0
+    told = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
+    assert told == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)))
+    assert "3 voxels" in voxrt("diff", "before.mem", "after.mem").err
+
+
+@pytest.mark.usefixtures("worlds")
+def test_diff_finds_nothing(voxrt):
+    assert json.loads(voxrt("diff", "before.mem", "before.mem", "--json").out)["voxels"] == 0
+
+
+def test_diff_of_two_depths(voxrt, worlds):
+    write_rom(worlds, Rom("small", from_dense(np.ones((4, 4, 4), np.uint8)), (EMPTY, Material("stone", (0, 0, 0)))))
+    finished = voxrt("diff", "before.mem", "small.mem")
+    assert finished.code == 2
+    assert "depth 3" in finished.error
+
+
+@pytest.mark.parametrize("command", ["info", "diff"])
+def test_no_memory(voxrt, command):
+    finished = voxrt(command, *["nothing.mem"] * (1 + (command == "diff")))
+    assert finished.code == 3
+    assert "nothing.mem" in finished.error

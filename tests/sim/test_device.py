@@ -1,0 +1,98 @@
+"""The devices without a board show, pixel by pixel, what the engines render."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles import worlds
+from oracles.cuts import memory_of
+
+from voxrt.board.errors import DeviceError
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.view import View
+from voxrt.board.viewpoint import refit
+from voxrt.octree import Octree, Rom
+from voxrt.sim import Camera, Light, Shading, SimulatorError, render
+from voxrt.sim.device import ModelDevice, RtlDevice
+from voxrt.staging import board_scene
+from voxrt.voxelize import Material
+
+SIZE = (48, 32)
+
+
+def ignore(_stage, _done, _total):
+    pass
+
+
+def rom_of(name, seed):
+    colours = np.random.default_rng(seed).integers(40, 256, (256, 3)).tolist()
+    words = memory_of(worlds.boxes(4, 9, seed))
+    return Rom(name, Octree(4, words), tuple(Material(f"m{i}", tuple(colour)) for i, colour in enumerate(colours)))
+
+
+@pytest.mark.parametrize(("engine", "opened"), [("model", ModelDevice), ("rtl", RtlDevice)])
+def test_swapped_scenes(engine, opened):
+    try:
+        device = opened()
+    except SimulatorError as error:
+        pytest.skip(str(error))
+    memory = SceneMemory(device)
+    roots = set()
+    for seed in range(3):
+        rom = rom_of(f"world {seed}", seed)
+        scene = board_scene(rom)
+        memory.swap(scene, ignore)
+        seen = refit(scene.camera, (640, 480), SIZE)
+        frame = device.frame(View(seen, SIZE, scene.background))
+        camera = Camera(seen.position, seen.look, seen.right, seen.up)
+        expected = render(rom, camera, SIZE, engine="model")
+        assert (frame.colour == expected.colour).all()
+        assert len(np.unique(expected.material)) > 2
+        assert frame.counters.rays == SIZE[0] * SIZE[1]
+        assert (frame.counters.cycles is None) == (engine == "model")
+        registers = device.registers()
+        assert registers["depth"] == 4
+        assert registers["position_x"] == scene.camera.position[0]
+        roots.add(registers["root"])
+    assert (len(roots) > 1) == device.identity.movable_root
+
+
+def test_features_and_background():
+    rom = rom_of("world", 1)
+    mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
+    rom = replace(rom, materials=(replace(mirrors[0], colour=(1, 2, 3)), *mirrors[1:]))
+    scene = board_scene(rom)
+    device = ModelDevice()
+    SceneMemory(device).swap(scene, ignore)
+    camera = Camera(scene.camera.position, scene.camera.look, scene.camera.right, scene.camera.up)
+    seen = {}
+    for features, shading in (
+        ((), Shading()),
+        (("flat",), Shading(flat=True)),
+        (("shadows",), Shading(light=Light((400, 900, 100), 20))),
+        (("mirrors", "shadows"), Shading(light=Light((400, 900, 100), 20), bounces=3)),
+    ):
+        view = View(scene.camera, (160, 120), (1, 2, 3), (400, 900, 100), 20, frozenset(features), 3)
+        seen[features] = device.frame(view).colour
+        assert (seen[features] == render(rom, camera, (160, 120), engine="model", shading=shading).colour).all()
+    assert len({picture.tobytes() for picture in seen.values()}) == 4
+
+
+def test_faults():
+    device = ModelDevice(capacity=100)
+    with pytest.raises(DeviceError, match="words 96 to 101 are not in a memory of 100"):
+        device.write_memory(96, np.zeros(5, dtype=np.uint32))
+    with pytest.raises(DeviceError, match="not in a memory"):
+        device.read_memory(0, 101)
+    assert (device.read_memory(50, 50) == 0).all()
+    device.write_memory(0, np.array([5], dtype=np.uint32))
+    with pytest.raises(DeviceError, match="the model refuses the memory"):
+        device.select_scene(0, 3)
+    scene = board_scene(rom_of("world", 1))
+    device = ModelDevice()
+    SceneMemory(device).swap(scene, ignore)
+    steep = replace(scene.camera, right=(32767, 0, 0), up=(32767, 0, 0))
+    with pytest.raises(DeviceError, match="the model refuses the frame"):
+        device.frame(View(steep, (640, 480)))

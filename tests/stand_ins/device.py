@@ -1,0 +1,106 @@
+"""A device and scenes for tests: a painter in NumPy whose picture says which memory, camera and view it was made of."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+
+from voxrt.board.device import Counters, Frame, Identity
+from voxrt.board.errors import DeviceError
+from voxrt.board.scene import Scene
+
+CAPACITY = 4096
+
+
+def scene(name: str = "scene", blocks: int = 1, material: int = 1, **fields) -> Scene:
+    """A chain of `blocks` blocks: octant 0 of each leads to the next, the others hold `material`."""
+    words = np.full(1 + 8 * blocks, 0xFFFFFF00 | material, dtype=np.uint32)
+    for block in range(blocks):
+        words[0 if block == 0 else 1 + 8 * (block - 1)] = 1 + 8 * block
+    colours = np.zeros((256, 3), dtype=np.uint8)
+    colours[:] = np.arange(256)[:, None]
+    return Scene(name, max(1, min(16, blocks)), words, colours, np.zeros(256, dtype=bool), **fields)
+
+
+def wide_scene(name: str, blocks: int, material: int = 1) -> Scene:
+    """A scene of many blocks and three levels, for filling memories: the first block leads to up to 8, those to 64."""
+    words = np.full(1 + 8 * blocks, 0xFFFFFF00 | material, dtype=np.uint32)
+    words[0] = 1
+    for block in range(1, blocks):
+        words[block] = 1 + 8 * block
+    base = scene(name)
+    return Scene(name, 16, words, base.colours, base.mirrors)
+
+
+class PaintedDevice:
+    """Paints (material of the root's octant 1, camera's x, frame count); fails when told to."""
+
+    def __init__(self, capacity: int = CAPACITY, size: tuple[int, int] = (64, 48), **identity) -> None:
+        self.identity = Identity("painter", "1", capacity, 16, size, 1 << 20, **identity)
+        self.memory = np.zeros(capacity, dtype=np.uint32)
+        self.colours = np.zeros((256, 3), dtype=np.uint8)
+        self.root = self.depth = 0
+        self.frames = 0
+        self.closed = False
+        self.fail_write_at: int | None = None  # the write that fails, counted from 0
+        self.forget_write_at: int | None = None  # the write that leaves a wrong word
+        self.fail_frames = False
+        self.may_finish = threading.Event()
+        self.may_finish.set()
+        self.busy = threading.Lock()
+        self.writes = 0
+
+    def registers(self):
+        return {"root": self.root, "depth": self.depth, "frames": self.frames}
+
+    def write_memory(self, address, words):
+        assert 0 <= address <= address + len(words) <= self.identity.capacity
+        if self.writes == self.fail_write_at:
+            self.fail_write_at = None
+            raise DeviceError("the bus does not answer")
+        self.memory[address : address + len(words)] = words
+        if self.writes == self.forget_write_at:
+            self.forget_write_at = None
+            self.memory[address] ^= 0x100
+        self.writes += 1
+
+    def read_memory(self, address, count):
+        return self.memory[address : address + count].copy()
+
+    def write_materials(self, colours, _mirrors):
+        self.colours = colours.copy()
+
+    def select_scene(self, root, depth):
+        self.root, self.depth = root, depth
+
+    def octree(self):
+        """What a ray tracer would read: every word that the root reaches, by path."""
+        found, paths = {}, [((), self.root)]
+        while paths:
+            path, address = paths.pop()
+            word = int(self.memory[address])
+            if word >> 31:
+                found[path] = word & 0xFF
+            else:
+                assert len(path) < self.depth
+                paths += [((*path, i), word + i) for i in range(8)]
+        return found
+
+    def frame(self, view):
+        assert self.busy.acquire(blocking=False), "two calls at a time"
+        try:
+            assert self.may_finish.wait(10)
+            if self.fail_frames:
+                raise DeviceError("the lanes hang")
+            self.frames += 1
+            word = int(self.memory[self.root])
+            material = word & 0xFF if word >> 31 else int(self.memory[word + 1]) & 0xFF
+            colour = np.empty((view.size[1], view.size[0], 3), dtype=np.uint8)
+            colour[:] = (material, view.camera.position[0] & 0xFF, self.frames & 0xFF)
+            return Frame(colour, Counters(colour.shape[0] * colour.shape[1], 7, 11, 0.001))
+        finally:
+            self.busy.release()
+
+    def close(self):
+        self.closed = True

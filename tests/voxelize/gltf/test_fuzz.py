@@ -1,0 +1,183 @@
+"""Damaged files: whatever is done to them, they load or are refused in one line; nothing else is raised."""
+
+import copy
+import io
+import json
+import struct
+
+import numpy as np
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from oracles.gltf_writer import GltfWriter, glb
+from PIL import Image
+
+from voxrt.voxelize import AssetError, DoesNotFitError, load
+
+
+def rich():
+    """A small file that uses nearly everything the reader knows."""
+    writer = GltfWriter()
+    uv = writer.accessor([[0, 0], [1, 0], [0, 1], [1, 1]], "u1", stride=4)
+    colours = writer.accessor([[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]], "u1", normalized=True, stride=4)
+    joints = writer.accessor([[0, 1, 0, 0]] * 4, "u1")
+    weights = writer.accessor([[0.5, 0.5, 0, 0]] * 4)
+    attributes = {"TEXCOORD_0": uv, "COLOR_0": colours, "JOINTS_0": joints, "WEIGHTS_0": weights}
+    square = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+    mesh = writer.mesh(square, [0, 1, 2, 3], mode=5, material=0, index_dtype="u1", **attributes)
+    primitive = writer.json["meshes"][mesh]["primitives"][0]
+    primitive["targets"] = [{"POSITION": writer.accessor(4, sparse=([1, 3], [[1, 0, 0], [0, 1, 0]], "u2"))}]
+    primitive["extensions"] = {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}
+    writer.json["meshes"][mesh]["weights"] = [0.5]
+    png = io.BytesIO()
+    Image.fromarray(np.array([[[255, 0, 0, 255], [0, 255, 0, 9]]], np.uint8)).save(png, "PNG")
+    writer.add("images", {"bufferView": writer.view(png.getvalue()), "mimeType": "image/png"})
+    writer.add("samplers", {"wrapS": 33648, "wrapT": 33071, "magFilter": 9729})
+    writer.add("textures", {"source": 0, "sampler": 0})
+    transform = {"offset": [0.5, 0.5], "rotation": 1.0, "scale": [2, 2]}
+    base = {"index": 0, "extensions": {"KHR_texture_transform": transform}}
+    writer.add(
+        "materials", {"pbrMetallicRoughness": {"baseColorTexture": base}, "alphaMode": "MASK", "alphaCutoff": 0.1}
+    )
+    glossy = {"diffuseFactor": [1, 0, 0, 1], "diffuseTexture": {"index": 0}}
+    writer.add("materials", {"name": "b", "extensions": {"KHR_materials_pbrSpecularGlossiness": glossy}})
+    writer.json["extensions"] = {
+        "KHR_materials_variants": {"variants": [{"name": "v"}]},
+        "KHR_implicit_shapes": {"shapes": [{"type": "box", "box": {"size": [1, 2, 3]}}]},
+    }
+    physics = {"KHR_physics_rigid_bodies": {"collider": {"geometry": {"shape": 0}}}}
+    instances = {
+        "TRANSLATION": writer.accessor([[0, 0, 0], [5, 0, 0]]),
+        "SCALE": writer.accessor([[1, 1, 1], [2, 2, 2]]),
+    }
+    matrices = writer.accessor([np.eye(4)] * 2)
+    writer.add("skins", {"joints": [1, 2], "inverseBindMatrices": matrices})
+    writer.show(name="skinned", mesh=mesh, skin=0, extras={"voxrt_material": "b", "voxrt_collider": "hull"})
+    writer.show(rotation=[0, 0, 0, 1], translation=[1, 2, 3], scale=[1, 1, -1], children=[2])
+    writer.add("nodes", {"matrix": np.eye(4).ravel().tolist(), "extensions": physics})
+    writer.show(mesh=mesh, extensions={"EXT_mesh_gpu_instancing": {"attributes": instances}} | physics)
+    sampler = {"input": writer.accessor([0.0, 1.0]), "output": writer.accessor([[0, 0, 0], [1, 1, 1]])}
+    channel = {"sampler": 0, "target": {"node": 1, "path": "translation"}}
+    writer.add("animations", {"samplers": [sampler], "channels": [channel]})
+    writer.json["buffers"] = [{"byteLength": len(writer.data)}]
+    return writer
+
+
+RICH = rich()
+
+
+def paths(value, here=()):
+    """Every place in a JSON value."""
+    yield here
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from paths(inner, (*here, key))
+    elif isinstance(value, list):
+        for at, inner in enumerate(value):
+            yield from paths(inner, (*here, at))
+
+
+PLACES = [place for place in paths(RICH.json) if place]
+
+odd_values = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-2, 9),
+    st.sampled_from(
+        [2**31, 2**32 - 1, 2**63, 2**64, -(2**63), 10**30, 5120, 5121, 5123, 5125, 5126, 1e308, -1e-320, 1e39]
+    ),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.text(max_size=3),
+    st.sampled_from(
+        ["VEC3", "SCALAR", "MAT4", "BLEND", "CUBICSPLINE", "data:,", "../x", "POSITION", "rotation", "weights"]
+    ),
+    st.lists(st.integers(0, 4), max_size=4),
+    st.dictionaries(
+        st.sampled_from(["index", "shape", "bufferView", "POSITION", "type"]), st.integers(0, 9), max_size=2
+    ),
+)
+
+
+def changed(document, place, value, remove):
+    inner = document
+    for step in place[:-1]:
+        known = inner if isinstance(inner, dict) else range(len(inner)) if isinstance(inner, list) else ()
+        if step not in known:
+            return
+        inner = inner[step]
+    if isinstance(inner, dict):
+        inner.pop(place[-1], None) if remove else inner.__setitem__(place[-1], value)
+    elif isinstance(inner, list) and isinstance(place[-1], int) and place[-1] < len(inner):
+        if remove:
+            del inner[place[-1]]
+        else:
+            inner[place[-1]] = value
+
+
+def loads_or_is_refused(path, **options):
+    try:
+        scene = load(path, **options)
+    except (AssetError, DoesNotFitError) as error:
+        assert "\n" not in str(error)  # noqa: PT017
+        return
+    for thing in scene.objects:
+        mesh = thing.mesh
+        assert np.isfinite(mesh.positions).all()
+        assert np.isfinite(thing.transform).all()
+        assert mesh.triangles.dtype == np.int32
+        if len(mesh.triangles):
+            assert 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(mesh.positions)
+            assert 1 <= mesh.materials.min() <= mesh.materials.max() < len(scene.materials)
+        assert 1 <= thing.collider_material < len(scene.materials)
+    assert len({material.name for material in scene.materials}) == len(scene.materials)
+
+
+OPTIONS = st.sampled_from([{}, {"time": 0.5}, {"variants": ("v",)}])
+FUZZ = settings(max_examples=250, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+
+
+def test_the_undamaged_file_loads(tmp_path):
+    path = RICH.save(tmp_path / "rich.glb")
+    for options in ({}, {"time": 0.5}, {"variants": ("v",)}):
+        assert len(load(path, **options).objects) == 4
+
+
+@FUZZ
+@given(
+    changes=st.lists(st.tuples(st.sampled_from(PLACES), odd_values, st.booleans()), min_size=1, max_size=3),
+    options=OPTIONS,
+)
+def test_changed_json(changes, options, tmp_path_factory):
+    document = copy.deepcopy(RICH.json)
+    for place, value, remove in changes:
+        changed(document, place, value, remove)
+    text = json.dumps(document).encode()
+    path = tmp_path_factory.getbasetemp() / "changed.glb"
+    path.write_bytes(glb([(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", bytes(RICH.data))]))
+    loads_or_is_refused(path, **options)
+
+
+@FUZZ
+@given(
+    changes=st.lists(st.tuples(st.integers(0, len(RICH.data) - 1), st.integers(0, 255)), min_size=1, max_size=8),
+    options=OPTIONS,
+)
+def test_changed_binary(changes, options, tmp_path_factory):
+    data = bytearray(RICH.data)
+    for at, byte in changes:
+        data[at] = byte
+    text = json.dumps(RICH.json).encode()
+    path = tmp_path_factory.getbasetemp() / "bytes.glb"
+    path.write_bytes(glb([(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", bytes(data))]))
+    loads_or_is_refused(path, **options)
+
+
+@settings(max_examples=100, deadline=None)
+@given(cut=st.integers(0, 4000), garbage=st.binary(max_size=16), whole=st.booleans())
+def test_cut_files(cut, garbage, whole, tmp_path_factory):
+    text = json.dumps(RICH.json).encode()
+    data = glb([(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", bytes(RICH.data))])[:cut] + garbage
+    if whole and len(data) > 12:
+        data = data[:8] + struct.pack("<I", len(data)) + data[12:]
+    path = tmp_path_factory.getbasetemp() / "cut.glb"
+    path.write_bytes(data)
+    loads_or_is_refused(path)

@@ -1,0 +1,171 @@
+// Runs the native voxelizer without Python, for the sanitizers: `make sanitize` builds it with each of them.
+//
+// Random soups, closed and holed spheres, huge and tiny triangles, instances, analytic solids and hulls, on grids of
+// every small depth, filled or not. Every scene is voxelized on one thread and on three; the results must be equal.
+// Prints a line and exits with 1 where they are not.
+#include "convex_hull.h"
+#include "voxelizer.h"
+
+#include <cstdio>
+#include <cstring>
+#include <numbers>
+#include <random>
+
+using namespace voxrt;
+
+namespace {
+
+struct Mesh {
+    std::vector<double> positions;
+    std::vector<int32_t> triangles;
+    std::vector<uint8_t> materials;
+
+    MeshView view() const { return {positions, triangles, materials}; }
+    void add(const double (&corners)[9], uint8_t material) {
+        for (int i = 0; i < 3; ++i) {
+            triangles.push_back(int32_t(positions.size() / 3));
+            positions.insert(positions.end(), corners + 3 * i, corners + 3 * i + 3);
+        }
+        materials.push_back(material);
+    }
+};
+
+using Random = std::mt19937_64;
+
+Mesh soup(Random& random, double side, double spread) {
+    std::uniform_real_distribution<double> place(-0.2 * side, 1.2 * side), offset(-spread, spread);
+    Mesh mesh;
+    for (int t = 0; t < 60; ++t) {
+        const double at[3] = {place(random), place(random), place(random)};
+        double corners[9];
+        for (int i = 0; i < 9; ++i) {
+            corners[i] = at[i % 3] + offset(random);
+            if (t % 4 == 0) // on planes between voxels
+                corners[i] = std::nearbyint(corners[i]);
+        }
+        mesh.add(corners, uint8_t(1 + t % 3));
+    }
+    return mesh;
+}
+
+/// A sphere of rings and segments; every `hole`-th triangle left out where hole > 0.
+Mesh sphere(double x, double y, double z, double radius, int rings, int hole, bool inverted) {
+    auto point = [&](int ring, int segment, double* to) {
+        const double polar = std::numbers::pi * ring / rings,
+                     around = std::numbers::pi * (segment % (2 * rings)) / rings;
+        const double across = ring == 0 || ring == rings ? 0 : std::sin(polar);
+        to[0] = x + radius * across * std::cos(around);
+        to[1] = y + radius * across * std::sin(around);
+        to[2] = z + radius * std::cos(polar);
+    };
+    Mesh mesh;
+    int number = 0;
+    for (int ring = 0; ring < rings; ++ring)
+        for (int segment = 0; segment < 2 * rings; ++segment)
+            for (int half = 0; half < 2; ++half) {
+                if ((ring == 0 && half == 1) || (ring == rings - 1 && half == 0))
+                    continue;
+                double corners[9];
+                point(ring + (half == 0), segment, corners);
+                point(ring + (half == 0), segment + 1, corners + (half == 0 ? 3 : 6));
+                point(ring + (half == 1), segment + (half == 1), corners + (half == 0 ? 6 : 3));
+                if (inverted)
+                    std::swap_ranges(corners, corners + 3, corners + 3);
+                if (hole == 0 || ++number % hole != 0)
+                    mesh.add(corners, 1);
+            }
+    return mesh;
+}
+
+uint64_t fingerprint(const SparseVoxels& voxels) {
+    uint64_t hash = 0xCBF2'9CE4'8422'2325; // FNV-1a
+    auto add = [&hash](const auto& array) {
+        const auto* bytes = reinterpret_cast<const unsigned char*>(array.data.get());
+        for (size_t i = 0; i < array.size * sizeof(array.data[0]); ++i)
+            hash = (hash ^ bytes[i]) * 0x100'0000'01B3;
+    };
+    add(voxels.brick_codes);
+    add(voxels.brick_masks);
+    add(voxels.brick_materials);
+    add(voxels.brick_rows);
+    add(voxels.cells);
+    add(voxels.octant_codes);
+    add(voxels.octant_levels);
+    add(voxels.octant_materials);
+    add(voxels.object_voxels);
+    add(voxels.object_modes);
+    return hash;
+}
+
+/// The first thread's scene: parts over some meshes, in voxels.
+struct Scene {
+    std::vector<Mesh> meshes;
+    std::vector<std::array<double, 12>> frames;
+    std::vector<PartKind> kinds;
+    std::vector<size_t> mesh_of;
+
+    void add(PartKind kind, size_t mesh, std::array<double, 12> frame) {
+        for (double& value : frame)
+            value *= kUnit;
+        kinds.push_back(kind);
+        mesh_of.push_back(mesh);
+        frames.push_back(frame);
+    }
+    void add(size_t mesh, double scale, double shift) {
+        add(PartKind::mesh, mesh, {scale, 0, 0, shift, 0, scale, 0, shift, 0, 0, scale, shift});
+    }
+};
+
+bool agree(const Scene& scene, int depth) {
+    std::vector<MeshView> views;
+    for (const Mesh& mesh : scene.meshes)
+        views.push_back(mesh.view());
+    std::vector<PartView> parts;
+    for (size_t p = 0; p < scene.kinds.size(); ++p) {
+        const bool mesh = scene.kinds[p] == PartKind::mesh;
+        parts.push_back({scene.kinds[p], mesh ? &views[scene.mesh_of[p]] : nullptr, scene.frames[p].data(),
+                         uint8_t(mesh ? 0 : 4), uint32_t(p)});
+    }
+    for (const bool fill : {false, true}) {
+        Workers one(1, [] {}), three(3, [] {});
+        const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, one));
+        if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, three))) {
+            std::printf("depth %d: the result depends on the number of threads\n", depth);
+            return false;
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+int main() {
+    Random random(1);
+    bool good = true;
+    for (int depth = 1; depth <= 5; ++depth) {
+        const double side = 1 << depth;
+        Scene scene;
+        scene.meshes = {soup(random, side, 1),
+                        soup(random, side, side),
+                        soup(random, side, 20 * side),
+                        sphere(side / 2, side / 2, side / 2, side * 0.4, 12, 0, false),
+                        sphere(side / 3, side / 2, side / 2, side * 0.3, 12, 7, false),
+                        sphere(side / 2, side / 3, side / 2, side * 0.7, 6, 0, true)};
+        for (size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+            scene.add(mesh, 1, 0);
+        for (int i = 0; i < 5; ++i) // instances
+            scene.add(i % 2 == 0 ? 3 : 4, 0.3, side * i / 7);
+        scene.add(PartKind::box, 0, {1, 1, 1, side / 2, side * 2, side / 3});
+        scene.add(PartKind::ball, 0, {side / 2, side / 2, 0, side / 3});
+        scene.add(PartKind::ellipsoid, 0,
+                  {side / 3, 1, 0, side / 2, 0, side / 5, 0, side / 2, 1, 0, side / 4, side / 2});
+        good = agree(scene, depth) && good;
+
+        std::vector<Vertex> points;
+        std::uniform_int_distribution<int32_t> coordinate(0, depth);
+        for (int i = 0; i < 200; ++i)
+            points.push_back({coordinate(random) * 4096, coordinate(random) * 4096, coordinate(random) * 4096});
+        good = convex_hull(points).size() >= 12 && good;
+    }
+    return good ? 0 : 1;
+}

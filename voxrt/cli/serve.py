@@ -1,0 +1,141 @@
+"""``voxrt serve``."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import secrets
+import signal
+from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+import voxrt
+from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.board_results import ServeResult
+from voxrt.cli.messages import summarize
+from voxrt.cli.results import print_json
+
+if TYPE_CHECKING:
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
+    from voxrt.board.server import Listening
+    from voxrt.board.show import Program
+
+_port = Parameter(converter=whole, metavar="PORT")
+
+
+def serve(
+    *scenes: Annotated[Path, Parameter(metavar="SCENE")],
+    device: Literal["model", "sim"] = "model",
+    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
+    port: Annotated[int, _port] = 8080,
+    token: Annotated[str | None, Parameter(metavar="TEXT")] = None,
+    origin: Annotated[tuple[str, ...], Parameter(metavar="ORIGIN")] = (),
+    legacy_port: Annotated[int | None, _port] = None,
+    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
+) -> None:
+    """Show scenes live in the browser, until interrupted.
+
+    Parameters
+    ----------
+    scenes
+        Blobs, memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one
+        on the page.
+    device
+        What renders: the exact model, or the verilated hardware, which is slow.
+    config
+        The configuration of the verilated hardware.
+    host
+        Address to listen on. Any but loopback asks every viewer for the token.
+    port
+        TCP port of the page; 0 takes a free one.
+    token
+        What viewers must know. Made up and printed where it is needed and not given.
+    origin
+        Further origins (http://NAME:PORT) whose pages may connect: names by which browsers reach this machine.
+    legacy_port
+        TCP port for the original's desktop client: 28 bytes in, a raw picture of 512x512 out, no token.
+    depth
+        Levels of the octrees of assets.
+    reporting
+        How to tell what is done: --json prints the page's address on standard output.
+    """
+    from voxrt.board.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
+    from voxrt.board.server import Listening  # noqa: PLC0415
+    from voxrt.board.show import Program  # noqa: PLC0415
+    from voxrt.staging import BuildingReader  # noqa: PLC0415
+
+    for option, value in (("--port", port), ("--legacy-port", legacy_port)):
+        if value is not None and not 0 <= value < 1 << 16:
+            raise UsageError(f"{option} {value} is not 0 to 65535")
+    if depth is not None and not 1 <= depth <= 16:
+        raise UsageError(f"--depth {depth} is not 1 to 16")
+    if token is None and not is_loopback(host):
+        token = secrets.token_urlsafe(16)
+    first = _first(scenes[0], depth) if scenes else None
+    library = {path.stem: (lambda path=path: _listed(path, depth)) for path in scenes}
+    listening = Listening(host, port, token, origin, legacy_port)
+    opened = open_device(device, config)
+    with contextlib.suppress(asyncio.CancelledError):
+        asyncio.run(_serve(opened, first, Program(BuildingReader(depth), library), listening, json=reporting.json))
+
+
+def open_device(name: str, config: str) -> Device:
+    """Open a device of this machine: ``model`` or ``sim``."""
+    from voxrt.sim.device import ModelDevice, RtlDevice  # noqa: PLC0415 - NumPy comes with it
+
+    return ModelDevice() if name == "model" else RtlDevice(config)
+
+
+def _first(path: Path, depth: int | None) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path, depth)
+    except (Refused, OSError) as error:  # of a blob, which the board's own reader reads
+        raise voxrt.RomError(f"{path}: {error}") from error
+
+
+def _listed(path: Path, depth: int | None) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path, depth)
+    except (voxrt.RomError, voxrt.AssetError, voxrt.DoesNotFitError) as error:
+        raise Refused(str(error)) from error
+
+
+async def _serve(device: Device, first: Scene | None, program: Program, listening: Listening, *, json: bool) -> None:
+    from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415
+    from voxrt.board.server import FrameServer  # noqa: PLC0415
+
+    interrupted = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    try:
+        async with FrameServer(device, program, listening) as server:
+            if first is not None:
+                await server.show.stage.put_on(first, lambda _stage, _done, _total: None)
+            for number in (signal.SIGINT, signal.SIGTERM):
+                loop.add_signal_handler(number, interrupted.set)
+            if json:
+                print_json(ServeResult(server.url, server.port, server.legacy_port))
+            summarize(
+                f"serving {first.name if first else 'no scene yet'} by {device.identity.name}; Ctrl-C ends it:",
+                [("page", server.url)]
+                + ([("legacy", f"port {server.legacy_port}")] if server.legacy_port is not None else []),
+            )
+            await interrupted.wait()
+    except Refused as refusal:
+        raise voxrt.DoesNotFitError(str(refusal)) from refusal
+    except DeviceError as error:
+        raise voxrt.SimulatorError(str(error)) from error
+    except OSError as error:
+        raise UsageError(
+            f"cannot listen on {listening.host} port {listening.port}: {error.strerror or error}; name another --port"
+        ) from error

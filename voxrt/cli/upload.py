@@ -1,0 +1,115 @@
+"""``voxrt upload``."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+import voxrt
+from voxrt.cli.arguments import Reporting, UsageError
+from voxrt.cli.board_results import UploadResult
+from voxrt.cli.messages import summarize, transfer_bar
+from voxrt.cli.results import print_json
+from voxrt.cli.serve import open_device
+
+if TYPE_CHECKING:
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
+    from voxrt.board.scene_memory import Progress
+
+
+def upload(
+    rom: Annotated[Path, Parameter(metavar="ROM")],
+    /,
+    *,
+    to: Annotated[str | None, Parameter(metavar="URL")] = None,
+    device: Literal["model", "sim"] | None = None,
+    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    dry_run: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
+) -> None:
+    """Let a running board show another scene: written at a frame boundary, read back, compared.
+
+    Parameters
+    ----------
+    rom
+        A blob, or a .mem file; its manifest, the .json beside it, goes with it.
+    to
+        The page's address, as the frame server printed it, with its token.
+    device
+        Instead of a server: a device of this machine, to try the upload on.
+    config
+        The configuration of the verilated hardware.
+    dry_run
+        Check everything, write nothing.
+    reporting
+        How to tell what was done.
+    """
+    if (to is None) == (device is None):
+        raise UsageError("--to and --device exclude each other; give one of them")
+    if rom.suffix.lower() not in {".mem", ".blob"}:
+        raise UsageError(f"{rom}: is no .mem or .blob; build it first: voxrt build {rom}")
+    scene = _read(rom)
+    with transfer_bar() as progress:
+        if to is not None:
+            asyncio.run(_send(rom, scene, to, progress, dry_run=dry_run))
+        else:
+            _write(scene, open_device(device or "model", config), progress, dry_run=dry_run)
+    done = "checked; nothing was written" if dry_run else "runs now"
+    if reporting.json:
+        print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not dry_run))
+    else:
+        summarize(f"{rom.name}: {done}", [("words", str(len(scene.words))), ("crc-32", f"{scene.crc32:08X}")])
+
+
+def _read(path: Path) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path)
+    except (Refused, OSError) as error:
+        raise voxrt.RomError(f"{path}: {error}") from error
+
+
+async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
+    from voxrt.board.client import visit  # noqa: PLC0415 - websockets comes with it
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+
+    try:
+        async with visit(url) as client:
+            _check_fit(scene, client.hello["device"])
+            await client.take()
+            beside = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
+            files = {file.name: file.read_bytes() for file in (path, *beside) if file.exists()}
+            await client.upload(files, progress, check_only=dry_run)
+    except Refused as refusal:
+        raise voxrt.SimulatorError(str(refusal)) from refusal
+
+
+def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
+    words = len(scene.words)
+    if words > board["capacity"] or scene.depth > board["depth"]:
+        raise voxrt.DoesNotFitError(
+            f"{scene.name} has {words} words and {scene.depth} levels, and {board['name']} takes {board['capacity']} "
+            f"and {board['depth']}; build it with a smaller --depth"
+        )
+
+
+def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -> None:
+    from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415 - only this command needs them
+    from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415
+
+    memory = SceneMemory(device)
+    try:
+        if dry_run:
+            memory.check(scene)
+        else:
+            memory.swap(scene, progress)
+    except Refused as refusal:
+        raise voxrt.DoesNotFitError(str(refusal)) from refusal
+    except DeviceError as error:
+        raise voxrt.SimulatorError(str(error)) from error
