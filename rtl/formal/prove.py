@@ -18,8 +18,8 @@ BIN = Path(sys.executable).parent
 
 PROOFS = {
     "voxrt_fifo": ("prove", 4),
-    "voxrt_pixel_buffer": ("bmc", 9),
-    "voxrt_pixel_packer": ("bmc", 7),
+    "voxrt_pixel_buffer": ("bmc", 11),
+    "voxrt_pixel_packer": ("bmc", 9),
 }
 
 JOB = """
