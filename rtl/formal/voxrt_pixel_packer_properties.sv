@@ -58,7 +58,7 @@ module voxrt_pixel_packer_properties
   always_comb if (started_q && valid_i && first_i) assume (line_start_q);
 
   // The byte followed, of a line: its number in its line, counted at the input and at the output.
-  localparam int unsigned CountBits = 6;
+  localparam int unsigned CountBits = 5;
   // Registers that start with any value and keep it: what holds holds for all.
   logic [CountBits-1:0] target;  // Number of a byte in a line.
   logic [CountBits-1:0] line;    // Number of a line.
@@ -110,7 +110,7 @@ module voxrt_pixel_packer_properties
 
   always_comb begin
     // Counters that wrap would say nothing.
-    if (started_q) assume (in_byte_q < CountBits'(57) && in_line_q < CountBits'(60));
+    if (started_q) assume (in_byte_q < CountBits'(25) && in_line_q < CountBits'(30));
     if (started_q && !reset_q && tvalid_q && !tready_q) begin
       assert (tvalid && tdata == tdata_q && tkeep == tkeep_q && tuser == tuser_q && tlast == tlast_q);
     end
