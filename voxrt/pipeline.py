@@ -13,7 +13,7 @@ import numpy as np
 
 from voxrt import export, octree, sim, voxelize
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
-from voxrt.viewpoint import aim_camera
+from voxrt.viewpoint import aim_camera, authored_camera
 from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:
@@ -203,7 +203,7 @@ def build(
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
-        rom = octree.Rom(name, octree.build(voxelization.voxels), scene.materials, grid)
+        rom = octree.Rom(name, octree.build(voxelization.voxels, threads=threads), scene.materials, grid)
     budget_fit = None
     if budget is not None:
         with stage("budget"):
@@ -219,6 +219,8 @@ def build(
             "pow2": pow2,
             "up": up,
             "unit": unit,
+            "time": time,
+            "variants": ", ".join(variants) or None,
         }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(
@@ -234,7 +236,7 @@ def build(
     picture = None
     if picture_file is not None:
         with stage("preview"):
-            camera = aim_camera(rom, size)
+            camera = authored_camera(scene.viewpoint, grid, size) if scene.viewpoint else aim_camera(rom, size)
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file

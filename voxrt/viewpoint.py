@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim import Camera, frame_scene, outline
+from voxrt.sim import Camera, frame_scene, look_at, outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.octree import Rom
     from voxrt.sim.camera import Triple
+    from voxrt.voxelize import Grid, Viewpoint
 
     Vector = NDArray[np.float64]
 
@@ -81,6 +82,35 @@ def aim_camera(
     if position is None:
         position = _stand_back(16 * points, size, np.array((look, right, up), np.float64))
     return Camera(position, look, right, up)
+
+
+def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> Camera:
+    """Make the camera that stands where the scene's author wants it.
+
+    Parameters
+    ----------
+    viewpoint
+        In the scene frame.
+    grid
+        Where the voxels stand in the scene.
+    size
+        Width and height of the picture, pixels.
+
+    Raises
+    ------
+    ViewpointError
+        The eye is its own target, is straight above or below it, or is too far away for the registers.
+    """
+    eye, target = ((np.array(point) - grid.origin) / grid.voxel_size for point in (viewpoint.eye, viewpoint.target))
+    wanted = {}
+    if viewpoint.field_of_view is not None:
+        # Theirs is from top to bottom, look_at's across the shorter side.
+        height = 2 * np.tan(np.radians(viewpoint.field_of_view) / 2)
+        wanted["field_of_view"] = float(np.degrees(2 * np.arctan(height * min(size) / size[1] / 2)))
+    try:
+        return look_at(eye, target, size=size, **wanted)
+    except ValueError as error:
+        raise ViewpointError(f"the scene's camera: {error}") from error
 
 
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:

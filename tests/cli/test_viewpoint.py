@@ -7,7 +7,8 @@ import pytest
 
 from voxrt import Camera, Material, Rom, ViewpointError, aim_camera, render
 from voxrt.octree import from_dense
-from voxrt.voxelize import EMPTY
+from voxrt.viewpoint import authored_camera
+from voxrt.voxelize import EMPTY, Grid, Viewpoint
 
 SIZE = (80, 60)
 
@@ -90,3 +91,22 @@ def test_an_empty_memory_has_a_camera():
 def test_registers_that_make_no_camera(rom, given):
     with pytest.raises(ViewpointError):
         aim_camera(rom, SIZE, **given)
+
+
+@pytest.mark.parametrize("size", [(64, 48), (48, 64)])
+def test_the_authors_camera(size):
+    grid = Grid(7, (-4.0, 0.0, -4.0), 0.125)
+    viewpoint = Viewpoint(eye=(3.0, 2.0, 9.0), target=(0.0, 1.0, -1.0), field_of_view=40.0)
+    camera = authored_camera(viewpoint, grid, size)
+    assert camera.position == (7 * 8 * 16, 2 * 8 * 16, 13 * 8 * 16)
+    look, up = np.array(camera.look, float), np.array(camera.up, float)
+    towards = np.array((-3.0, -1.0, -10.0))
+    assert look @ towards / np.linalg.norm(look) / np.linalg.norm(towards) == pytest.approx(1, abs=1e-6)
+    half_height = np.linalg.norm(up) * size[1] / 2 / np.linalg.norm(look)
+    assert half_height == pytest.approx(np.tan(np.radians(20)), rel=0.01)
+
+
+def test_an_authors_camera_that_cannot_be():
+    grid = Grid(7, (0.0, 0.0, 0.0), 1.0)
+    with pytest.raises(ViewpointError, match="the scene's camera: "):
+        authored_camera(Viewpoint((1, 1, 1), (1, 1, 1)), grid, (64, 48))
