@@ -1,26 +1,36 @@
 // The ray tracer that the report compared its hardware with (appendix B.2), re-implemented from its description, to
 // compare the exact model with.
 //
-//     original MEMORY DEPTH WIDTH HEIGHT CAMERA...   ->  "seconds hits" on stdout
+//     original MEMORY DEPTH WIDTH HEIGHT CAMERA...   ->  "CPU-seconds hits checksum" on stdout
 //
 // MEMORY holds hexadecimal words in the report dialect; CAMERA is twelve whole numbers: position (voxels), look, right,
 // up. A ray stands on whole voxels. It looks up the octant it stands in, from the root; if that is empty it takes steps
 // along its direction, first doubled until they are as long as the octant and then halved, keeping those that end in
-// the octant or one voxel outside, until it stands outside. Plain arrays stand where the original copies vectors and
-// formats strings, so this is the algorithm at its best and not the original's overhead.
+// the octant or one voxel outside, until it stands outside.
+//
+// Compiled with -DAS_PUBLISHED it handles its data as the appendix does: coordinates are heap-allocated vectors, passed
+// and returned by value, and an octant's number is read from a string of binary digits. Without, it is the algorithm at
+// its best, on plain arrays.
 #include <array>
-#include <chrono>
+#include <bitset>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
 
 namespace {
 
+#ifdef AS_PUBLISHED
+using Vector = std::vector<int>;
+using Argument = Vector;
+#else
 using Vector = std::array<int, 3>;
+using Argument = const Vector&;
+#endif
 
 struct Octant {
     uint32_t word;
@@ -28,8 +38,8 @@ struct Octant {
     Vector lowest, highest; // voxels, both inside
 };
 
-Octant octant_at(const std::vector<uint32_t>& words, int depth, const Vector& position) {
-    Octant found{words[0], 1 << depth, {0, 0, 0}, {}};
+Octant octant_at(const std::vector<uint32_t>& words, int depth, Argument position) {
+    Octant found{words[0], 1 << depth, {0, 0, 0}, {0, 0, 0}};
     for (int level = depth - 1; found.word >> 31 == 0; --level) {
         found.side /= 2;
         uint32_t index = 0;
@@ -38,6 +48,12 @@ Octant octant_at(const std::vector<uint32_t>& words, int depth, const Vector& po
             found.lowest[axis] += bit * found.side;
             index |= static_cast<uint32_t>(bit) << axis;
         }
+#ifdef AS_PUBLISHED
+        std::string digits;
+        for (int axis = 2; axis >= 0; --axis)
+            digits += std::bitset<10>(static_cast<unsigned>(position[axis])).to_string()[9 - level];
+        index = static_cast<uint32_t>(std::stoi(digits, nullptr, 2));
+#endif
         found.word = words[found.word + index];
     }
     for (int axis = 0; axis < 3; ++axis)
@@ -47,7 +63,7 @@ Octant octant_at(const std::vector<uint32_t>& words, int depth, const Vector& po
 
 enum class Place { inside, just_outside, beyond };
 
-Place place_of(const Vector& position, const Octant& octant) {
+Place place_of(Argument position, const Octant& octant) {
     Place place = Place::inside;
     for (int axis = 0; axis < 3; ++axis) {
         if (position[axis] < octant.lowest[axis] - 1 || position[axis] > octant.highest[axis] + 1)
@@ -79,7 +95,7 @@ Vector step_out(Vector position, Vector step, const Octant& octant) {
 }
 
 // The squared cosine between the direction and the normal of the face that the ray stands at.
-double brightness(const Vector& position, const Vector& direction, const Octant& octant) {
+double brightness(Argument position, Argument direction, const Octant& octant) {
     double length = 0;
     for (const int component : direction)
         length += static_cast<double>(component) * component;
@@ -104,14 +120,14 @@ int main(int count, char** arguments) {
     for (std::string line; file >> line;)
         words.push_back(static_cast<uint32_t>(std::stoul(line, nullptr, 16)));
     const int depth = std::atoi(arguments[2]), width = std::atoi(arguments[3]), height = std::atoi(arguments[4]);
-    Vector camera[4]; // position, look, right, up
+    Vector camera[4] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}; // position, look, right, up
     for (int i = 0; i < 12; ++i)
         camera[i / 3][i % 3] = std::atoi(arguments[5 + i]);
     const auto& [position, look, right, up] = camera;
 
     std::vector<uint8_t> image(static_cast<size_t>(width) * height * 3);
     int hits = 0;
-    const auto started = std::chrono::steady_clock::now();
+    const std::clock_t started = std::clock();
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
             Vector direction = look;
@@ -137,9 +153,9 @@ int main(int count, char** arguments) {
                 break;
             }
         }
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - started;
+    const double taken = static_cast<double>(std::clock() - started) / CLOCKS_PER_SEC;
     unsigned sum = 0; // so that no compiler drops the image
     for (const uint8_t byte : image)
         sum += byte;
-    std::printf("%.9f %d %u\n", taken.count(), hits, sum);
+    std::printf("%.9f %d %u\n", taken, hits, sum);
 }

@@ -24,18 +24,6 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results" / "rtl.md"
 LANES = {"tiny": 1, "duo": 2, "quad": 4, "octo": 8, "z1": 16, "banked": 16}
-COLUMNS = (
-    "scene",
-    "configuration",
-    "lanes",
-    "words a ray",
-    "cycles a pixel",
-    "bound",
-    "of the bound",
-    "words a clock and lane",
-    "million clocks/s simulated",
-    "million pixels/s simulated",
-)
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 
 
@@ -128,9 +116,9 @@ def measure(scene: Scene, size: tuple[int, int]) -> list[str]:
     for config in sorted(CONFIGS, key=lambda name: (LANES[name], name)):
         tracer = Tracer(config)
         tracer.load(scene.words)
-        start = time.perf_counter()
+        start = time.process_time()
         frame = tracer.render(scene.camera, *size, scene.depth, MATERIALS)
-        seconds = time.perf_counter() - start
+        seconds = time.process_time() - start
         pixels = size[0] * size[1]
         cycles, words = frame["cycles"] / pixels, frame["words_read"] / pixels
         bound = max(1, words / LANES[config])
@@ -150,11 +138,13 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     width, height = (int(side) for side in options.size.split("x"))
+    heads = ["scene", "configuration", "lanes", "words a ray", "cycles a pixel", "bound", "of the bound"]
+    heads += ["words a clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
     lines = [
         f"{width}x{height} pixels. Bound: max(1, words a ray / lanes).",
         "",
-        f"| {' | '.join(COLUMNS)} |",
-        f"|{'---|' * len(COLUMNS)}",
+        f"| {' | '.join(heads)} |",
+        "|---" * len(heads) + "|",
     ]
     for scene in scenes(options.memories, (width, height)):
         lines += measure(scene, (width, height))

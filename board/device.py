@@ -32,6 +32,8 @@ class Identity:
         Camera positions lie below this on either side of zero, 1/16 voxel.
     features
         Which of :data:`~.view.FEATURES` it has.
+    movable_root
+        Whether an octree may stand anywhere in the memory, so that two can be there at a time; otherwise at word 0.
     clock
         Hertz; None where there is no clock.
     """
@@ -43,6 +45,7 @@ class Identity:
     size: tuple[int, int]
     position_limit: int
     features: frozenset[str] = frozenset()
+    movable_root: bool = True
     clock: int | None = None
 
 
@@ -84,7 +87,7 @@ class Device(Protocol):
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
 
-    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
         """Write the material table: uint8, shape (256, 3), sRGB, and bool, shape (256,)."""
 
     def select_scene(self, root: int, depth: int) -> None:

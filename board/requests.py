@@ -35,6 +35,7 @@ class ViewChange:
     size: tuple[int, int] | None = None
     background: Triple | None = None
     light: Triple | None = None
+    ambient: int | None = None
     features: frozenset[str] | None = None
     bounces: int | None = None
     nonstop: bool | None = None
@@ -125,6 +126,7 @@ def _view_change(message: dict[str, Any]) -> ViewChange:
         size=optional("size", _size),
         background=optional("background", lambda name, value: _triple(name, value, 0, 255)),
         light=optional("light", _position),
+        ambient=optional("ambient", lambda name, value: _whole(name, value, 0, 255)),
         features=optional("features", _features),
         bounces=optional("bounces", lambda name, value: _whole(name, value, 0, 15)),
         nonstop=optional("nonstop", _truth),

@@ -18,6 +18,16 @@ if TYPE_CHECKING:
 MAX_DEPTH = 16
 
 
+@dataclass(frozen=True, slots=True)
+class Lighting:
+    """How a scene wants to be lit at first, as :class:`~.view.View` has it: light, ambient, bounces, features."""
+
+    position: Triple
+    ambient: int
+    bounces: int
+    features: frozenset[str]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
     """An octree memory with its materials and what to see it by.
@@ -36,8 +46,8 @@ class Scene:
         bool, shape (256,): materials that reflect.
     camera
         Where to look from at first, in frames of 640 x 480; None where the file does not say.
-    light
-        Where the light stands, 1/16 voxel; None where the file does not say.
+    lighting
+        None where the file does not say.
     """
 
     name: str
@@ -46,7 +56,7 @@ class Scene:
     colours: NDArray[np.uint8]
     mirrors: NDArray[np.bool_]
     camera: Camera | None = None
-    light: Triple | None = None
+    lighting: Lighting | None = None
 
     @property
     def background(self) -> Triple:

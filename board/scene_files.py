@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Protocol
 
+from .blob import MAGIC as BLOB_MAGIC
+from .blob import read_blob
 from .errors import Refused
 from .mem_files import read_mem_files
 
@@ -27,15 +29,17 @@ class SceneReader(Protocol):
 
 
 class BoardReader:
-    """Reads what needs no building: a ``.mem`` with its ``.json``."""
+    """Reads what needs no building: a blob, or a ``.mem`` with its ``.json``."""
 
-    suffixes: tuple[str, ...] = (".mem",)
+    suffixes: tuple[str, ...] = (".blob", ".mem")
 
     def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
         """Make the scene, or raise :class:`~.errors.Refused`."""
         progress("read", 0, 1)
+        if len(files) == 1 and (blob := next(iter(files.values()))).startswith(BLOB_MAGIC):
+            return read_blob(blob)
         suffixes = {PurePosixPath(name).suffix.lower(): name for name in files}
         if suffixes.keys() == {".mem", ".json"} and len(files) == 2:
             mem = suffixes[".mem"]
             return read_mem_files(PurePosixPath(mem).stem, files[mem], files[suffixes[".json"]])
-        raise Refused(f"{', '.join(files)}: not a .mem with the .json beside it; give both together")
+        raise Refused(f"{', '.join(files)}: no blob, and not a .mem with the .json beside it; give both together")

@@ -91,6 +91,8 @@ class SceneMemory:
         """Find where `count` words fit beside the running scene; None where they do not."""
         if self._running is None or count <= self._base:
             return 0
+        if not self._device.identity.movable_root:
+            return None
         behind = -(-(self._base + len(self._running.words)) // 8) * 8
         return behind if behind + count <= self._device.identity.capacity else None
 

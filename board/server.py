@@ -85,6 +85,7 @@ class FrameServer:
             raise Refused(f"{listening.host} can be reached from other machines; give a token, or listen on 127.0.0.1")
         self.show = Show(device, program)
         self.refused = 0
+        self.sockets: set[ServerConnection] = set()
         self._listening = listening
         self._gate = Gate(listening.token, listening.origins)
         self._arrivals = Bucket(listening.limits.arrivals, time.monotonic)
@@ -160,15 +161,20 @@ class FrameServer:
         await asyncio.gather(*tasks, return_exceptions=True)
 
     def _connection_class(self) -> type[ServerConnection]:
-        limit = self._listening.limits.sockets
+        limit, alive = self._listening.limits.sockets, self.sockets
 
         class Connection(ServerConnection):
             """One that is cut off at once when there are too many, so that unfinished ones cannot pile up."""
 
             def connection_made(self, transport: asyncio.BaseTransport) -> None:
                 super().connection_made(transport)
-                if len(self.server.handler_tasks) > limit:
+                alive.add(self)
+                if len(alive) > limit:
                     self.transport.abort()
+
+            def connection_lost(self, exc: Exception | None) -> None:
+                alive.discard(self)
+                super().connection_lost(exc)
 
         return Connection
 

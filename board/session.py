@@ -53,7 +53,6 @@ class Session:
         self._viewer = viewer
         self._start = start
         self._receiving: Receiving | None = None
-        self._uploads = 0
 
     async def hear(self, message: str | bytes) -> None:
         """Do what a message asks and answer it; nothing that it may hold raises."""

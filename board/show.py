@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +59,6 @@ class Show:
         self.stage = Stage(device)
         self.audience = Audience(self.state)
         self.handover = Handover(time.monotonic)
-        self.uploads = 0
         self._program = program
         self._reading = ThreadPoolExecutor(1, "reader")
         self._scene_change = asyncio.Lock()
@@ -93,7 +92,7 @@ class Show:
 
     def state(self) -> dict[str, Any]:
         """Tell what is shown now."""
-        stage, camera, scene = self.stage, self.stage.view.camera, self.stage.scene
+        stage, scene = self.stage, self.stage.scene
         return {
             "type": "state",
             "viewers": len(self.audience),
@@ -104,18 +103,16 @@ class Show:
                 "name": scene.name,
                 "depth": scene.depth,
                 "words": len(scene.words),
-                "crc32": scene.crc32,
+                "crc32": stage.crc32,
+                "camera": asdict(stage.first_view.camera),
+                "size": stage.first_view.size,
             },
             "view": {
-                "camera": {
-                    "position": camera.position,
-                    "look": camera.look,
-                    "right": camera.right,
-                    "up": camera.up,
-                },
+                "camera": asdict(stage.view.camera),
                 "size": stage.view.size,
                 "background": stage.view.background,
                 "light": stage.view.light,
+                "ambient": stage.view.ambient,
                 "features": sorted(stage.view.features),
                 "bounces": stage.view.bounces,
                 "nonstop": stage.nonstop,
@@ -130,7 +127,6 @@ class Show:
             "frames": self.stage.frames,
             "dropped": self.audience.dropped,
             "viewers": len(self.audience),
-            "uploads": self.uploads,
             "scenes": self.stage.scene_number,
         }
 
@@ -175,6 +171,5 @@ class Show:
             if not allowed():
                 raise Refused("control passed to another viewer meanwhile; the scene was not changed")
             await self.stage.put_on(scene, progress)
-            self.uploads += 1
         self.audience.refresh()
         return scene

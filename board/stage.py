@@ -58,7 +58,8 @@ class Stage:
         self.device = device
         self.scene = NOTHING
         self.scene_number = 0
-        self.view = View(face_world(NOTHING.depth, size), size, NOTHING.background)
+        self.crc32 = NOTHING.crc32
+        self.view = self.first_view = View(face_world(NOTHING.depth, size), size, NOTHING.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
@@ -76,7 +77,7 @@ class Stage:
         Refused
             The device cannot show that; the view stays as it is.
         """
-        fields = ("camera", "size", "background", "light", "features", "bounces")
+        fields = ("camera", "size", "background", "light", "ambient", "features", "bounces")
         changed = {name: value for name in fields if (value := getattr(change, name)) is not None}
         view = replace(self.view, **changed)
         check_view(view, self.device.identity)
@@ -104,7 +105,8 @@ class Stage:
         self.check_scene(scene)
         async with self._between_frames:
             await self._on_device(partial(self._memory.swap, scene, progress))
-            self.scene, self.view = scene, self._view_of(scene)
+            self.scene, self.crc32 = scene, scene.crc32
+            self.view = self.first_view = self._view_of(scene)
             self.scene_number += 1
         self._wanted.set()
 
@@ -154,6 +156,15 @@ class Stage:
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
         camera = refit(scene.camera, FIRST_SIZE, size) if scene.camera else face_world(scene.depth, size)
-        side = 16 << scene.depth
-        light = scene.light or (side, 2 * side, side)
-        return replace(self.view, camera=camera, background=scene.background, light=light)
+        view = replace(self.view, camera=camera, background=scene.background)
+        lighting = scene.lighting
+        if lighting is None:
+            side = 16 << scene.depth
+            return replace(view, light=(side, 2 * side, side))
+        return replace(
+            view,
+            light=lighting.position,
+            ambient=lighting.ambient,
+            bounces=lighting.bounces,
+            features=lighting.features & self.device.identity.features,
+        )

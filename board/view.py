@@ -42,6 +42,8 @@ class View:
         sRGB of pixels that hit nothing, 0 ... 255 each.
     light
         Where the point light of the shadows stands, 1/16 voxel.
+    ambient
+        0 ... 255, in 1/256: the brightness that no shadow goes below.
     features
         Which of :data:`FEATURES` are on.
     bounces
@@ -52,5 +54,6 @@ class View:
     size: tuple[int, int]
     background: Triple = (0, 0, 0)
     light: Triple = (0, 0, 0)
+    ambient: int = 32
     features: frozenset[str] = frozenset()
     bounces: int = 4

@@ -38,7 +38,7 @@ module voxrt_pixel_buffer
   assign tag_o       = take_q;
   assign write_place = clearing ? clear_q[PlaceBits-1:0] : tag_i[PlaceBits-1:0];
   assign read_place  = read_q[PlaceBits-1:0];
-  assign filled      = lap_q[read_place] != read_q[PlaceBits];
+  assign filled      = lap_q[read_place] != read_q[PlaceBits] && !clearing;
   assign advance     = filled && (ready_i || !valid_q);
 
   always_ff @(posedge clk_i) begin

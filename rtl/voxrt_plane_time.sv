@@ -1,6 +1,7 @@
 // The time at which a ray crosses a plane: distance * weight, exact, two clocks later.
 //
-// The weight is cut in halves so that each product fits one 25 x 18 multiplier of a 7-series DSP slice.
+// Cut so that each half is one 25 x 18 multiplier of a 7-series DSP slice and the sum is the second one's adder, 17
+// bits up, as the slices are cascaded.
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(
@@ -12,17 +13,19 @@ module voxrt_plane_time
   input  logic        [  WeightBits-1:0] weight_i,
   output logic signed [    TimeBits-1:0] time_o
 );
-  localparam int unsigned LowBits = WeightBits / 2;
-  localparam int unsigned PartBits = DistanceBits + LowBits + 1;
+  localparam int unsigned LowBits = 17;
+  localparam int unsigned HighBits = TimeBits - LowBits;
 
-  logic signed [PartBits-1:0] low_q, high_q;
-  logic signed [TimeBits-1:0] time_q;
+  logic signed [DistanceBits+LowBits-1:0] low_q;
+  logic signed [HighBits-1:0]             high_q, sum_q;
+  logic        [LowBits-1:0]              low_bits_q;
 
   always_ff @(posedge clk_i) begin
-    low_q  <= PartBits'(distance_i) * $signed(PartBits'(weight_i[LowBits-1:0]));
-    high_q <= PartBits'(distance_i) * $signed(PartBits'(weight_i[WeightBits-1:LowBits]));
-    time_q <= TimeBits'(low_q) + (TimeBits'(high_q) <<< LowBits);
+    low_q      <= (DistanceBits + LowBits)'(distance_i) * $signed((DistanceBits + LowBits)'(weight_i[LowBits-1:0]));
+    high_q     <= HighBits'(distance_i) * $signed(HighBits'(weight_i[WeightBits-1:LowBits]));
+    sum_q      <= high_q + HighBits'(low_q >>> LowBits);
+    low_bits_q <= low_q[LowBits-1:0];
   end
 
-  assign time_o = time_q;
+  assign time_o = {sum_q, low_bits_q};
 endmodule

@@ -4,7 +4,15 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.sim.camera import Camera, camera_from_registers, frame_points, frame_scene, look_at, pixel_directions
+from voxrt.sim.camera import (
+    Camera,
+    camera_from_registers,
+    frame_points,
+    frame_scene,
+    look_at,
+    outline,
+    pixel_directions,
+)
 from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
@@ -33,6 +41,7 @@ __all__ = [
     "frame_points",
     "frame_scene",
     "look_at",
+    "outline",
     "peak_signal_to_noise",
     "pixel_directions",
     "render",

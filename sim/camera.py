@@ -114,7 +114,7 @@ def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
     size
         Columns and rows of the frame.
     """
-    return frame_points(_outline(rom.octree), size)
+    return frame_points(outline(rom.octree), size)
 
 
 def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
@@ -141,7 +141,7 @@ def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
     return _scaled(eye, axes, focal, size)
 
 
-def _outline(octree: Octree) -> NDArray[np.float64]:
+def outline(octree: Octree) -> NDArray[np.float64]:
     """Give points whose hull holds all that is solid, or the world: shape (N, 3), voxels."""
     coarse = coarsen(octree, max(0, octree.depth - _OUTLINE_LEVELS))
     parts = list(leaves(coarse, solid_only=True))

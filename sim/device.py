@@ -35,6 +35,7 @@ class _Memory:
     def __init__(self, capacity: int) -> None:
         self.capacity = capacity
         self.colours = np.zeros((256, 3), dtype=np.uint8)
+        self.mirrors = np.zeros(256, dtype=np.uint8)
         self.root, self.depth = 0, 1
         self._words = np.full(1, 0xFFFFFF00, dtype=np.uint32)
 
@@ -104,9 +105,9 @@ class _SimulatedDevice:
         """Read words from `address` on."""
         return self._memory.read(address, count)
 
-    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:  # noqa: ARG002 - no mirrors
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:
         """Write the material table."""
-        self._memory.colours = colours.copy()
+        self._memory.colours, self._memory.mirrors = colours.copy(), mirrors.astype(np.uint8)
 
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at `root` from the next frame on."""
@@ -146,7 +147,7 @@ class ModelDevice(_SimulatedDevice):
                 depth=16,
                 size=(_FRAME_LIMIT, _FRAME_LIMIT),
                 position_limit=1 << 31,
-                features=frozenset({"flat"}),
+                features=frozenset({"flat", "shadows", "mirrors"}),
             )
         )
         self._threads = threads
@@ -164,14 +165,22 @@ class ModelDevice(_SimulatedDevice):
         """Render a frame."""
         started = time.perf_counter()
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
-        colours = self._colours(view)
         try:
-            pixels = self._model.render(colours, camera, *view.size, self._threads)
+            pixels = self._model.render(
+                self._colours(view),
+                camera,
+                *view.size,
+                self._threads,
+                flat="flat" in view.features,
+                light=np.array(view.light, dtype=np.int32) if "shadows" in view.features else None,
+                ambient=view.ambient,
+                bounces=view.bounces if "mirrors" in view.features else 0,
+                mirrors=self._memory.mirrors,
+            )
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
-        colour = colours[pixels["material"]] if "flat" in view.features else pixels["colour"]
-        rays = view.size[0] * view.size[1]
-        return self._kept(view, colour, Counters(rays, pixels["words_read"], None, time.perf_counter() - started))
+        counters = Counters(view.size[0] * view.size[1], pixels["words_read"], None, time.perf_counter() - started)
+        return self._kept(view, pixels["colour"], counters)
 
 
 class RtlDevice(_SimulatedDevice):
@@ -209,6 +218,7 @@ class RtlDevice(_SimulatedDevice):
                 depth=self._tracer.max_depth,
                 size=(_FRAME_LIMIT, _FRAME_LIMIT),
                 position_limit=self._tracer.position_limit,
+                movable_root=False,
             )
         )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -134,7 +135,7 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
 def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) -> Frame:
     started = time.perf_counter()
     try:
-        from voxrt.sim import _rtl  # noqa: PLC0415 - not built on every platform
+        _rtl = import_module("voxrt.sim._rtl")
     except ImportError as error:
         raise SimulatorError(
             "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "

@@ -67,7 +67,8 @@ class ObjectReport:
     name
         The object's name.
     source
-        What was voxelized: ``"mesh"``, ``"box"``, ``"sphere"``, ``"hull"``.
+        What was voxelized: ``"mesh"``, ``"box"``, ``"sphere"``, ``"hull"``; colliders of several kinds are joined by
+        ``"+"``.
     mode
         How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
         ``"winding"`` (open or self-intersecting: generalized winding number).

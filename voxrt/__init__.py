@@ -17,8 +17,8 @@ from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from voxrt.export import read_rom
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, census, diff
+    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.octree import BOARDS, Octree, Rom, RomError, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
@@ -32,6 +32,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "BOARDS",
+    "WRITABLE_SUFFIXES",
     "AssetError",
     "BudgetFit",
     "BuildResult",
@@ -51,21 +52,23 @@ __all__ = [
     "ViewpointError",
     "aim_camera",
     "build",
-    "census",
     "check",
     "compare",
     "comparison_sheet",
+    "convert",
     "diff",
     "fit_grid",
     "load",
+    "read_any",
     "read_rom",
     "render",
+    "rom_info",
     "save_picture",
 ]
 
 _HOMES = {
-    "voxrt.export": ("read_rom",),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "census", "diff"),
+    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "diff"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),

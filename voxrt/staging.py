@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import voxelize
+from voxrt.board.blob import read_blob
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
 from voxrt.board.view import Camera
@@ -49,7 +50,7 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     Parameters
     ----------
     path
-        A ``.mem`` with or without its manifest, or an asset.
+        A blob, a ``.mem`` with or without its manifest, or an asset.
     depth
         Levels, for an asset and for a memory without manifest.
     progress
@@ -60,6 +61,8 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     RomError, AssetError, DoesNotFitError
         The file is not what it should be, or too large.
     """
+    if path.suffix.lower() == ".blob":
+        return read_blob(path.read_bytes())
     if path.suffix.lower() == ".mem":
         return board_scene(read_rom(path, depth=depth)[0])
 
@@ -85,7 +88,7 @@ class BuildingReader:
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of the files that it begins with."""
-        return (".mem", *sorted(SUFFIXES))
+        return (".blob", ".mem", *sorted(SUFFIXES))
 
     def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
         """Make the scene, or raise Refused."""
@@ -102,6 +105,6 @@ class BuildingReader:
                     f"{', '.join(files)}: one file of {' '.join(self.suffixes)} is wanted, with the files that it names"
                 )
             try:
-                return load_scene(first[0], None if first[0].suffix.lower() == ".mem" else self._depth, progress)
+                return load_scene(first[0], self._depth if first[0].suffix.lower() in SUFFIXES else None, progress)
             except (RomError, voxelize.AssetError, voxelize.DoesNotFitError) as error:
                 raise Refused(str(error).replace(f"{folder}/", "")) from error

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree import solid_bounds
-from voxrt.sim import Camera, frame_scene
+from voxrt.sim import Camera, frame_scene, outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -72,16 +71,15 @@ def aim_camera(
     """
     if position is None and (look, right, up) == (None, None, None):
         return frame_scene(rom, size)
-    lowest, highest = np.array(solid_bounds(rom.octree) or ((0,) * 3, (rom.octree.size,) * 3))
+    points = outline(rom.octree)
     if look is None or right is None or up is None:
         sight = _THREE_QUARTER
         if position is not None:
-            towards = (lowest + highest) / 2 - np.array(position) / 16
+            towards = (points.min(axis=0) + points.max(axis=0)) / 2 - np.array(position) / 16
             sight = towards if towards.any() else sight
         look, right, up = _complete(_sight(sight, look, right, up), size, look, right, up)
     if position is None:
-        corners = np.array([[(lowest, highest)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
-        position = _stand_back(16 * corners, size, np.array((look, right, up), np.float64))
+        position = _stand_back(16 * points, size, np.array((look, right, up), np.float64))
     return Camera(position, look, right, up)
 
 
@@ -124,15 +122,15 @@ def _complete(
     )
 
 
-def _stand_back(corners: Vector, size: tuple[int, int], registers: Vector) -> Triple:
-    """Place the camera (1/16 voxel) so that all `corners` (8, 3) are in the picture and touch its margin.
+def _stand_back(points: Vector, size: tuple[int, int], registers: Vector) -> Triple:
+    """Place the camera (1/16 voxel) so that all `points` (N, 3) are in the picture and touch its margin.
 
-    In the frame of the registers a corner p seen from q lies at (depth, column, row) = (p - q) R^-1, and is in the
+    In the frame of the registers a point p seen from q lies at (depth, column, row) = (p - q) R^-1, and is in the
     picture when |column| <= W/2 depth and |row| <= H/2 depth: linear in q, solved side by side.
     """
     if abs(np.linalg.det(registers)) < 1e-9:
         raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
-    depths, columns, rows = np.linalg.solve(registers.T, corners.T)
+    depths, columns, rows = np.linalg.solve(registers.T, points.T)
     stand = []
     for half, sides in ((size[0] / 2, columns), (size[1] / 2, rows)):
         half_seen = _MARGIN * max(half, 0.5)

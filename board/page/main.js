@@ -110,7 +110,7 @@ link.addEventListener("refused", ({ detail }) => notice("trouble", "The board re
 link.addEventListener("frame", ({ detail }) => picture.show(detail));
 
 const commands = {
-  KeyR: () => { if (state()) panel.preset(0); },
+  KeyR: () => { if (state()) app.change(() => fromRegisters(state().scene.camera, state().scene.size)); },
   KeyN: () => $("nonstop").click(),
   KeyO: () => $("figures").click(),
   KeyP: () => $("save").click(),

@@ -67,6 +67,8 @@ export class Panel {
     $("size").onchange = ({ target }) => app.resize(target.value.split("x").map(Number));
     this.light = [0, 1, 2].map((i) => field($("light"), `Light ${axis(i)}`, i === 0, { step: 0.0625 }, (value) =>
       app.set({ light: this.state.view.light.map((old, j) => (j === i ? Math.round(value * 16) : old)) })));
+    this.ambient = field($("light"), "Ambient", false, { min: 0, max: 255, step: 1 }, (value) =>
+      app.set({ ambient: Math.min(255, Math.max(0, Math.round(value))) }));
     this.showSaved();
   }
 
@@ -113,6 +115,7 @@ export class Panel {
     const side = 2 ** scene.depth;
     this.position.forEach((slider) => slider.range(-2 * side, 3 * side));
     this.light.forEach((slider, i) => { slider.range(-2 * side, 3 * side); slider.set(view.light[i] / 16); });
+    this.ambient.set(view.ambient);
     for (const made of $("panel").querySelectorAll("button, input, select"))
       if (!["figures", "help", "save"].includes(made.id)) made.disabled = !steers;
   }

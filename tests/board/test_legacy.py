@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import struct
 
 from hypothesis import given
 from hypothesis import strategies as st
 from stand_ins.device import PaintedDevice, scene
+from stand_ins.sockets import ended, stranger
 
 from voxrt.board.legacy import read_request
 from voxrt.board.scene_files import BoardReader
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 from voxrt.board.view import Camera
 
 field = st.integers(-2048, 2047)
@@ -43,33 +44,27 @@ def test_pictures(run):
         async with FrameServer(device, program, listening) as server:
             await server.show.stage.put_on(scene(material=9), lambda *_: None)
             before = server.show.stage.view
-            reader, writer = await asyncio.open_connection("127.0.0.1", server.legacy_port)
-            for x in (3, 200):
-                request = spell((512 * x, 0, 0), (0, 0, 90), (1, 0, 0), (0, 1, 0), (1, 2, 3))
-                if x == 3:
+            async with stranger(server.legacy_port) as (reader, writer):
+                for x in (3, 200):
+                    request = spell((512 * x, 0, 0), (0, 0, 90), (1, 0, 0), (0, 1, 0), (1, 2, 3))
                     writer.write(request[:5])
                     await writer.drain()
-                    request = request[5:]
-                writer.write(request)
-                picture = await reader.readexactly(512 * 512 * 3)
-                assert picture[:2] == bytes((9, (((512 * x + 2048) % 4096 - 2048) * 32 // 1024) & 0xFF))
-                assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
-            assert server.show.stage.view == before
-            # Half a request and gone; a device in trouble; more clients than are served: each is hung up on.
-            device.fail_frames = True
-            for request, half_close in ((b"\0" * 27, True), (b"\0" * 28, False)):
-                other_reader, other = await asyncio.open_connection("127.0.0.1", server.legacy_port)
-                other.write(request)
-                if half_close:
+                    writer.write(request[5:])
+                    picture = await reader.readexactly(512 * 512 * 3)
+                    assert picture[:2] == bytes((9, (((512 * x + 2048) % 4096 - 2048) * 32 // 1024) & 0xFF))
+                    assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
+                assert server.show.stage.view == before
+                # Half a request and gone; a device in trouble; more clients than are served: each is hung up on.
+                device.fail_frames = True
+                async with stranger(server.legacy_port) as (other_reader, other):
+                    other.write(b"\0" * 27)
                     other.write_eof()
-                with contextlib.suppress(ConnectionError):
-                    assert await other_reader.read() == b""
-                other.close()
-            crowd = [await asyncio.open_connection("127.0.0.1", server.legacy_port) for _ in range(4)]
-            with contextlib.suppress(ConnectionError):
-                assert await crowd[-1][0].read() == b""
-            for _, other in crowd:
-                other.close()
-            writer.close()
+                    assert await ended(other_reader)
+                async with stranger(server.legacy_port) as (other_reader, other):
+                    other.write(b"\0" * 28)
+                    assert await ended(other_reader)
+                async with contextlib.AsyncExitStack() as crowd:
+                    readers = [(await crowd.enter_async_context(stranger(server.legacy_port)))[0] for _ in range(4)]
+                    assert await ended(readers[-1])
 
     run(visiting())

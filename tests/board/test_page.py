@@ -11,7 +11,8 @@ from oracles import worlds
 from oracles.cuts import memory_of
 from stand_ins.browser import chromium
 
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 from voxrt.export import write_rom
 from voxrt.octree import Octree, Rom
 from voxrt.sim import look_at, pixel_directions

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import zlib
 from contextlib import asynccontextmanager
@@ -10,6 +11,7 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 from stand_ins.device import PaintedDevice, scene
+from stand_ins.sockets import ended, stranger
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
@@ -19,7 +21,8 @@ from voxrt.board.client import visit
 from voxrt.board.errors import Refused
 from voxrt.board.packets import CHUNK_LIMIT, Chunk, pack_chunk
 from voxrt.board.scene_files import BoardReader
-from voxrt.board.server import FrameServer, Listening, Program
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
 
 CAMERA = {"position": [80, 0, 0], "look": [0, 0, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
 
@@ -348,11 +351,9 @@ def test_who_may_come_in(run):
 
 
 async def http(port, request):
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    writer.write(request)
-    answer = await reader.read()
-    writer.close()
-    return answer
+    async with stranger(port) as (reader, writer):
+        writer.write(request)
+        return await reader.read()
 
 
 def test_page(run):
@@ -393,16 +394,13 @@ def test_garbage_and_crowds(run):
             await asyncio.gather(http(server.port, oversized), return_exceptions=True)
             # Abandoned before, in the middle of and after the handshake.
             for opening in (b"", b"GET /v1 HTTP/1.1\r\nHost:", b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n"):
-                _, writer = await asyncio.open_connection("127.0.0.1", server.port)
-                writer.write(opening)
-                writer.transport.abort()
+                async with stranger(server.port) as (_, writer):
+                    writer.write(opening)
             # More sockets than are borne: the rest is cut off, and all of them go.
-            crowd = await asyncio.gather(*(asyncio.open_connection("127.0.0.1", server.port) for _ in range(300)))
-            await honest.ask("counters")
-            cut = [reader for reader, _ in crowd[150:]]
-            assert all(await asyncio.gather(*(ended(reader) for reader in cut)))
-            for _, writer in crowd:
-                writer.transport.abort()
+            async with contextlib.AsyncExitStack() as crowd:
+                readers = [(await crowd.enter_async_context(stranger(server.port)))[0] for _ in range(300)]
+                await honest.ask("counters")
+                assert all(await asyncio.gather(*(ended(reader) for reader in readers[150:])))
             # Visitors that talk nonsense.
             async with connect(f"ws://127.0.0.1:{server.port}/v1", proxy=None) as visitor:
                 for _ in range(50):
@@ -411,20 +409,13 @@ def test_garbage_and_crowds(run):
                 await visitor.send(bytes(CHUNK_LIMIT + 100))
                 await visitor.wait_closed()
                 assert visitor.close_code == 1009
-            while len(server._server.handler_tasks) > 1:
+            while len(server.sockets) > 1:
                 await honest.ask("counters")
             request = await honest.send("view", camera=CAMERA)
             await frame_where(honest, lambda packet: packet.request == request)
             assert len(server.show.audience) == 1
 
     run(visiting())
-
-
-async def ended(reader):
-    try:
-        return await reader.read() == b""
-    except ConnectionError:
-        return True
 
 
 def test_answers_that_nobody_reads(run):

@@ -221,3 +221,13 @@ def test_time_and_variants_reach_the_loader(voxrt):
     assert finished.code == 0
     kinds = [warning["kind"] for warning in json.loads(finished.out)["warnings"]]
     assert kinds.count("ignored-option") == 2
+
+
+def test_profile_has_a_row_a_stage(voxrt):
+    finished = voxrt("build", "house.obj", "--depth", "3", "--profile", "--json")
+    assert finished.code == 0
+    assert [line.split()[0] for line in finished.err.splitlines()] == [
+        "stage",
+        *json.loads(finished.out)["seconds"],
+        "all",
+    ]

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from PIL import Image
 
-from voxrt.cli.results import CompareResult
+from voxrt.cli.memory_results import CompareResult
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from voxrt import Material, Rom
-from voxrt.cli.results import DiffResult, RomInfo
+from voxrt.cli.memory_results import DiffResult, InfoResult
 from voxrt.export import write_rom
 from voxrt.octree import from_dense
 from voxrt.voxelize import EMPTY, Grid
@@ -32,15 +32,13 @@ def worlds(folder):
 def test_info(voxrt):
     finished = voxrt("info", "before.mem", "--json")
     assert finished.code == 0
-    told = msgspec.json.decode(finished.out, type=RomInfo, strict=True)
+    told = msgspec.json.decode(finished.out, type=InfoResult, strict=True)
     assert (told.name, told.depth, told.words, told.blocks, told.voxels) == ("before", 3, 25, 3, 65)
     assert told.world is not None
     assert (told.world.origin, told.world.voxel_size) == ((1, 2, 3), 0.5)
-    assert [(row.level, row.side, row.solid, row.empty) for row in told.levels] == [
-        (0, 1, 1, 7),
-        (1, 2, 0, 7),
-        (2, 4, 1, 6),
-    ]
+    assert [(row.level, row.solid, row.empty) for row in told.levels] == [(3, 0, 0), (2, 1, 6), (1, 0, 7), (0, 1, 7)]
+    assert told.bounds == ((0, 0, 0), (8, 4, 4))
+    assert [(board.name, board.fits) for board in told.boards] == [("pynq-z1", True)]
     assert [(row.id, row.name, row.voxels) for row in told.materials] == [
         (0, "empty", 512 - 65),
         (1, "stone", 64),
@@ -53,7 +51,7 @@ def test_info_for_people(voxrt):
     finished = voxrt("info", "before.mem")
     assert (finished.code, finished.out) == (0, "")
     lines = [line.split() for line in finished.err.splitlines()]
-    assert ["memory", "25", "words,", "0.1", "KiB,", "3", "blocks"] in lines
+    assert ["memory", "25", "words,", "0.1", "KiB;", "25", "words", "without", "sharing"] in lines
     assert ["1", "stone", "#c86432", "64"] in lines
 
 

@@ -59,9 +59,9 @@ IN_NATIVE_CODE = """
 import os, signal, sys, threading
 from voxrt.sim import _model
 class Memory(_model.Memory):
-    def render(self, *arguments):
+    def render(self, *arguments, **options):
         threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-        return super().render(*arguments)
+        return super().render(*arguments, **options)
 _model.Memory = Memory
 from voxrt.cli import main
 main()

@@ -18,17 +18,18 @@ import pytest
         (["build", "house.obj", "--bogus"], "--bogus"),
         (["build", "house.obj", "--dept", "3"], "Did you mean --depth?"),
         (["build", "house.obj", "--depth", "3.5"], "'3.5' is not a whole number"),
-        (["build", "house.obj", "--depth", "0"], "--depth 0 is not 1 to 16"),
-        (["build", "house.obj", "--depth", "17"], "--depth 17 is not 1 to 16"),
+        (["build", "house.obj", "--depth", "0"], "--depth: 0 is not 1 to 16"),
+        (["build", "house.obj", "--depth", "17"], "--depth: 17 is not 1 to 16"),
         (["build", "house.obj", "--depth", "3", "--voxel-size", "1"], "exclude each other"),
         (["build", "house.obj", "--voxel-size", "-1"], "not a positive number"),
-        (["build", "house.obj", "--voxel-size", "nan"], "not a positive number"),
+        (["build", "house.obj", "--voxel-size", "nan"], "not a finite number"),
         (["build", "house.obj", "--unit", "0"], "not a positive number"),
-        (["build", "house.obj", "--unit", "inf"], "not a positive number"),
+        (["build", "house.obj", "--unit", "inf"], "not a finite number"),
+        (["build", "house.obj", "--unit", "inch"], "'inch' is not a number"),
         (["build", "house.obj", "--budget", "0"], "not a number of words"),
         (["build", "house.obj", "--budget", "9", "--board", "pynq-z1"], "exclude each other"),
         (["build", "house.obj", "--board", "abacus"], "there are pynq-z1"),
-        (["build", "house.obj", "--time", "inf"], "not a number of seconds"),
+        (["build", "house.obj", "--time", "inf"], "not a finite number"),
         (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
         (["build", "house.obj", "--size", "640"], "is not WIDTHxHEIGHT"),
         (["build", "house.obj", "--size", "0x480"], "is not between 1x1 and"),
@@ -106,7 +107,7 @@ def test_the_traceback_comes_with_debug_only(voxrt, process):
     assert finished.err.splitlines()[-1].startswith("voxrt: error: nothing.glb: no such file")
 
 
-@pytest.mark.parametrize("command", ["build", "render", "compare", "info", "diff"])
+@pytest.mark.parametrize("command", ["build", "render", "compare", "convert", "info", "diff"])
 def test_help_has_an_example(voxrt, command):
     finished = voxrt(command, "--help")
     assert finished.code == 0

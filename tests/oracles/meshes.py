@@ -1,4 +1,4 @@
-"""Meshes and scenes for the tests."""
+"""Meshes with known answers, and scenes of them, made without the code under test."""
 
 import numpy as np
 

@@ -11,7 +11,6 @@ from oracles.ray_batch import trace_batch
 from oracles.seeds import HOUSE_CAMERA, SEED_DEPTH, PointQueries, seed_words
 from PIL import Image
 
-import voxrt.sim
 from voxrt.octree import Octree, Rom
 from voxrt.sim import (
     FACE_NONE,
@@ -138,7 +137,6 @@ def test_sizes_out_of_range_are_refused(rom, size):
 
 def test_a_missing_ray_tracer_says_what_to_do(rom, monkeypatch):
     monkeypatch.setitem(sys.modules, "voxrt.sim._rtl", None)
-    monkeypatch.delattr(voxrt.sim, "_rtl", raising=False)
     with pytest.raises(SimulatorError, match=r"no verilated ray tracer .*--engine model"):
         render(rom, ALONG_Z, (4, 4), engine="rtl")
 

@@ -52,13 +52,13 @@ class Dress:
     keys
         The materials of triangles that have one colour.
     rows
-        int32, shape (T,): the key of each triangle; -1 where it is painted, or air.
+        intp, shape (T,): the key of each triangle; -1 where it is painted, or air.
     coat
         The paint on painted triangles, or None.
     """
 
     keys: tuple[MaterialKey, ...]
-    rows: NDArray[np.int32]
+    rows: NDArray[np.intp]
     coat: Coat | None
 
 
@@ -88,7 +88,7 @@ def dress(document: Document, textures: Textures, surface: Surface, look: Look) 
     count = len(surface.triangles)
     document.charge(count * 8, f"meshes[{look.mesh}]")
     keys: dict[MaterialKey, int] = {}
-    rows = np.full(count, -1, np.int32)
+    rows = np.full(count, -1, np.intp)
     painter = _Painter(document, textures, count)
     for span in surface.spans:
         place = f"meshes[{look.mesh}].primitives[{span.primitive}]"

@@ -12,6 +12,7 @@ import msgspec
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.schema import Gltf
+from voxrt.voxelize.gltf.schema_errors import explain
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -85,15 +86,11 @@ def _parse(path: Path, text: bytes) -> Gltf:
     try:
         gltf = _decoder.decode(text.removeprefix(b"\xef\xbb\xbf"))
     except msgspec.ValidationError as error:
-        problem, _, place = str(error).partition(" - at ")
-        place = place.strip("`").removeprefix("$").removeprefix(".")
-        problem = problem[:1].lower() + problem[1:]
-        raise AssetError(
-            path, problem, place=place, fix="the file breaks the glTF 2.0 schema: export it again"
-        ) from None
+        problem, place = explain(error)
+        fix = "the file breaks the glTF 2.0 schema: export it again"
+        raise AssetError(path, problem, place=place, fix=fix) from None
     except msgspec.DecodeError as error:
-        message = str(error)
-        raise AssetError(path, message[:4].replace("Inpu", "inpu") + message[4:], fix=_RE_EXPORT) from None
+        raise AssetError(path, f"the JSON cannot be read ({error})", fix=_RE_EXPORT) from None
     except RecursionError:
         raise AssetError(path, "the JSON is nested too deeply", fix=_RE_EXPORT) from None
     if gltf.asset.version.partition(".")[0] != "2" or gltf.asset.min_version != "2.0":

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
+from voxrt.voxelize.gltf.schema_errors import explain
+
 if TYPE_CHECKING:
     from voxrt.voxelize.gltf.document import Document
     from voxrt.voxelize.gltf.schema import Property
@@ -77,9 +79,8 @@ def read_extension(document: Document, owner: Property, name: str, kind: type[_T
     try:
         return msgspec.json.decode(owner.extensions[name], type=kind)
     except msgspec.ValidationError as error:
-        problem, _, where = str(error).partition(" - at ")
-        here = f"{place}.extensions.{name}{where.strip('`').removeprefix('$')}"
-        raise document.error(here.removeprefix("."), problem[:1].lower() + problem[1:]) from None
+        problem, here = explain(error, f"{place}.extensions.{name}")
+        raise document.error(here, problem) from None
     except (msgspec.DecodeError, RecursionError):
         raise document.error(f"{place}.extensions.{name}".removeprefix("."), "is not JSON that can be read") from None
 

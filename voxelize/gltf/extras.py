@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
 import msgspec
 
+from voxrt.voxelize.gltf.schema_errors import explain
+
 if TYPE_CHECKING:
     from voxrt.voxelize.gltf.document import Document
 
@@ -70,6 +72,5 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
     try:
         return msgspec.convert(authored, kind)
     except msgspec.ValidationError as error:
-        problem, _, where = str(error).partition(" - at ")
-        where = where.strip("`").removeprefix("$")
-        raise document.error(place + where, problem[:1].lower() + problem[1:], "correct the property") from None
+        problem, here = explain(error, place)
+        raise document.error(here, problem, "correct the property") from None

@@ -75,10 +75,11 @@ def finish(document: Document, key: MaterialKey) -> Finish:
     if glossy is not None:
         factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
         where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
+    red, green, blue, alpha = (min(max(component, 0.0), 1.0) for component in factor)
     return Finish(
         name=authored.voxrt_material or material.name or place,
         renamed=authored.voxrt_material is not None,
-        factor=factor,
+        factor=(red, green, blue, alpha),
         texture=texture,
         place=f"{place}.{where}",
         cutoff={"OPAQUE": 0.0, "MASK": material.alpha_cutoff, "BLEND": BLEND_CUTOFF}[material.alpha_mode],

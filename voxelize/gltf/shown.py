@@ -105,8 +105,11 @@ class Stage:
                     continue
             elif authored.voxrt_collider is not None:
                 place = f"nodes[{node}].extras.voxrt_collider"
-                raise self._document.error(place, "the node has no mesh", "put the property on the node with the mesh")
+                raise self._document.error(place, "the node shows no triangles", "put it on the node with the mesh")
             if collider is not None:
+                if override is None:
+                    message = "colliders without a mesh or a material got the default one"
+                    self._document.notes.add("default-material", message)
                 yield Shown(node, None, material, None, collider, frame[None])
 
     def surface(self, bend: Bend) -> Surface:
@@ -120,8 +123,9 @@ class Stage:
         nodes, meshes = self._document.gltf.nodes, self._document.gltf.meshes
         plain = []
         for seen in shown:
-            mesh = meshes[seen.mesh[0].mesh].name if seen.mesh else ""
-            plain.append(nodes[seen.node].name or mesh or f"nodes[{seen.node}]")
+            node = nodes[seen.node]
+            name = node.name or (meshes[node.mesh].name if node.mesh is not None else "") or f"nodes[{seen.node}]"
+            plain.append(f"{name} collider" if node.mesh is not None and seen.mesh is None else name)
         repeats = Counter(plain)
         return [
             name if repeats[name] == 1 else f"{name} (nodes[{seen.node}])"

@@ -181,17 +181,36 @@ def index_rows(
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     characters, counts = _gathered(text, lines, keyword)
     rows = characters.tobytes()
-    marks = characters == ord("/")
-    if marks.any():
-        slashes = np.cumsum(marks, dtype=np.int64)
-        before = np.maximum.accumulate(np.where(characters > ord(" "), 0, slashes))
-        characters[(slashes - before != field) | marks] = ord(" ")
+    slashes = np.flatnonzero(characters == ord("/"))
+    if len(slashes):
+        _keep_field(characters, slashes, field)
     elif field:
         return np.zeros(int(counts.sum()), dtype=np.int64), counts
     values = _parsed(characters, int(counts.sum()), np.int64)
     if values is None:
         values = np.array(_slow_indices(text, lines, rows, field), dtype=np.int64)
     return values, counts
+
+
+def _keep_field(characters: NDArray[np.uint8], slashes: NDArray[np.int64], field: int) -> None:
+    """Blank all of each word but one of its fields, which slashes separate."""
+    solid = characters > ord(" ")
+    begins = np.flatnonzero(solid[1:] & ~solid[:-1]) + 1
+    ends = np.flatnonzero(~solid[1:] & solid[:-1]) + 1
+    before = np.searchsorted(slashes, begins)
+    padded = np.append(slashes, [len(characters), len(characters)])
+    first = np.minimum(padded[before], ends)
+    # +1 where a stretch to blank begins and -1 where it ends; their running sum says what lies within.
+    steps = np.zeros(len(characters) + 1, dtype=np.int8)
+    if field == 0:
+        np.add.at(steps, first, np.int8(1))
+    else:
+        second = np.where(first < ends, np.minimum(padded[before + 1], ends), ends)
+        np.add.at(steps, begins, np.int8(1))
+        np.subtract.at(steps, np.minimum(first + 1, ends), np.int8(1))
+        np.add.at(steps, second, np.int8(1))
+    np.subtract.at(steps, ends, np.int8(1))
+    characters[np.cumsum(steps[:-1], dtype=np.int8) > 0] = ord(" ")
 
 
 def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
@@ -204,6 +223,8 @@ def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArr
     pieces = [data[a : b + 1] for a, b in zip(text.starts[first].tolist(), text.ends[last].tolist(), strict=True)]
     characters = np.frombuffer(bytearray(b"".join(pieces)), dtype=np.uint8)
     line_ends = np.flatnonzero(characters == ord("\n"))
+    np.maximum(characters, ord(" "), out=characters)  # all that is no text is blank, to NumPy and Python alike
+    characters[line_ends] = ord("\n")
     line_starts = np.empty_like(line_ends)
     line_starts[0] = 0
     line_starts[1:] = line_ends[:-1] + 1

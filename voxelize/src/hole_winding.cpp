@@ -84,7 +84,76 @@ std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps, double lon
 
 } // namespace
 
-HoleWinding::HoleWinding(std::vector<Cap> caps, double longest_edge) : caps_(cut(std::move(caps), longest_edge)) {
+HoleRim::HoleRim(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+    if (!pieces_.empty())
+        build(0, uint32_t(pieces_.size()));
+}
+
+int32_t HoleRim::build(uint32_t first, uint32_t last) {
+    Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    Node node;
+    for (uint32_t i = first; i < last; ++i) {
+        const Point& at = pieces_[i].middle;
+        low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+        node.length += pieces_[i].length;
+    }
+    node.middle = middle(low, high);
+    for (uint32_t i = first; i < last; ++i)
+        node.radius = std::max(node.radius, length(minus(pieces_[i].middle, node.middle)) + pieces_[i].radius);
+    const auto index = int32_t(nodes_.size());
+    nodes_.push_back(node);
+    if (last - first > 1) {
+        const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+        const auto axis = std::max_element(sides, sides + 3) - sides;
+        const uint32_t half = first + (last - first) / 2;
+        std::nth_element(pieces_.begin() + first, pieces_.begin() + half, pieces_.begin() + last,
+                         [axis](const Piece& a, const Piece& b) {
+                             const Point &p = a.middle, &q = b.middle;
+                             return axis == 0 ? p.x < q.x : axis == 1 ? p.y < q.y : p.z < q.z;
+                         });
+        const int32_t left = build(first, half), right = build(half, last);
+        nodes_[index].left = left;
+        nodes_[index].right = right;
+    }
+    return index;
+}
+
+double HoleRim::steepness(const Point& q, double reach) const {
+    double total = 0;
+    int32_t stack[64];
+    int depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
+    while (depth > 0) {
+        const Node& node = nodes_[stack[--depth]];
+        const double nearest = length(minus(node.middle, q)) - node.radius - reach;
+        if (node.left < 0 && nearest <= 0)
+            return std::numeric_limits<double>::infinity();
+        if (node.left < 0 || nearest > node.radius) {
+            total += node.length / (nearest * nearest);
+        } else {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+        }
+    }
+    return total;
+}
+
+HoleWinding::HoleWinding(std::vector<Cap> caps, double longest_edge) {
+    std::vector<HoleRim::Piece> pieces;
+    for (const Cap& cap : caps) {
+        const Point along = minus(cap.corners[1], cap.corners[0]);
+        const double whole = length(along);
+        const double parts = std::clamp(std::ceil(whole / longest_edge), 1.0, 4096.0);
+        for (double i = 0.5; i < parts; ++i)
+            pieces.push_back({{cap.corners[0].x + along.x * i / parts, cap.corners[0].y + along.y * i / parts,
+                               cap.corners[0].z + along.z * i / parts},
+                              std::abs(cap.times) * whole / parts,
+                              whole / parts / 2});
+    }
+    rim_ = HoleRim(std::move(pieces));
+    caps_ = cut(std::move(caps), longest_edge);
     if (!caps_.empty())
         build(0, uint32_t(caps_.size()));
 }
@@ -154,23 +223,36 @@ double HoleWinding::at(const Point& q) const {
     return (total + 2 * near.radians()) / (4 * std::numbers::pi);
 }
 
-/// Bounds how far the solid angle may differ within `reach` of q: an area seen from d away changes by 2 / d^3 a length.
-double HoleWinding::variation(int32_t index, const Point& q, double reach) const {
-    const Node& node = nodes_[index];
-    const double nearest = length(minus(node.centre, q)) - node.radius - reach;
-    if (nearest > node.radius || (node.left < 0 && nearest > 0))
-        return 2 * node.area * reach / (nearest * nearest * nearest);
-    if (node.left < 0)
-        return node.area > 0 ? std::numeric_limits<double>::infinity() : 0;
-    const double left = variation(node.left, q, reach);
-    return std::isinf(left) ? left : left + variation(node.right, q, reach);
+/// Whether a cap may come within `reach` of q.
+bool HoleWinding::near_cap(const Point& q, double reach) const {
+    int32_t stack[64];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const Node& node = nodes_[stack[--depth]];
+        if (length(minus(node.centre, q)) > node.radius + reach)
+            continue;
+        if (node.left >= 0) {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+            continue;
+        }
+        for (uint32_t i = node.first; i < node.last; ++i) {
+            const auto& [a, b, c] = caps_[i].corners;
+            const Point n = cross(minus(b, a), minus(c, a)), at = centre(caps_[i]);
+            const double radius = std::max({length(minus(a, at)), length(minus(b, at)), length(minus(c, at))});
+            if (length(minus(at, q)) <= radius + reach && std::abs(dot(n, minus(q, a))) <= reach * length(n))
+                return true;
+        }
+    }
+    return false;
 }
 
 int HoleWinding::settled(const Point& q, double reach) const {
     if (nodes_.empty())
         return 0;
-    const double change = variation(0, q, reach) / (4 * std::numbers::pi) + 0.05; // and the dipoles' error
-    if (!(change < 0.5))
+    const double change = rim_.steepness(q, reach) * reach / (4 * std::numbers::pi) + 0.05; // and the dipoles' error
+    if (!(change < 0.5) || near_cap(q, reach))
         return kUnsettled;
     const double value = at(q);
     const double nearest = std::floor(value + 0.5);

@@ -19,6 +19,34 @@ struct Point {
     bool operator==(const Point&) const = default;
 };
 
+/// The edges of holes. How fast the solid angle of a surface changes depends on its rim alone, like the field of a
+/// current in a wire (Biot and Savart): by at most length / distance^2 for each piece.
+class HoleRim {
+public:
+    struct Piece {
+        Point middle;
+        double length; // times multiplicity
+        double radius;
+    };
+
+    HoleRim() = default;
+    explicit HoleRim(std::vector<Piece> pieces);
+
+    /// Bounds the change of the solid angle a length, within `reach` of q; infinite where the rim is as near.
+    double steepness(const Point& q, double reach) const;
+
+private:
+    struct Node {
+        Point middle{};
+        double length = 0, radius = 0;
+        int32_t left = -1, right = -1;
+    };
+    int32_t build(uint32_t first, uint32_t last);
+
+    std::vector<Piece> pieces_;
+    std::vector<Node> nodes_;
+};
+
 /// Triangles with multiplicity, as a tree of dipoles.
 class HoleWinding {
 public:
@@ -28,7 +56,7 @@ public:
     };
 
     HoleWinding() = default;
-    /// Caps with edges above `longest_edge` are cut.
+    /// Caps with edges above `longest_edge` are cut. The first edge of each is on the rim of its hole.
     HoleWinding(std::vector<Cap> caps, double longest_edge);
 
     bool empty() const { return caps_.empty(); }
@@ -50,10 +78,11 @@ private:
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
-    double variation(int32_t index, const Point& q, double reach) const;
+    bool near_cap(const Point& q, double reach) const;
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;
+    HoleRim rim_;
 };
 
 } // namespace voxrt

@@ -4,6 +4,7 @@
 // poll throws stops the rest and is thrown again here.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>

@@ -33,10 +33,20 @@ def caught(path: Path, notes: Notes) -> Iterator[None]:
         yield
     except Tf.ErrorException as error:
         raise _asset_error(path, error) from None
+    except UnicodeDecodeError as error:  # a message or a value of the file, on its way to Python
+        raise AssetError(path, f"holds text that is no UTF-8 ({error.reason})", fix="export it again") from None
     finally:
         for said in delegate.TakeUncoalescedDiagnostics():
-            notes.add(*_note(said.commentary))
+            notes.add(*_note(_commentary(said)))
         del delegate
+
+
+def _commentary(said: object) -> str:
+    """Return what a diagnostic says, which may quote bytes of the file that are no text."""
+    try:
+        return str(getattr(said, "commentary", said))
+    except UnicodeDecodeError:
+        return "the file holds text that is no UTF-8"
 
 
 def _note(commentary: str) -> tuple[str, str]:
@@ -49,7 +59,7 @@ def _note(commentary: str) -> tuple[str, str]:
 
 
 def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
-    messages = [" ".join(one.commentary.split()) for one in error.args if hasattr(one, "commentary")]
+    messages = [" ".join(_commentary(one).split()) for one in error.args]
     for message in messages:
         if match := _AT_LINE.match(message):
             problem = match["problem"]

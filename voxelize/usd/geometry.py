@@ -11,6 +11,7 @@ from pxr import Usd, UsdGeom
 from voxrt.voxelize import primitives
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.polygons import triangulate_corners
+from voxrt.voxelize.usd import values
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -101,19 +102,16 @@ def _mesh(
 ) -> Surface | None:
     prim = mesh.GetPrim()
     place = str(prim.GetPath())
-    points = mesh.GetPointsAttr().Get(time)
-    positions = np.array([] if points is None else points, dtype=np.float64).reshape(-1, 3)
-    if deformed is not None:
-        positions = deformed.positions
-    counts = _integers(mesh.GetFaceVertexCountsAttr(), time)
-    corners = _integers(mesh.GetFaceVertexIndicesAttr(), time)
+    positions = values.points(mesh.GetPointsAttr(), time, path) if deformed is None else deformed.positions
+    counts = values.integers(mesh.GetFaceVertexCountsAttr(), time, path)
+    corners = values.integers(mesh.GetFaceVertexIndicesAttr(), time, path)
     if not len(counts) or not len(positions):
         notes.add("empty-mesh", "meshes without faces were left out")
         return None
     _check_topology(path, place, positions, counts, corners)
     keep = counts >= 3
     notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
-    holes = _integers(mesh.GetHoleIndicesAttr(), time)
+    holes = values.integers(mesh.GetHoleIndicesAttr(), time, path)
     keep[holes[(holes >= 0) & (holes < len(counts))]] = False
     if mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none:
         notes.add("subdivision", "subdivision surfaces were taken as their control cage")
@@ -124,11 +122,6 @@ def _mesh(
         cut = np.ascontiguousarray(cut[:, ::-1])
     chosen = places[cut]
     return Surface(positions, corners[chosen].astype(np.int32), kept[faces], len(counts), chosen, len(corners))
-
-
-def _integers(attribute: Usd.Attribute, time: Usd.TimeCode) -> NDArray[np.int64]:
-    value = attribute.Get(time)
-    return np.array([] if value is None else value, dtype=np.int64)
 
 
 def _check_topology(
@@ -161,13 +154,13 @@ def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitives.Surface
     kind = str(prim.GetTypeName())
     if kind not in _MEASURES:
         return None
-    values: list[float | str] = []
+    measures: list[float | str] = []
     for name in _MEASURES[kind]:
         value = prim.GetAttribute(name).Get(time)
         place = str(prim.GetPath())
         if name == "axis" and value not in ("X", "Y", "Z"):
             raise AssetError(path, f"axis {str(value)!r} is none of X, Y, Z", place=place, fix="give one")
-        if name != "axis" and (value is None or not 0 <= value < _FARTHEST):
+        if name != "axis" and not (isinstance(value, (int, float)) and 0 <= value < _FARTHEST):
             raise AssetError(path, f"{name} {value} is no length", place=place, fix="give a positive one")
-        values.append(str(value) if name == "axis" else float(value))
-    return _MAKERS[kind](*values)
+        measures.append(str(value) if name == "axis" else float(value))
+    return _MAKERS[kind](*measures)

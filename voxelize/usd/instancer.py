@@ -8,6 +8,7 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.usd.values import integers
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,8 +46,7 @@ def placed_copies(
     for target, prototype in zip(targets, prototypes, strict=True):
         if not prototype:
             raise AssetError(path, f"prototype {target} does not exist", place=place, fix="repair its prototypes")
-    authored = instancer.GetProtoIndicesAttr().Get(time)
-    indices = np.array([] if authored is None else authored, dtype=np.int64)
+    indices = integers(instancer.GetProtoIndicesAttr(), time, path)
     if len(indices) and (indices.min() < 0 or indices.max() >= len(prototypes)):
         problem = f"protoIndices go from {indices.min()} to {indices.max()} and there are {len(prototypes)} prototypes"
         raise AssetError(path, problem, place=place, fix="export the instancer again")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from pxr import Usd, UsdShade
 
 from voxrt.voxelize.colour import srgb_from_linear
+from voxrt.voxelize.usd.values import numbers
 
 if TYPE_CHECKING:
     from voxrt.voxelize.notes import Notes
@@ -151,7 +152,7 @@ def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, 
         for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
             if UsdShade.Output.IsOutput(attribute):
                 return _network(UsdShade.Shader(attribute.GetPrim()), attribute.GetBaseName(), time, notes)
-            value = _numbers(attribute.Get(time))
+            value = _colour(attribute.Get(time))
             if value is not None:
                 return _Input(value)
     return None
@@ -160,10 +161,10 @@ def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, 
 def _network(node: UsdShade.Shader, output: str, time: Usd.TimeCode, notes: Notes) -> _Input:
     kind = str(node.GetIdAttr().Get()) if node else ""
     if kind == "UsdUVTexture":
-        fallback = _numbers(_value(node, "fallback", time))
+        fallback = _colour(_value(node, "fallback", time))
         return _Input(fallback, replace(_image_source(node, time, notes), channel=output))
     if kind.startswith("UsdPrimvarReader_float3"):
-        return _Input(_numbers(_value(node, "fallback", time)), primvar=str(_value(node, "varname", time) or ""))
+        return _Input(_colour(_value(node, "fallback", time)), primvar=str(_value(node, "varname", time) or ""))
     notes.add("shader", f"shader nodes {kind or 'without an id'} are not honoured; the default colour stands in")
     return _Input()
 
@@ -174,17 +175,16 @@ def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes) -> Im
     if "black" in (wrap_s, wrap_t):
         notes.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
     primvar, turn, scale, offset = _coordinates(node, time, notes)
-    factor, bias = _value(node, "scale", time), _value(node, "bias", time)
     return ImageSource(
-        file=str(file.resolvedPath) if file else "",
+        file=str(getattr(file, "resolvedPath", "") or ""),
         raw=str(_value(node, "sourceColorSpace", time)) == "raw",
         wrap=(_WRAPS.get(wrap_s, "repeat"), _WRAPS.get(wrap_t, "repeat")),
         primvar=primvar,
         turn=turn,
         scale=scale,
         offset=offset,
-        factor=(factor[0], factor[1], factor[2], factor[3]) if factor else (1.0, 1.0, 1.0, 1.0),
-        bias=(bias[0], bias[1], bias[2], bias[3]) if bias else (0.0, 0.0, 0.0, 0.0),
+        factor=_four(_value(node, "scale", time), 1.0),
+        bias=_four(_value(node, "bias", time), 0.0),
     )
 
 
@@ -196,9 +196,8 @@ def _coordinates(
     source = _upstream(node, "st")
     if source and source.GetIdAttr().Get() == "UsdTransform2d":
         rotation, factors, shift = (_value(source, name, time) for name in ("rotation", "scale", "translation"))
-        turn = float(rotation or 0.0)
-        scale = (float(factors[0]), float(factors[1])) if factors else scale
-        offset = (float(shift[0]), float(shift[1])) if shift else offset
+        turn = (numbers(rotation, 1) or (0.0,))[0]
+        scale, offset = _pair(factors, scale), _pair(shift, offset)
         source = _upstream(source, "in")
     if source and str(source.GetIdAttr().Get()).startswith("UsdPrimvarReader_float2"):
         return str(_value(source, "varname", time) or "st"), turn, scale, offset
@@ -216,7 +215,7 @@ def _upstream(node: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
     return None
 
 
-def _value(node: UsdShade.Shader, name: str, time: Usd.TimeCode) -> Any:  # noqa: ANN401 -- USD has no types for Python
+def _value(node: UsdShade.Shader, name: str, time: Usd.TimeCode) -> object:
     """Return an input's constant value, from the node or from the material's interface; None where it has none."""
     source = node.GetInput(name)
     if source:
@@ -226,12 +225,18 @@ def _value(node: UsdShade.Shader, name: str, time: Usd.TimeCode) -> Any:  # noqa
     return None
 
 
-def _numbers(value: object) -> Linear | None:
+def _colour(value: object) -> Linear | None:
     """Return a colour; a single number three times."""
-    if isinstance(value, (int, float)):
-        return float(value), float(value), float(value)
-    try:
-        numbers = [float(number) for number in value]  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        return None
-    return (numbers[0], numbers[1], numbers[2]) if len(numbers) >= 3 else None
+    one = numbers(value, 1) if isinstance(value, (int, float)) else None
+    found = one * 3 if one else numbers(value, 3)
+    return (found[0], found[1], found[2]) if found else None
+
+
+def _pair(value: object, default: tuple[float, float]) -> tuple[float, float]:
+    found = numbers(value, 2)
+    return (found[0], found[1]) if found else default
+
+
+def _four(value: object, default: float) -> tuple[float, float, float, float]:
+    found = numbers(value, 4)
+    return (found[0], found[1], found[2], found[3]) if found else (default, default, default, default)

@@ -14,6 +14,7 @@ from voxrt.voxelize.scene import DEFAULT_COLOUR
 from voxrt.voxelize.usd import primvars
 from voxrt.voxelize.usd.images import Images, laid_out
 from voxrt.voxelize.usd.looks import NO_LOOK, Look, display_srgb, read_look
+from voxrt.voxelize.usd.values import integers
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +51,7 @@ class Materials:
         looks: dict[Look, int] = {}
         rows = np.full(surface.face_count, -1, dtype=np.int32)
         for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
-            indices = np.array(subset.GetIndicesAttr().Get(self.time) or (), dtype=np.int64)
+            indices = integers(subset.GetIndicesAttr(), self.time, self.path)
             if len(indices) and (indices.min() < 0 or indices.max() >= surface.face_count):
                 problem = f"a face subset names faces beyond the mesh's {surface.face_count}"
                 raise AssetError(self.path, problem, place=str(subset.GetPath()), fix="export the mesh again")

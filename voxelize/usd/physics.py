@@ -27,7 +27,7 @@ def colliders_of(prim: Usd.Prim, surface: Surface, time: Usd.TimeCode, notes: No
         notes.add("collider", "an endless collision plane was taken as the rectangle that is drawn")
         return ()
     if kind == "Sphere":
-        return (SphereCollider(np.zeros(3), float(UsdGeom.Sphere(prim).GetRadiusAttr().Get(time))),)
+        return (SphereCollider(np.zeros(3), float(positions[:, 0].max())),)
     if kind == "Cube":
         return (BoxCollider(positions.min(axis=0), positions.max(axis=0)),)
     if not prim.IsA(UsdGeom.Mesh):

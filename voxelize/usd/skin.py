@@ -55,7 +55,7 @@ def _pose(
 ) -> Deformed | None:
     prim = skin.GetPrim()
     value = UsdGeom.Mesh(prim).GetPointsAttr().Get(time)
-    if value is None:
+    if not isinstance(value, Vt.Vec3fArray):
         return None
     points = Vt.Vec3fArray(value)
     moved = skin.HasBlendShapes() and _blend(skeleton, skin, time, points)

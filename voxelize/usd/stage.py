@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from pxr import Tf, Usd, UsdGeom
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.usd.values import numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,7 @@ def metres_per_unit(stage: Usd.Stage, path: Path) -> float:
     try:
         unit = float(UsdGeom.GetStageMetersPerUnit(stage))
     except Tf.ErrorException:  # some exporters store a float where USD wants a double
-        unit = float(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"))
+        unit = (numbers(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"), 1) or (math.nan,))[0]
     if not (math.isfinite(unit) and unit > 0):
         raise AssetError(path, f"metersPerUnit {unit} is no length", fix="give a positive number of metres")
     return unit

@@ -85,6 +85,7 @@ _add_command(
     "Let a running board show another scene.",
     "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
 )
+_add_command("convert", "Write a memory in another format.", "voxrt convert courtyard.mem courtyard.blob")
 _add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
 _add_command(
     "completion",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -64,6 +65,41 @@ def whole(_type: type, tokens: Sequence[Token]) -> int:
         return int(tokens[0].value, 10)
     except ValueError:
         raise ValueError(f"{tokens[0].value!r} is not a whole number") from None
+
+
+def levels(kind: type, tokens: Sequence[Token]) -> int:
+    """Read an octree's depth."""
+    number = whole(kind, tokens)
+    if not 1 <= number <= 16:
+        raise ValueError(f"{number} is not 1 to 16")
+    return number
+
+
+def words(kind: type, tokens: Sequence[Token]) -> int:
+    """Read a number of memory words."""
+    number = whole(kind, tokens)
+    if number < 1:
+        raise ValueError(f"{number} is not a number of words")
+    return number
+
+
+def metres(kind: type, tokens: Sequence[Token]) -> float:
+    """Read a length."""
+    number = seconds(kind, tokens)
+    if number <= 0:
+        raise ValueError(f"{tokens[0].value} is not a positive number of metres")
+    return number
+
+
+def seconds(_type: type, tokens: Sequence[Token]) -> float:
+    """Read a time."""
+    try:
+        number = float(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is not a number") from None
+    if not isfinite(number):
+        raise ValueError(f"{tokens[0].value} is not a finite number")
+    return number
 
 
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:

@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, png, whole
-from voxrt.cli.messages import picture_cost, stage_bar, summarize, warn
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, words
+from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.results import build_report, print_json
 
 
@@ -18,22 +18,23 @@ def build(
     /,
     *,
     output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
-    voxel_size: Annotated[float | None, Parameter(metavar="METRES")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
+    voxel_size: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     fill: Literal["solid", "surface"] = "solid",
     geometry: Literal["auto", "render", "collider"] = "auto",
     pow2: Literal["box", "none"] = "box",
     up: Literal["x", "y", "z"] | None = None,
-    unit: Annotated[float | None, Parameter(metavar="METRES")] = None,
-    time: Annotated[float | None, Parameter(metavar="SECONDS")] = None,
+    unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
+    time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
-    budget: Annotated[int | None, Parameter(converter=whole, metavar="WORDS")] = None,
+    budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
     size: Pixels = (640, 480),
     engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
+    profile: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture.
@@ -79,24 +80,17 @@ def build(
         msb what their C++ program reads.
     strict
         Refuse an asset of which something would not be honoured as it stands, instead of warning.
+    profile
+        Show where the time goes, a stage a row.
     reporting
         How to tell what was done.
     """
     if depth is not None and voxel_size is not None:
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
-    if depth is not None and not 1 <= depth <= 16:
-        raise UsageError(f"--depth {depth} is not 1 to 16")
-    for option, value in (("--voxel-size", voxel_size), ("--unit", unit)):
-        if value is not None and not 0 < value < float("inf"):
-            raise UsageError(f"{option} {value} is not a positive number of metres")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
         raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
-    if budget is not None and budget < 1:
-        raise UsageError(f"--budget {budget} is not a number of words")
-    if time is not None and not abs(time) < float("inf"):
-        raise UsageError(f"--time {time} is not a number of seconds")
     with stage_bar(5 + (preview is not None) + (budget is not None or board is not None)) as progress:
         result = voxrt.build(
             asset,
@@ -123,18 +117,22 @@ def build(
         print_json(build_report(result))
     else:
         summarize(f"{asset.name}:", _rows(result))
+    if profile:
+        total = sum(result.seconds.values())
+        stages = [(stage, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for stage, took in result.seconds.items()]
+        tabulate(("stage", "ms", "%"), [*stages, ("all", f"{1e3 * total:.1f}", "100")])
 
 
 def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     rom, total = result.rom, sum(result.seconds.values())
-    words, shown = len(rom.octree.words), rom.materials[1:5]
+    size, shown = len(rom.octree.words), rom.materials[1:5]
     voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
     names = ", ".join(material.name for material in shown) + (", ..." if len(rom.materials) > 5 else "")
-    stages = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in result.seconds.items() if seconds >= 0.005)
+    stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
     return [
         ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
-        ("memory", f"{words:,} words, {words * 4 / 1024:,.1f} KiB"),
+        ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
         *([("budget", _budget(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),

@@ -10,8 +10,9 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Pixels, Reporting, png
+from voxrt.cli.memory_results import compare_result
 from voxrt.cli.messages import summarize, warn
-from voxrt.cli.results import compare_result, print_json
+from voxrt.cli.results import print_json
 
 
 def compare(
@@ -40,7 +41,8 @@ def compare(
     """
     if output is not None:
         png(output)
-    memory, warnings = voxrt.read_rom(rom)
+    blob, warnings = voxrt.read_any(rom)
+    memory = blob.rom
     scene = voxrt.load(asset)
     warn((*warnings, *scene.warnings))
     found = voxrt.compare(scene, memory, voxrt.aim_camera(memory, size), size)

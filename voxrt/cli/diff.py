@@ -9,8 +9,9 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError
+from voxrt.cli.memory_results import DiffResult
 from voxrt.cli.messages import summarize, warn
-from voxrt.cli.results import DiffResult, print_json
+from voxrt.cli.results import print_json
 
 
 def diff(
@@ -25,7 +26,7 @@ def diff(
     Parameters
     ----------
     first
-        A .mem file.
+        A memory in any format.
     second
         Another, of the same depth.
     reporting
@@ -33,9 +34,9 @@ def diff(
     """
     roms = []
     for path in (first, second):
-        rom, warnings = voxrt.read_rom(path)
+        blob, warnings = voxrt.read_any(path)
         warn(warnings)
-        roms.append(rom)
+        roms.append(blob.rom)
     depths = [rom.octree.depth for rom in roms]
     if depths[0] != depths[1]:
         raise UsageError(f"{first} has depth {depths[0]} and {second} {depths[1]}: only equal depths can be compared")

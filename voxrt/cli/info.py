@@ -8,16 +8,17 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, whole
+from voxrt.cli.arguments import Reporting, levels
+from voxrt.cli.memory_results import info_result
 from voxrt.cli.messages import summarize, tabulate, warn
-from voxrt.cli.results import print_json, rom_info
+from voxrt.cli.results import print_json
 
 
 def info(
     rom: Annotated[Path, Parameter(metavar="ROM")],
     /,
     *,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -26,7 +27,7 @@ def info(
     Parameters
     ----------
     rom
-        A .mem file, with its manifest beside it or without.
+        A .mem, .coe, .mif or .bin file, with its manifest beside it or without, or a .blob.
     depth
         Levels of the octree, where no manifest says.
     dialect
@@ -34,29 +35,31 @@ def info(
     reporting
         How to tell it.
     """
-    memory, warnings = voxrt.read_rom(rom, depth=depth, dialect=dialect)
+    blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
-    told = rom_info(memory)
+    told = info_result(blob.rom)
     if reporting.json:
         print_json(told)
         return
-    side = 1 << told.depth
-    world = told.world
-    summarize(
-        f"{rom.name}:",
-        [
-            (
-                "grid",
-                f"{side} voxels a side (depth {told.depth})" + (f", {world.voxel_size:.4g} m each" if world else ""),
-            ),
-            *([("lowest", "({:.6g}, {:.6g}, {:.6g}) m".format(*world.origin))] if world else []),
-            ("solid", f"{told.voxels:,} voxels, {100 * told.voxels / side**3:.2f} %"),
-            ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB, {told.blocks:,} blocks"),
-        ],
-    )
+    side, world = 1 << told.depth, told.world
+    size = f", {world.voxel_size:.4g} m each" if world else ""
+    unshared = 1 + 8 * told.unshared_blocks
+    rows = [
+        ("grid", f"{side} voxels a side (depth {told.depth}){size}"),
+        ("solid", f"{told.voxels:,} voxels, {100 * told.voxels / side**3:.2f} %"),
+        ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB; {unshared:,} words without sharing"),
+    ]
+    if told.shared_words < told.words:
+        rows.append(("shared", f"{told.shared_words:,} words would do: equal blocks are stored more than once"))
+    if told.bounds:
+        rows.insert(2, ("within", "{} up to {}".format(*told.bounds)))
+    rows += [
+        (board.name, f"{'fits' if board.fits else 'does not fit'} its {board.words:,} words") for board in told.boards
+    ]
+    summarize(f"{rom.name}:", rows)
     tabulate(
         ("level", "side", "solid", "empty"),
-        [(str(row.level), f"{row.side:,}", f"{row.solid:,}", f"{row.empty:,}") for row in told.levels],
+        [(str(row.level), f"{1 << row.level:,}", f"{row.solid:,}", f"{row.empty:,}") for row in told.levels],
     )
     tabulate(
         ("material", "name", "colour", "voxels"),

@@ -51,7 +51,9 @@ def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
     """Print a table, numbers to the right."""
     rows = [tuple(map(printable, row)) for row in rows]
     widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
-    right = [all(row[column].replace(",", "").isdigit() for row in rows) for column in range(len(heads))]
+    right = [
+        all(row[column].replace(",", "").replace(".", "").isdigit() for row in rows) for column in range(len(heads))
+    ]
     for row in [heads, *rows]:
         cells = zip(row, widths, right, strict=True)
         _print(

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, place, png, register, whole
+from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
@@ -30,7 +30,7 @@ def render(
     look: Annotated[Triple | None, _register] = None,
     right: Annotated[Triple | None, _register] = None,
     up: Annotated[Triple | None, _register] = None,
-    depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
@@ -40,7 +40,8 @@ def render(
     Parameters
     ----------
     rom
-        A .mem file. Its manifest, the .json beside it, gives materials, depth and dialect.
+        A .mem file or a memory in another format. Its manifest, the .json beside it, gives materials, depth and
+        dialect.
     output
         The picture, a .png; NAME.png in this folder when not given.
     engine
@@ -69,9 +70,13 @@ def render(
         How to tell what was done.
     """
     file = png(Path(f"{rom.stem}.png") if output is None else output)
-    memory, warnings = voxrt.read_rom(rom, depth=depth, dialect=dialect)
+    blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
-    camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
+    memory, view = blob.rom, blob.view
+    if view is not None and (position, look, right, up) == (None, None, None, None):
+        camera = voxrt.Camera(view.position, view.look, view.right, view.up)
+    else:
+        camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
     wrong_pixels = None
     if check:
         checked = voxrt.check(memory, camera, size, config=config)

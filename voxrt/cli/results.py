@@ -1,29 +1,25 @@
 """What ``--json`` prints: the shape of each command's result.
 
-The field names are a promise to programs: they may gain company, never change. ``schema()`` describes them to
-validators.
+The field names are a promise to programs: they may gain company, never change.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 
-import voxrt
-from voxrt.cli.board_results import ServeResult, UploadResult
 from voxrt.cli.messages import name_file
 from voxrt.outputs import OutputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.octree import Rom
     from voxrt.pipeline import BudgetFit, BuildResult, Picture
-    from voxrt.sim import Likeness
+    from voxrt.voxelize import SceneWarning
 
 
 class MaterialEntry(msgspec.Struct, frozen=True):
@@ -112,86 +108,6 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when there was none."""
 
 
-class WorldEntry(msgspec.Struct, frozen=True):
-    """Where the voxels stand in the scene."""
-
-    origin: tuple[float, float, float]
-    """The lowest corner, metres."""
-    voxel_size: float
-    """Metres."""
-
-
-class LevelEntry(msgspec.Struct, frozen=True):
-    """The leaves of one size, counted wherever they stand."""
-
-    level: int
-    side: int
-    """Voxels."""
-    solid: int
-    empty: int
-
-
-class UsedMaterialEntry(msgspec.Struct, frozen=True):
-    """A row of the material table, and how much of the world it fills."""
-
-    id: int
-    name: str
-    colour: tuple[int, int, int]
-    authored: bool
-    voxels: int
-
-
-class RomInfo(msgspec.Struct, frozen=True):
-    """``voxrt info --json``."""
-
-    name: str
-    depth: int
-    words: int
-    blocks: int
-    voxels: int
-    world: WorldEntry | None
-    """Null for a memory that does not say."""
-    levels: list[LevelEntry]
-    materials: list[UsedMaterialEntry]
-
-
-class DiffResult(msgspec.Struct, frozen=True):
-    """``voxrt diff --json``: voxels that differ."""
-
-    voxels: int
-    appeared: int
-    """Empty in the first, solid in the second."""
-    vanished: int
-    """Solid in the first, empty in the second."""
-    recoloured: int
-    """Solid in both, of different materials."""
-    bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
-    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
-
-
-class CompareResult(msgspec.Struct, frozen=True):
-    """``voxrt compare --json``; null where nothing is seen that could be compared."""
-
-    silhouette_iou: float | None
-    depth_mean: float | None
-    depth_median: float | None
-    depth_95: float | None
-    """Depths in voxels."""
-    normal_cosine: float | None
-    normal_agreement: float | None
-    psnr: float | None
-    ssim: float | None
-    outputs: dict[str, str]
-
-
-def schema() -> dict[str, Any]:
-    """Give the JSON schemas of the results, by the definitions' names."""
-    _, definitions = msgspec.json.schema_components(
-        (BuildReport, RenderResult, RomInfo, DiffResult, CompareResult, ServeResult, UploadResult)
-    )
-    return definitions
-
-
 def build_report(result: BuildResult) -> BuildReport:
     """Tell programs what a build made."""
     rom = result.rom
@@ -205,7 +121,7 @@ def build_report(result: BuildResult) -> BuildReport:
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
         ],
-        warnings=[WarningEntry(warning.kind, warning.message, warning.count) for warning in result.warnings],
+        warnings=warning_entries(result.warnings),
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
@@ -223,6 +139,11 @@ def _budget_entry(budget: BudgetFit) -> BudgetEntry:
         psnr=budget.psnr if math.isfinite(budget.psnr) else None,
         ssim=budget.ssim,
     )
+
+
+def warning_entries(warnings: Iterable[SceneWarning]) -> list[WarningEntry]:
+    """Tell programs what was not honoured as it stands."""
+    return [WarningEntry(warning.kind, warning.message, warning.count) for warning in warnings]
 
 
 def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int | None = None) -> RenderResult:
@@ -243,35 +164,6 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
     )
-
-
-def rom_info(rom: Rom) -> RomInfo:
-    """Tell programs what a memory holds."""
-    counts = voxrt.census(rom.octree)
-    voxels = counts.voxels
-    return RomInfo(
-        name=rom.name,
-        depth=rom.octree.depth,
-        words=len(rom.octree.words),
-        blocks=rom.octree.blocks,
-        voxels=counts.solid_voxels,
-        world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
-        levels=[
-            LevelEntry(level, 1 << level, int(leaves[1:].sum()), int(leaves[0]))
-            for level, leaves in enumerate(counts.leaves)
-            if leaves.any()
-        ],
-        materials=[
-            UsedMaterialEntry(number, material.name, material.colour, material.authored, voxels.get(number, 0))
-            for number, material in enumerate(rom.materials)
-        ],
-    )
-
-
-def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
-    """Tell programs how like two pictures are."""
-    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
-    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})
 
 
 def print_json(result: msgspec.Struct) -> None:

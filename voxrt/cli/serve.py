@@ -28,8 +28,9 @@ _port = Parameter(converter=whole, metavar="PORT")
 
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
-    device: Literal["model", "sim"] = "model",
+    device: Literal["model", "sim", "pynq"] = "model",
     config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
     port: Annotated[int, _port] = 8080,
     token: Annotated[str | None, Parameter(metavar="TEXT")] = None,
@@ -43,12 +44,14 @@ def serve(
     Parameters
     ----------
     scenes
-        Memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one on the
-        page.
+        Blobs, memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one
+        on the page.
     device
-        What renders: the exact model, or the verilated hardware, which is slow.
+        What renders: the exact model, the verilated hardware, which is slow, or the PYNQ board that this runs on.
     config
         The configuration of the verilated hardware.
+    bitstream
+        The .bit of the PYNQ board, its .hwh beside it.
     host
         Address to listen on. Any but loopback asks every viewer for the token.
     port
@@ -67,7 +70,7 @@ def serve(
     from voxrt.board.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
     from voxrt.board.server import Listening  # noqa: PLC0415
     from voxrt.board.show import Program  # noqa: PLC0415
-    from voxrt.staging import BuildingReader, load_scene  # noqa: PLC0415
+    from voxrt.staging import BuildingReader  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
         if value is not None and not 0 <= value < 1 << 16:
@@ -76,19 +79,40 @@ def serve(
         raise UsageError(f"--depth {depth} is not 1 to 16")
     if token is None and not is_loopback(host):
         token = secrets.token_urlsafe(16)
-    first = load_scene(scenes[0], depth) if scenes else None
+    first = _first(scenes[0], depth) if scenes else None
     library = {path.stem: (lambda path=path: _listed(path, depth)) for path in scenes}
     listening = Listening(host, port, token, origin, legacy_port)
-    opened = open_device(device, config)
+    opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, Program(BuildingReader(depth), library), listening, json=reporting.json))
 
 
-def open_device(name: str, config: str) -> Device:
-    """Open a device of this machine: ``model`` or ``sim``."""
-    from voxrt.sim.device import ModelDevice, RtlDevice  # noqa: PLC0415 - NumPy comes with it
+def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
+    """Open a device of this machine: ``model``, ``sim`` or ``pynq``."""
+    from voxrt.board.errors import DeviceError  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
+    from voxrt.sim.device import ModelDevice, RtlDevice  # noqa: PLC0415
 
-    return ModelDevice() if name == "model" else RtlDevice(config)
+    if name == "model":
+        return ModelDevice()
+    if name == "sim":
+        return RtlDevice(config)
+    if bitstream is None:
+        raise UsageError("--device pynq wants the ray tracer's --bitstream")
+    try:
+        return open_pynq(str(bitstream))
+    except DeviceError as error:
+        raise voxrt.SimulatorError(str(error)) from error
+
+
+def _first(path: Path, depth: int | None) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path, depth)
+    except (Refused, OSError) as error:  # of a blob, which the board's own reader reads
+        raise voxrt.RomError(f"{path}: {error}") from error
 
 
 def _listed(path: Path, depth: int | None) -> Scene:

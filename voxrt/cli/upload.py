@@ -17,6 +17,7 @@ from voxrt.cli.serve import open_device
 
 if TYPE_CHECKING:
     from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
     from voxrt.board.scene_memory import Progress
 
 
@@ -35,7 +36,7 @@ def upload(
     Parameters
     ----------
     rom
-        A .mem file; its manifest, the .json beside it, goes with it.
+        A blob, or a .mem file; its manifest, the .json beside it, goes with it.
     to
         The page's address, as the frame server printed it, with its token.
     device
@@ -49,57 +50,66 @@ def upload(
     """
     if (to is None) == (device is None):
         raise UsageError("--to and --device exclude each other; give one of them")
-    memory, _warnings = voxrt.read_rom(rom)
+    if rom.suffix.lower() not in {".mem", ".blob"}:
+        raise UsageError(f"{rom}: is no .mem or .blob; build it first: voxrt build {rom}")
+    scene = _read(rom)
     with transfer_bar() as progress:
         if to is not None:
-            scene = asyncio.run(_send(rom, memory, to, progress, dry_run=dry_run))
+            asyncio.run(_send(rom, scene, to, progress, dry_run=dry_run))
         else:
-            scene = _write(memory, open_device(device or "model", config), progress, dry_run=dry_run)
+            _write(scene, open_device(device or "model", config), progress, dry_run=dry_run)
     done = "checked; nothing was written" if dry_run else "runs now"
     if reporting.json:
-        print_json(UploadResult(**scene, written=not dry_run))
+        print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not dry_run))
     else:
-        summarize(f"{rom.name}: {done}", [("words", str(scene["words"])), ("crc-32", f"{scene['crc32']:08X}")])
+        summarize(f"{rom.name}: {done}", [("words", str(len(scene.words))), ("crc-32", f"{scene.crc32:08X}")])
 
 
-async def _send(rom: Path, memory: voxrt.Rom, url: str, progress: Progress, *, dry_run: bool) -> dict[str, Any]:
+def _read(path: Path) -> Scene:
+    from voxrt.board.errors import Refused  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.staging import load_scene  # noqa: PLC0415
+
+    try:
+        return load_scene(path)
+    except (Refused, OSError) as error:
+        raise voxrt.RomError(f"{path}: {error}") from error
+
+
+async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.client import visit  # noqa: PLC0415 - websockets comes with it
     from voxrt.board.errors import Refused  # noqa: PLC0415
 
     try:
         async with visit(url) as client:
-            _check_fit(memory, client.hello["device"])
+            _check_fit(scene, client.hello["device"])
             await client.take()
-            files = {path.name: path.read_bytes() for path in (rom, rom.with_suffix(".json")) if path.exists()}
-            scene: dict[str, Any] = (await client.upload(files, progress, check_only=dry_run))["scene"]
+            beside = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
+            files = {file.name: file.read_bytes() for file in (path, *beside) if file.exists()}
+            await client.upload(files, progress, check_only=dry_run)
     except Refused as refusal:
         raise voxrt.SimulatorError(str(refusal)) from refusal
-    return scene
 
 
-def _check_fit(memory: voxrt.Rom, board: dict[str, Any]) -> None:
-    words, depth = len(memory.octree.words), memory.octree.depth
-    if words > board["capacity"] or depth > board["depth"]:
+def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
+    words = len(scene.words)
+    if words > board["capacity"] or scene.depth > board["depth"]:
         raise voxrt.DoesNotFitError(
-            f"{memory.name} has {words} words and {depth} levels, and {board['name']} takes {board['capacity']} and "
-            f"{board['depth']}; build it with a smaller --depth"
+            f"{scene.name} has {words} words and {scene.depth} levels, and {board['name']} takes {board['capacity']} "
+            f"and {board['depth']}; build it with a smaller --depth"
         )
 
 
-def _write(memory: voxrt.Rom, device: Device, progress: Progress, *, dry_run: bool) -> dict[str, Any]:
+def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415 - only this command needs them
     from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415
-    from voxrt.staging import board_scene  # noqa: PLC0415
 
-    scene = board_scene(memory)
-    scene_memory = SceneMemory(device)
+    memory = SceneMemory(device)
     try:
         if dry_run:
-            scene_memory.check(scene)
+            memory.check(scene)
         else:
-            scene_memory.swap(scene, progress)
+            memory.swap(scene, progress)
     except Refused as refusal:
         raise voxrt.DoesNotFitError(str(refusal)) from refusal
     except DeviceError as error:
         raise voxrt.SimulatorError(str(error)) from error
-    return {"name": scene.name, "depth": scene.depth, "words": len(scene.words), "crc32": scene.crc32}

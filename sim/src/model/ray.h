@@ -31,8 +31,8 @@ template <class Key> struct Hit {
     uint8_t material = 0;
     uint8_t face = kFaceNone;
     int32_t cell[3] = {-1, -1, -1};
-    Key time = 0; // T of the plane crossed into the cell
-    uint32_t words_read = 0;
+    Key time = 0;            // T of the plane crossed into the cell
+    uint32_t words_read = 0; // of blocks, as the hardware reads them: it keeps word 0 between rays
 };
 
 // Whether every T of a ray fits in 63 bits: |p - origin| < 2^23 on either side of the mirror, w < 2^40.
@@ -130,7 +130,7 @@ template <class Key> Hit<Key> Ray<Key>::trace() {
     int level = memory_->depth;       // the node is 2^level voxels a side
     uint32_t block_at[kMaxDepth + 1]; // block whose octants are 2^level a side
     uint32_t word = memory_->words[0];
-    uint32_t words_read = 1;
+    uint32_t words_read = 0;
     for (;;) {
         while (!is_leaf(word)) {
             block_at[--level] = word;

@@ -69,3 +69,10 @@ def test_compressed_colours_are_normalized_as_their_accessor_says(tmp_path):
 def test_what_does_not_fit_is_refused(writer, message, tmp_path):
     with pytest.raises(AssetError, match=message):
         load(writer().save(tmp_path / "a.glb"))
+
+
+def test_integers_cannot_stand_for_floats(tmp_path):
+    writer = compressed(encoded())
+    writer.json["accessors"][0]["componentType"] = 5123
+    with pytest.raises(AssetError, match=r"attributes\.POSITION: compressed as another type than uint16"):
+        load(writer.save(tmp_path / "a.glb"))

@@ -335,3 +335,22 @@ def test_damaged_views_are_refused_with_their_place(tmp_path):
         AssetError, match=r"bufferViews\[\d\]\.extensions\.EXT_meshopt_compression: the compressed data"
     ):
         load(tmp_path / "a.gltf")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"byteLength": 10**6}, r"EXT_meshopt_compression: ends at byte \d+ of a buffer of \d+"),
+        ({"count": 10}, r"EXT_meshopt_compression: holds \d+ bytes for a buffer view of \d+"),
+        ({"buffer": 9}, r"EXT_meshopt_compression\.buffer: buffer 9 does not exist"),
+    ],
+)
+def test_views_that_contradict_their_buffers_are_refused(changes, message, tmp_path):
+    path = asset("gltf/gltf-pipeline/meshopt-no-fallback/meshopt-no-fallback.gltf")
+    gltf = json.loads(path.read_text())
+    (tmp_path / gltf["buffers"][0]["uri"]).write_bytes((path.parent / gltf["buffers"][0]["uri"]).read_bytes())
+    for plain in gltf["bufferViews"]:
+        plain["extensions"]["EXT_meshopt_compression"] |= changes
+    (tmp_path / "a.gltf").write_text(json.dumps(gltf))
+    with pytest.raises(AssetError, match=message):
+        load(tmp_path / "a.gltf")

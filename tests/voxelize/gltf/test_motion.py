@@ -270,3 +270,36 @@ def test_a_million_instances_of_nothing_are_refused(tmp_path):
     }
     with pytest.raises(AssetError, match=r"asks for 1024000000 bytes"):
         load(writer.save(tmp_path / "a.glb"))
+
+
+def test_what_is_not_played_is_counted(tmp_path):
+    writer = animated("translation", [0.0, 1.0], [[0, 0, 0], [1, 0, 0]])
+    channels = writer.json["animations"][0]["channels"]
+    channels += [{"sampler": 0, "target": {"path": "pointer"}}, {"sampler": 0, "target": {"node": 0, "path": "colour"}}]
+    writer.json["animations"].append(writer.json["animations"][0])
+    scene = load(writer.save(tmp_path / "a.glb"), time=0.5)
+    assert [warning.message for warning in scene.warnings if warning.kind == "animation"] == [
+        "animations after the first were not played",
+        "animations of 'pointer' were not played",
+        "animations of 'colour' were not played",
+    ]
+
+
+def test_nodes_with_matrices_cannot_be_animated(tmp_path):
+    writer = animated("translation", [0.0], [[0, 0, 0]], matrix=np.eye(4).ravel().tolist())
+    with pytest.raises(AssetError, match=r"channels\[0\]\.target\.node: node 0 has a matrix and cannot be animated"):
+        load(writer.save(tmp_path / "a.glb"), time=0.0)
+
+
+def test_fewer_bind_matrices_than_joints_are_refused(tmp_path):
+    writer = arm([[1, 0, 0, 0]] * 3)
+    writer.json["skins"][0]["joints"] += [0]
+    with pytest.raises(AssetError, match=r"skins\[0\]\.inverseBindMatrices: 2 matrices for 3 joints"):
+        load(writer.save(tmp_path / "a.glb"))
+
+
+def test_instances_that_are_not_placed_are_shown_once(tmp_path):
+    writer = instanced(_ID=[[1.0, 2.0]] * 5)
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert [thing.name for thing in scene.objects] == ["tree"]
+    assert "instancing" in {warning.kind for warning in scene.warnings}

@@ -134,7 +134,7 @@ def test_a_listed_child_is_shown_once_and_where_its_parents_put_it(tmp_path):
             {"nodes": [{"matrix": np.eye(4).ravel().tolist(), "scale": [1, 1, 1]}, {}]},
             r"nodes\[0\]: has a matrix and translation, rotation or scale as well",
         ),
-        ({"nodes": [{"scale": [1e999, 1, 1]}, {}]}, r"JSON is malformed"),
+        ({"nodes": [{"scale": [1e999, 1, 1]}, {}]}, r"the JSON cannot be read"),
         ({"nodes": [{"mesh": 0, "scale": [1e308, 1e308, 1], "translation": [1e308] * 3}, {}]}, r"range of numbers"),
     ],
 )
@@ -181,3 +181,20 @@ def test_a_chain_whose_nodes_are_all_listed_is_shown_once_without_delay(tmp_path
     writer.json["nodes"].append({"mesh": writer.mesh(TRIANGLE)})
     writer.json["scenes"] = [{"nodes": list(range(count, -1, -1))}]
     assert len(load(writer.save(tmp_path / "a.glb")).objects) == 1
+
+
+def test_roots_listed_twice_are_shown_once_and_counted(tmp_path):
+    writer = GltfWriter()
+    writer.show(name="once", mesh=writer.mesh(TRIANGLE))
+    writer.json["scenes"][0]["nodes"] *= 2
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert [thing.name for thing in scene.objects] == ["once"]
+    assert "repeated-root" in {warning.kind for warning in scene.warnings}
+
+
+def test_transforms_that_overflow_together_are_refused(tmp_path):
+    writer = GltfWriter()
+    writer.show(scale=[1e200, 1, 1], children=[1])
+    writer.add("nodes", {"scale": [1e200, 1, 1], "mesh": writer.mesh(TRIANGLE)})
+    with pytest.raises(AssetError, match=r"nodes\[1\]: the transform leaves the range of numbers"):
+        load(writer.save(tmp_path / "a.glb"))

@@ -83,6 +83,19 @@ def test_a_collider_without_mesh_is_an_object_of_its_own(tmp_path):
     assert scene.materials[scene.objects[1].collider_material].name == "steel"
 
 
+def test_a_skin_leaves_the_collider_of_its_node_behind(tmp_path):
+    writer = scene_of({"shape": 0}, {"type": "box"})
+    thing = writer.json["nodes"][0] | {"skin": 0, "translation": [7, 0, 0]}
+    writer.json["nodes"][0] = thing
+    attributes = writer.json["meshes"][0]["primitives"][0]["attributes"]
+    attributes["JOINTS_0"] = writer.accessor([[0, 0, 0, 0]] * 4, "u1")
+    attributes["WEIGHTS_0"] = writer.accessor([[1, 0, 0, 0]] * 4)
+    writer.add("skins", {"joints": [writer.add("nodes", {})]})
+    skinned, guard = load(writer.save(tmp_path / "a.glb")).objects
+    assert (skinned.name, skinned.colliders, skinned.transform[0, 3]) == ("thing", (), 0)
+    assert (guard.name, len(guard.colliders), guard.transform[0, 3]) == ("thing collider", 1, 7)
+
+
 @pytest.mark.parametrize(
     ("geometry", "shape", "message"),
     [

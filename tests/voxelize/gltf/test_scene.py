@@ -1,5 +1,8 @@
 """Triangles, materials and what authors say in extras, on files made by hand."""
 
+import json
+import tracemalloc
+
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
@@ -116,6 +119,30 @@ def test_a_small_file_that_asks_for_much_is_refused(tmp_path):
     )
     with pytest.raises(AssetError, match=r"accessors\[0\]: asks for 10800000000 bytes, more than a file of this size"):
         load(path)
+
+
+@pytest.mark.parametrize("count", [900_000, 3_000_000, 3_600_000, 2**31, 2**62])
+@pytest.mark.parametrize("shared", [1, 40])
+def test_the_memory_of_a_small_file_is_bounded_whatever_it_asks_for(count, shared, tmp_path):
+    zeros = {"componentType": 5126, "type": "VEC3", "count": count}
+    primitive = {"attributes": {"POSITION": 0}}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive | {"attributes": {"POSITION": at}} for at in range(shared)]}],
+        "accessors": [zeros] * shared,
+    }
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps(gltf))
+    tracemalloc.start()
+    try:
+        load(path)
+    except AssetError as error:
+        assert "more than a file of this size may use in all" in str(error)  # noqa: PT017
+    finally:
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert peak < 500 << 20
 
 
 def materials_of(writer, path):
@@ -250,7 +277,9 @@ def test_properties_in_the_wrong_place_are_refused(tmp_path):
     writer = two_coloured()
     writer.show(mesh=0)
     empty = writer.show(extras={"voxrt_collider": "box"})
-    with pytest.raises(AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node has no mesh; put "):
+    with pytest.raises(
+        AssetError, match=rf"nodes\[{empty}\]\.extras\.voxrt_collider: the node shows no triangles; put "
+    ):
         load(writer.save(tmp_path / "a.gltf"))
     writer.json["nodes"][empty] = {}
     writer.json["materials"][0]["extras"] = {"voxrt_collider": "box"}
@@ -274,3 +303,12 @@ def test_extras_of_others_are_left_alone(extras, tmp_path):
     writer = two_coloured()
     writer.show(mesh=0, extras=extras)
     assert len(load(writer.save(tmp_path / "a.gltf")).objects) == 1
+
+
+def test_primitives_without_positions_are_counted(tmp_path):
+    writer = two_coloured()
+    writer.show(mesh=0)
+    writer.json["meshes"][0]["primitives"].append({"attributes": {"NORMAL": 0}})
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert len(scene.objects[0].mesh.triangles) == 3
+    assert kinds(scene)["no-positions"] == 1

@@ -188,6 +188,7 @@ def test_webp_by_extension(tmp_path):
     ("mode", "alpha", "factor", "there"),
     [
         ("OPAQUE", 0, 1.0, True),
+        ("OPAQUE", 255, -1.0, True),
         ("MASK", 127, 1.0, False),
         ("MASK", 128, 1.0, True),
         ("MASK", 255, 0.4, False),
@@ -272,3 +273,28 @@ def test_textures_beside_the_asset_are_found(tmp_path):
     (tmp_path / "wood grain.png").write_bytes(encoded(np.array([[BLUE]], np.uint8)))
     assert seen(writer, tmp_path / "a.gltf") == BLUE[:3]
     assert json.loads((tmp_path / "a.gltf").read_text())["images"] == [{"uri": "wood%20grain.png"}]
+
+
+def test_attributes_that_do_not_fit_their_vertices_are_refused(tmp_path):
+    writer = GltfWriter()
+    writer.show(mesh=writer.mesh(TRIANGLE, COLOR_0=writer.accessor([[0.5, 0, 0]] * 2)))
+    with pytest.raises(AssetError, match=r"attributes\.COLOR_0: 2 elements, fewer than there are vertices"):
+        load(writer.save(tmp_path / "a.glb"))
+    transform = {"KHR_texture_transform": {"scale": [1e308, 1e308], "rotation": 1.0}}
+    with pytest.raises(AssetError, match=r"baseColorTexture: the texture coordinates leave the range of numbers"):
+        load(textured((1e3, 1e3), texture={"extensions": transform}).save(tmp_path / "a.glb"))
+
+
+def test_vertex_colours_that_are_not_numbers_are_black_and_counted(tmp_path):
+    writer = GltfWriter()
+    writer.show(mesh=writer.mesh(TRIANGLE, COLOR_0=writer.accessor([[np.nan, np.inf, 1.0]] * 3)))
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert scene.materials[1].colour == (0, 0, 255)
+    assert kinds(scene)["vertex-colour"] == 1
+
+
+def test_an_image_without_a_source_is_refused(tmp_path):
+    writer = textured()
+    writer.json["images"][0] = {"name": "nothing"}
+    with pytest.raises(AssetError, match=r"images\[0\]: has neither a uri nor a buffer view"):
+        load(writer.save(tmp_path / "a.glb"))

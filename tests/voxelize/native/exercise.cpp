@@ -142,7 +142,7 @@ bool agree(const Scene& scene, int depth) {
 int main() {
     Random random(1);
     bool good = true;
-    for (int depth = 1; depth <= 8; ++depth) {
+    for (int depth = 1; depth <= 5; ++depth) {
         const double side = 1 << depth;
         Scene scene;
         scene.meshes = {soup(random, side, 1),

@@ -4,6 +4,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from oracles.surfaces import bounds, scene_triangles, volume
 
 from voxrt.voxelize import (
@@ -240,9 +242,8 @@ def test_mesh_colliders(usd, approximation, kind):
 
 def test_a_convex_decomposition_has_a_hull_a_connected_part(usd):
     cube = CUBE.replace("(0,1,1)]", "(0,1,1),(5,0,0),(6,0,0),(5,1,0),(5,0,1)]")
-    cube = cube.replace("[4,4,4,4,4,4]", "[4,4,4,4,4,4,3,3,3,3]").replace(
-        "0,4,7,3]", "0,4,7,3, 8,10,9, 8,11,10, 8,9,11, 9,10,11]"
-    )
+    cube = cube.replace("[4,4,4,4,4,4]", "[4,4,4,4,4,4,3,3,3,3]")
+    cube = cube.replace("0,4,7,3]", "0,4,7,3, 8,10,9, 8,11,10, 8,9,11, 9,10,11]")
     apis = 'prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]'
     scene = usd(f'def Mesh "m" ({apis}) {{{cube}\nuniform token physics:approximation = "convexDecomposition"\n}}')
     assert [len(collider.positions) for collider in scene.objects[0].colliders] == [8, 4]
@@ -301,6 +302,23 @@ def test_layers_of_another_unit(usd, tmp_path):
             "beyond the mesh's 6",
         ),
         ("def Mesh cube {", "line 6"),
+        (
+            mesh().replace("int[] faceVertexC", "nt[] faceVertexC"),
+            "/cube: faceVertexCounts holds values that are no integers",
+        ),
+        (
+            mesh().replace("int[] faceVertexI", "double[] faceVertexI"),
+            "/cube: faceVertexIndices holds values that are no integers",
+        ),
+        (
+            'def Mesh "m" { float[] points = [1, 2]\nint[] faceVertexCounts = [3] }',
+            "/m: points holds values that are no points",
+        ),
+        (
+            "def Mesh \"m\" { string[] points = ['a']\nint[] faceVertexCounts = [3] }",
+            "/m: points holds values that are no points",
+        ),
+        ('def Sphere "s" { string radius = "one" }', "/s: radius one is no length"),
     ],
 )
 def test_refused(usd, capfd, body, message):
@@ -334,3 +352,44 @@ def test_too_many_materials(usd):
     )
     with pytest.raises(DoesNotFitError, match="255 materials"):
         usd(body)
+
+
+def test_text_that_is_no_utf8(tmp_path):
+    path = tmp_path / "stage.usda"
+    path.write_bytes(b"#usda 1.0\n(\n)\n" + mesh().encode().replace(b"point3f[]", b"point\x983f[]"))
+    with pytest.raises(AssetError) as caught:
+        load_usd(path)
+    assert "\n" not in str(caught.value)
+
+
+DAMAGED = f"""#usda 1.0
+(
+    metersPerUnit = 1
+)
+{mesh("color3f[] primvars:displayColor = [(1, 0, 0)]")}
+def PointInstancer "many" {{
+    rel prototypes = </many/ball>
+    int[] protoIndices = [0, 0]
+    point3f[] positions = [(0, 0, 0), (3, 0, 0)]
+    def Sphere "ball" {{
+        double radius = 0.5
+    }}
+}}
+{material("red", "(1, 0, 0)")}
+""".encode()
+
+
+@settings(max_examples=60)
+@given(st.lists(st.tuples(st.integers(0, len(DAMAGED) - 1), st.integers(0, 255)), min_size=1, max_size=3))
+def test_damaged_stages_are_read_or_refused(tmp_path_factory, damage):
+    data = bytearray(DAMAGED)
+    for place, byte in damage:
+        data[place] = byte
+    path = tmp_path_factory.mktemp("usd") / "stage.usda"
+    path.write_bytes(data)
+    message = ""
+    try:
+        load_usd(path)
+    except (AssetError, DoesNotFitError) as error:
+        message = str(error)
+    assert "\n" not in message

@@ -85,7 +85,8 @@ def test_instancers_that_contradict_themselves(usd, capfd, change, message):
     assert capfd.readouterr() == ("", "")
 
 
-def test_instancers_of_instancers_are_bounded(usd):
+def test_instancers_of_instancers_are_bounded(usd, monkeypatch):
+    monkeypatch.setattr("voxrt.voxelize.usd.drawing.MOST_OBJECTS", 10_000)
     body = 'def Cube "p0" {}\n'
     for level in range(1, 8):
         points = ", ".join(f"({i * 10**level}, 0, 0)" for i in range(10))
@@ -94,7 +95,7 @@ def test_instancers_of_instancers_are_bounded(usd):
             int[] protoIndices = [{", ".join("0" * 10)}]
             point3f[] positions = [{points}]
         }}\n"""
-    with pytest.raises(DoesNotFitError, match="1,000,000 objects"):
+    with pytest.raises(DoesNotFitError, match="10,000 objects"):
         usd(body)
 
 

@@ -1,0 +1,175 @@
+"""The ray tracer behind its registers: an identity, a camera, a start bit, a frame-done bit, a memory port, video."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from .device import Counters, Frame, Identity
+from .errors import DeviceError
+from .registers import MATERIALS, REGISTERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from .view import View
+
+_IDENTITY = int.from_bytes(b"VXRT", "big")
+_FRAME_SECONDS = 30.0
+_POLL_SECONDS = 0.0005
+_ERRORS = {
+    "direction_overflow": "a direction overflow",
+    "bad_pointer": "a bad pointer",
+    "step_limit": "an octree deeper than its depth",
+}
+_SIZE = (1920, 1080)
+_TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
+
+
+class Registers(Protocol):
+    """The register block, byte addresses; :class:`pynq.MMIO` is one."""
+
+    def read(self, offset: int) -> int:
+        """Read a register."""
+
+    def write(self, offset: int, value: int) -> None:
+        """Write a register."""
+
+
+class Video(Protocol):
+    """What catches the AXI4-Stream video."""
+
+    def expect(self, size: tuple[int, int]) -> None:
+        """Be ready for one frame of `size`."""
+
+    def take(self) -> NDArray[np.uint8]:
+        """Give the frame that has come: uint8, shape (H, W, 3), the stream's bytes."""
+
+
+class RegisterDevice:
+    """A device driven as ``rtl/registers.rdl`` describes it; :class:`~.device.Device` says what the methods do.
+
+    Parameters
+    ----------
+    name
+        For people.
+    registers
+        The register block.
+    memory
+        uint32, shape (N,): a view of the scene memory, for the processor.
+    video
+        What catches frames.
+
+    Raises
+    ------
+    DeviceError
+        No ray tracer answers there, or one of another version.
+    """
+
+    def __init__(self, name: str, registers: Registers, memory: NDArray[np.uint32], video: Video) -> None:
+        self._registers = registers
+        self._memory = memory
+        self._video = video
+        if self._read("identity") != _IDENTITY:
+            raise DeviceError(f"{name}: no voxrt ray tracer answers; load its bitstream")
+        version = self._fields("version")
+        if version["major"] != 0:
+            raise DeviceError(
+                f"{name}: registers of version {version['major']} are not known here; upgrade voxrt-board"
+            )
+        configuration = self._fields("configuration")
+        words = min(1 + (8 << configuration["block_bits"]), len(memory))
+        self.identity = Identity(
+            name=f"{name}, {configuration['lanes']} lanes",
+            version=f"{version['major']}.{version['minor']}",
+            capacity=words - (words - 1) % 8,
+            depth=configuration["max_depth"],
+            size=_SIZE,
+            position_limit=1 << (configuration["position_bits"] - 1),
+            movable_root=False,
+        )
+        self._hold()
+
+    def registers(self) -> Mapping[str, int]:
+        """Read all registers, by name, in the order of their addresses."""
+        return {name: self._read(name) for name in REGISTERS}
+
+    def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
+        """Write words from word `address` on, while no frame can begin."""
+        self._hold()
+        self._memory[address : address + len(words)] = words
+
+    def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
+        """Read words from word `address` on."""
+        return np.array(self._memory[address : address + count], dtype=np.uint32)
+
+    def write_materials(self, colours: NDArray[np.uint8], _mirrors: NDArray[np.bool_], /) -> None:
+        """Write the material table; this version of the hardware shows mirror materials like all others."""
+        self._hold()
+        for material, (red, green, blue) in enumerate(colours.tolist()):
+            self._registers.write(MATERIALS + 4 * material, red << 16 | green << 8 | blue)
+
+    def select_scene(self, root: int, depth: int) -> None:
+        """Trace the octree at word 0 from the next frame on."""
+        if root != 0:
+            raise DeviceError(f"an octree at word {root}: this hardware traces the one at word 0")
+        self._write("depth", depth)
+
+    def frame(self, view: View) -> Frame:
+        """Start a frame, and take it when the frame-done bit says that it is complete."""
+        started = time.perf_counter()
+        columns, rows = view.size
+        self._write("size", columns | rows << 16)
+        for name in ("position", "look", "right", "up"):
+            for axis, value in enumerate(getattr(view.camera, name)):
+                self._write(f"{name}[{axis}]", value & ((1 << REGISTERS[f"{name}[{axis}]"][1]["value"][1]) - 1))
+        red, green, blue = view.background
+        self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
+        self._write("status", self._bits("status", "frame_done", *_ERRORS))  # writing 1 clears
+        self._video.expect(view.size)
+        self._write("control", self._bits("control", "start"))
+        self._wait("frame_done", 1, "the frame does not end")
+        status = self._fields("status")
+        errors = [said for field, said in _ERRORS.items() if status[field]]
+        if errors:
+            raise DeviceError(f"the ray tracer met {' and '.join(errors)}; upload the scene again, or move the camera")
+        colour = np.ascontiguousarray(self._video.take()[..., _TO_RED_GREEN_BLUE])
+        if colour.shape != (rows, columns, 3):
+            raise DeviceError(f"a frame of {colour.shape[1]}x{colour.shape[0]} pixels came for one of {columns}x{rows}")
+        counters = Counters(
+            self._read("rays"), self._read("words_read"), self._read("cycles"), time.perf_counter() - started
+        )
+        return Frame(colour, counters)
+
+    def close(self) -> None:
+        """Let no frame begin any more."""
+        self._hold()
+
+    def _hold(self) -> None:
+        self._write("control", self._bits("control", "hold"))
+        self._wait("busy", 0, "the frame under way does not end")
+
+    def _wait(self, field: str, value: int, problem: str) -> None:
+        end = time.monotonic() + _FRAME_SECONDS
+        while self._fields("status")[field] != value:
+            if time.monotonic() > end:
+                self._write("control", self._bits("control", "soft_reset", "hold"))
+                raise DeviceError(f"{problem} within {_FRAME_SECONDS:.0f} s; it was dropped, try again")
+            time.sleep(_POLL_SECONDS)
+
+    def _read(self, name: str) -> int:
+        return int(self._registers.read(REGISTERS[name][0]))
+
+    def _write(self, name: str, value: int) -> None:
+        self._registers.write(REGISTERS[name][0], value)
+
+    def _fields(self, name: str) -> dict[str, int]:
+        value = self._read(name)
+        return {field: value >> low & ((1 << width) - 1) for field, (low, width) in REGISTERS[name][1].items()}
+
+    def _bits(self, name: str, *fields: str) -> int:
+        return sum(1 << REGISTERS[name][1][field][0] for field in fields)

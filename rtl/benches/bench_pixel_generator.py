@@ -1,0 +1,279 @@
+"""The whole core from its pins: registers over AXI4-Lite, a scene through the memory port, pictures off the stream."""
+
+import itertools
+import random
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+from cocotbext.axi import AxiLiteBus, AxiLiteMaster
+from oracles.memory import words_of
+from oracles.ray import render
+from voxrt_registers import MATERIALS, REGISTERS
+
+COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
+CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.int32)
+
+
+def scene(seed):
+    """Make a world of 8 voxels a side."""
+    return np.random.default_rng(seed).choice([0, 0, 0, 0, 1, 2, 255], (8, 8, 8)).astype(np.uint8)
+
+
+class Core:
+    """The core and what stands around it on a board."""
+
+    def __init__(self, dut):
+        self.dut = dut
+        self.axi = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk_i, dut.rst_ni, reset_active_level=False)
+        self.ready = itertools.repeat(1)
+
+    async def start(self):
+        """Start the clock, reset, and collect the stream from then on."""
+        dut = self.dut
+        dut.bram_en_i.value = 0
+        dut.m_axis_tready.value = 0
+        dut.rst_ni.value = 0
+        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+        await ClockCycles(dut.clk_i, 20)
+        dut.rst_ni.value = 1
+        await ClockCycles(dut.clk_i, 2)
+        self.words = []
+        cocotb.start_soon(self.collect())
+        for material, (red, green, blue) in enumerate(COLOURS.tolist()):
+            if material in {0, 1, 2, 255}:
+                await self.axi.write_dword(MATERIALS + 4 * material, red << 16 | green << 8 | blue)
+
+    async def collect(self):
+        """Take words off the stream as `ready` says; what is offered must stay until it is taken."""
+        dut = self.dut
+        offered = None
+        while True:
+            dut.m_axis_tready.value = ready = next(self.ready)
+            await RisingEdge(dut.clk_i)
+            valid = int(dut.m_axis_tvalid.value)
+            word = None
+            if valid:
+                signals = (dut.m_axis_tdata, dut.m_axis_tkeep, dut.m_axis_tuser, dut.m_axis_tlast)
+                word = tuple(int(signal.value) for signal in signals)
+            if offered is not None and int(dut.rst_ni.value) and not self.dropping:
+                assert word == offered, "an offered word changed before it was taken"
+            offered = word if valid and not ready else None
+            if valid and ready:
+                self.words.append(word)
+
+    dropping = False
+
+    async def write(self, name, **fields):
+        """Write a register by its fields."""
+        address, places = REGISTERS[name]
+        value = 0
+        for field, number in fields.items():
+            low, width = places[field]
+            value |= (number & ((1 << width) - 1)) << low
+        await self.axi.write_dword(address, value)
+
+    async def read(self, name, field):
+        """Read a field."""
+        address, places = REGISTERS[name]
+        low, width = places[field]
+        return await self.axi.read_dword(address) >> low & ((1 << width) - 1)
+
+    async def load(self, words):
+        """Write a scene through the memory port, a word a clock."""
+        dut = self.dut
+        dut.bram_en_i.value = 1
+        dut.bram_we_i.value = 15
+        for address, word in enumerate(words):
+            dut.bram_addr_i.value = 4 * address
+            dut.bram_wrdata_i.value = int(word)
+            await RisingEdge(dut.clk_i)
+        dut.bram_en_i.value = 0
+        dut.bram_we_i.value = 0
+
+    async def set_frame(self, camera, width, height, depth):
+        """Write camera, size and depth."""
+        await self.write("size", width=width, height=height)
+        await self.write("depth", depth=depth)
+        for name, row in zip(("position", "look", "right", "up"), camera.tolist(), strict=True):
+            for axis in range(3):
+                await self.write(f"{name}[{axis}]", value=row[axis])
+
+    async def wait(self):
+        """Wait for a frame to end."""
+        for _ in range(20000):
+            if await self.read("status", "frame_done"):
+                await self.write("status", frame_done=1)
+                await ClockCycles(self.dut.clk_i, 1000 if not self.dut.m_axis_tready.value else 40)
+                return
+            await ClockCycles(self.dut.clk_i, 50)
+        raise AssertionError("the frame never ended")
+
+    def picture(self, width, height):
+        """Unpack one frame of the words collected; checks tkeep, tuser and tlast on the way."""
+        per_line = (3 * width + 3) // 4
+        words, self.words = self.words[: per_line * height], self.words[per_line * height :]
+        assert len(words) == per_line * height
+        lines = []
+        for row in range(height):
+            line = words[row * per_line : (row + 1) * per_line]
+            data = b""
+            for column, (value, keep, user, last) in enumerate(line):
+                assert user == (row == column == 0)
+                assert last == (column == per_line - 1)
+                kept = keep.bit_count()
+                assert keep == (1 << kept) - 1
+                assert kept == 4 or last
+                data += value.to_bytes(4, "little")[:kept]
+            assert len(data) == 3 * width
+            lines.append(np.frombuffer(data, np.uint8).reshape(width, 3)[:, [2, 0, 1]])  # from G, B, R
+        return np.stack(lines)
+
+
+@cocotb.test()
+async def every_width_and_pattern(dut):
+    """All phases of the packer, under back-pressure of several kinds."""
+    core = Core(dut)
+    await core.start()
+    voxels = scene(1)
+    await core.load(words_of(voxels))
+    chance = random.Random(1)
+    patterns = [
+        itertools.repeat(1),
+        itertools.cycle([1, 0]),
+        itertools.cycle([0, 0, 0, 0, 1]),
+        iter(lambda: chance.randrange(2), 2),
+    ]
+    for width, pattern in itertools.product((1, 2, 3, 4, 5, 8, 11), patterns):
+        core.ready = pattern
+        await core.set_frame(CAMERA, width, 3, 3)
+        await core.write("control", start=1)
+        await core.wait()
+        colour, _, _ = render(voxels, CAMERA, width, 3, COLOURS)
+        np.testing.assert_array_equal(core.picture(width, 3), colour)
+        assert core.words == []
+
+
+@cocotb.test()
+async def counters_and_identity(dut):
+    """Read registers as the description says, and count a frame."""
+    core = Core(dut)
+    await core.start()
+    assert (await core.axi.read_dword(REGISTERS["identity"][0])).to_bytes(4, "big") == b"VXRT"
+    assert await core.read("size", "width") == 640
+    assert await core.read("size", "height") == 480
+    for name, value in (("position[1]", -123456), ("look[2]", -77)):
+        width = REGISTERS[name][1]["value"][1]
+        await core.write(name, value=value)
+        assert await core.read(name, "value") == value & ((1 << width) - 1)
+    voxels = scene(2)
+    await core.load(words_of(voxels))
+    await core.set_frame(CAMERA, 20, 10, 3)
+    await core.write("control", start=1)
+    await core.wait()
+    _, material, _ = render(voxels, CAMERA, 20, 10, COLOURS)
+    assert await core.read("rays", "value") == 200
+    assert await core.read("hits", "value") == (material > 0).sum()
+    assert 0 < await core.read("words_read", "value") <= await core.read("cycles", "value") * int(dut.Lanes.value)
+    assert await core.read("status", "busy") == 0
+    for error in ("direction_overflow", "bad_pointer", "step_limit"):
+        assert await core.read("status", error) == 0
+
+
+@cocotb.test()
+async def a_scene_is_swapped_between_frames(dut):
+    """Continuous frames; hold, write another scene, go on: every frame shows one scene, none is torn or hangs."""
+    core = Core(dut)
+    await core.start()
+    worlds = [scene(3), scene(4)]
+    pictures = [render(world, CAMERA, 12, 9, COLOURS)[0] for world in worlds]
+    await core.load(words_of(worlds[0]))
+    await core.set_frame(CAMERA, 12, 9, 3)
+    await core.write("control", continuous=1)
+    await core.wait()
+    await core.write("control", continuous=1, hold=1)
+    while await core.read("status", "busy"):
+        pass
+    await core.load(words_of(worlds[1]))
+    await core.write("control", continuous=1)
+    await core.wait()
+    await core.wait()
+    await core.write("control", hold=1)
+    while await core.read("status", "busy"):
+        pass
+    await ClockCycles(dut.clk_i, 40)
+    seen = []
+    while core.words:
+        picture = core.picture(12, 9)
+        assert any((picture == candidate).all() for candidate in pictures)
+        seen.append([(picture == candidate).all() for candidate in pictures].index(True))
+    assert seen == sorted(seen)
+    assert seen[0] == 0
+    assert seen[-1] == 1
+
+
+@cocotb.test()
+async def a_camera_written_during_a_frame_shows_in_the_next(dut):
+    """No torn frame."""
+    core = Core(dut)
+    await core.start()
+    voxels = scene(5)
+    await core.load(words_of(voxels))
+    other = CAMERA.copy()
+    other[0] = [40, 40, -90]
+    other[1] = [9, 8, 90]
+    await core.set_frame(CAMERA, 16, 16, 3)
+    await core.write("control", start=1)
+    await core.set_frame(other, 7, 5, 3)
+    await core.wait()
+    await core.write("control", start=1)
+    await core.wait()
+    np.testing.assert_array_equal(core.picture(16, 16), render(voxels, CAMERA, 16, 16, COLOURS)[0])
+    np.testing.assert_array_equal(core.picture(7, 5), render(voxels, other, 7, 5, COLOURS)[0])
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """Reset in the middle of a frame, after a picture that would show through; the next frame is whole."""
+    core = Core(dut)
+    await core.start()
+    voxels = scene(6)
+    await core.load(words_of(voxels))
+    await core.set_frame(CAMERA, 9, 6, 3)
+    expected = render(voxels, CAMERA, 9, 6, COLOURS)[0]
+    other = CAMERA.copy()
+    other[0] = [40, 40, -90]
+    for clocks in (0, 1, 5, 30, 77, 200, 333):
+        await core.set_frame(other, 9, 6, 3)
+        await core.write("control", start=1)
+        await ClockCycles(dut.clk_i, clocks)
+        core.dropping = True
+        await core.write("control", soft_reset=1)
+        await ClockCycles(dut.clk_i, 4)
+        core.dropping = False
+        assert await core.read("status", "busy") == 0
+        core.words.clear()
+        await core.write("status", frame_done=1)
+        await core.set_frame(CAMERA, 9, 6, 3)
+        await core.write("control", start=1)
+        await core.wait()
+        np.testing.assert_array_equal(core.picture(9, 6), expected)
+
+
+@cocotb.test()
+async def errors_stick_until_cleared(dut):
+    """Raise an error by a corrupt memory; the frame ends."""
+    core = Core(dut)
+    await core.start()
+    await core.load([1, *[1] * 8])
+    await core.set_frame(CAMERA, 8, 8, 3)
+    await core.write("control", start=1)
+    await core.wait()
+    assert await core.read("status", "step_limit") == 1
+    await core.load(words_of(scene(7)))
+    await core.write("control", start=1)
+    await core.wait()
+    assert await core.read("status", "step_limit") == 1
+    await core.write("status", step_limit=1)
+    assert await core.read("status", "step_limit") == 0

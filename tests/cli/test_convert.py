@@ -1,0 +1,73 @@
+"""``voxrt convert``: every format to every other without losing a voxel."""
+
+from __future__ import annotations
+
+import json
+
+import msgspec
+import pytest
+
+import voxrt as library
+from voxrt.cli.memory_results import ConvertResult
+
+
+@pytest.fixture
+def built(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "5").code == 0
+    return folder
+
+
+def test_around_all_formats(voxrt, built):
+    source = "house.mem"
+    for suffix in (".coe", ".mif", ".bin", ".blob", ".mem"):
+        target = f"out/turned{suffix}"
+        finished = voxrt("convert", source, target, "--json")
+        assert finished.code == 0, finished.err
+        result = msgspec.json.decode(finished.out, type=ConvertResult, strict=True)
+        assert result.outputs[0] == target
+        assert all((built / output).is_file() for output in result.outputs)
+        source = target
+    assert (built / "out/turned.mem").read_bytes() == (built / "house.mem").read_bytes()
+    assert json.loads(voxrt("diff", "house.mem", "out/turned.blob", "--json").out)["voxels"] == 0
+    turned, _ = library.read_rom(built / "out/turned.mem")
+    assert turned.materials == library.read_rom(built / "house.mem")[0].materials
+    assert voxrt("info", "out/turned.blob").code == 0
+    assert voxrt("render", "out/turned.blob", "-o", "a.png", "--engine", "model", "--size", "16x12").code == 0
+
+
+def test_another_dialect(voxrt, built):
+    assert voxrt("convert", "house.mem", "old.mem", "--dialect", "seed-rtl").code == 0
+    assert "FFFFFFF0" in (built / "old.mem").read_text().split()
+    (built / "old.json").unlink()
+    assert voxrt("convert", "old.mem", "new.mem", "--from-dialect", "seed-rtl", "--depth", "5").code == 0
+    assert json.loads(voxrt("diff", "house.mem", "new.mem", "--json").out)["voxels"] == 0
+
+
+def test_a_listing_with_its_materials(voxrt, folder):
+    children = "".join(
+        f"Node {i}: Material ID = {'Roof (Instance)' if i == 8 else 'None'}, MID1 = False\n" for i in range(1, 9)
+    )
+    (folder / "scene.txt").write_text(f"Node 0: Material ID = None, MID1 = False, First Child Index = 1\n{children}")
+    assert voxrt("convert", "scene.txt", "scene.mem", "--material", "Roof=#d65438").code == 0
+    told = json.loads(voxrt("info", "scene.mem", "--json").out)
+    assert told["voxels"] == 1
+    assert told["materials"][1] == {"id": 1, "name": "Roof", "colour": [214, 84, 56], "voxels": 1}
+    assert voxrt("convert", "scene.txt", "scene.mem").code == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["house.mem", "house.png"], 2, "no format to write"),
+        (["house.mem", "house.blob", "--material", "Roof"], 2, "NAME=RRGGBB"),
+        (["house.mem", "house.blob", "--material", "Roof=red"], 2, "NAME=RRGGBB"),
+        (["house.mem", "house.obj/deeper.blob"], 2, "is a file, not a folder"),
+        (["nothing.mem", "house.blob"], 3, "nothing.mem"),
+        (["house.obj", "house.blob"], 3, "house.obj"),
+    ],
+)
+@pytest.mark.usefixtures("built")
+def test_refusals(voxrt, arguments, code, said):
+    finished = voxrt("convert", *arguments)
+    assert finished.code == code
+    assert said in finished.error

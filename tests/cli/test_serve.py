@@ -1,0 +1,76 @@
+"""``voxrt serve`` and ``voxrt upload``, each in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import pytest
+
+
+@contextmanager
+def serving(folder, *arguments):
+    """A running ``voxrt serve``: what it said on standard output; ended by Ctrl-C."""
+    command = [sys.executable, "-m", "voxrt", "serve", *arguments, "--port", "0", "--json"]
+    with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            lines = []
+            for line in process.stdout:
+                lines.append(line)
+                if line.startswith("}"):
+                    break
+            assert lines, process.stderr.read()
+            yield json.loads("".join(lines))
+        finally:
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+
+
+def test_upload_to_a_server(voxrt, folder):
+    assert voxrt("build", "dog.usda", "--depth", 5).code == 0
+    with serving(folder, "house.obj", "--depth", "4", "--legacy-port", "0") as served:
+        assert served["legacy_port"] > 0
+        checked = voxrt("upload", "dog.mem", "--to", served["url"], "--dry-run", "--json")
+        assert (checked.code, json.loads(checked.out)["written"]) == (0, False)
+        uploaded = voxrt("upload", "dog.mem", "--to", served["url"], "--json")
+        assert uploaded.code == 0
+        assert json.loads(uploaded.out) | {"written": False} == json.loads(checked.out)
+        os.truncate(folder / "dog.json", 10)
+        assert voxrt("upload", "dog.mem", "--to", served["url"]).code == 3
+
+
+def test_upload_to_a_device(voxrt):
+    assert voxrt("build", "house.obj", "--depth", 4).code == 0
+    finished = voxrt("upload", "house.mem", "--device", "model")
+    assert (finished.code, finished.out) == (0, "")
+    assert "house.mem: runs now" in finished.err
+
+
+def test_a_server_for_others_wants_a_token(folder):
+    with serving(folder, "--host", "0.0.0.0") as served:
+        assert "#token=" in served["url"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
+        (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
+        (["serve", "--device", "pynq"], 2, "--device pynq wants the ray tracer's --bitstream"),
+        (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no PYNQ"),
+        (["serve", "nothing.mem"], 3, "nothing.mem"),
+        (["serve", "nothing.blob"], 3, "nothing.blob"),
+        (["upload", "house.obj", "--to", "127.0.0.1:1"], 2, "is no .mem or .blob; build it first"),
+        (["upload", "nothing.mem", "--to", "127.0.0.1:1"], 3, "nothing.mem"),
+        (["upload", "nothing.mem"], 2, "give one of them"),
+    ],
+)
+def test_errors(voxrt, arguments, code, said):
+    finished = voxrt(*arguments)
+    assert finished.code == code
+    assert said in finished.error

@@ -1,0 +1,72 @@
+"""``voxrt convert``."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - cyclopts reads the signature
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+import voxrt
+from voxrt.cli.arguments import Reporting, UsageError, levels
+from voxrt.cli.memory_results import ConvertResult
+from voxrt.cli.messages import name_file, summarize, warn
+from voxrt.cli.results import print_json, warning_entries
+from voxrt.outputs import check_folder, uninterrupted, writing
+
+
+def convert(
+    source: Annotated[Path, Parameter(metavar="FROM")],
+    target: Annotated[Path, Parameter(metavar="TO")],
+    /,
+    *,
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
+    from_dialect: Literal["report", "seed-rtl", "msb"] | None = None,
+    dialect: Literal["report", "seed-rtl", "msb"] = "report",
+    material: Annotated[tuple[str, ...], Parameter(metavar="NAME=RRGGBB", show_default=False)] = (),
+    reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
+) -> None:
+    """Write a memory in another format; the suffixes say which.
+
+    Parameters
+    ----------
+    source
+        .mem, .coe, .mif or .bin (with a manifest beside it or without), .blob, a node listing .txt of the original's
+        authoring script, or MagicaVoxel's .vox.
+    target
+        .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob.
+    depth
+        Levels of the octree, where FROM does not say.
+    from_dialect
+        How FROM spells a material, where it does not say.
+    dialect
+        How TO spells a material.
+    material
+        A material of a node listing and its colour, in the order of their ids, any number of times.
+    reporting
+        How to tell it.
+    """
+    if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
+        raise UsageError(f"{target}: is no format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
+    check_folder(target.parent)
+    blob, warnings = voxrt.read_any(source, depth=depth, dialect=from_dialect, colours=_colours(material))
+    with writing(target), uninterrupted():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        files, lost = voxrt.convert(blob, target, dialect=dialect)
+    warn((*warnings, *lost))
+    if reporting.json:
+        print_json(ConvertResult([name_file(file) for file in files], warning_entries((*warnings, *lost))))
+    else:
+        summarize(f"{source.name}:", [("wrote", str(file)) for file in files])
+
+
+def _colours(materials: tuple[str, ...]) -> dict[str, tuple[int, int, int]]:
+    colours = {}
+    for material in materials:
+        name, _, digits = material.rpartition("=")
+        try:
+            red, green, blue = bytes.fromhex(digits.removeprefix("#"))
+        except ValueError:
+            raise UsageError(f"--material {material} is not NAME=RRGGBB, such as Roof=d65438") from None
+        colours[name] = (red, green, blue)
+    return colours

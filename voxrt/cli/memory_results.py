@@ -1,0 +1,112 @@
+"""What ``--json`` prints of the commands that look at memories."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+import msgspec
+
+import voxrt
+from voxrt.cli.messages import name_file
+from voxrt.cli.results import WarningEntry  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from voxrt.octree import Rom
+    from voxrt.sim import Likeness
+
+
+class ConvertResult(msgspec.Struct, frozen=True):
+    """``voxrt convert --json``."""
+
+    outputs: list[str]
+    """Files written, the memory first."""
+    warnings: list[WarningEntry]
+
+
+class WorldEntry(msgspec.Struct, frozen=True):
+    """Where the voxels stand in the scene."""
+
+    origin: tuple[float, float, float]
+    """The lowest corner, metres."""
+    voxel_size: float
+    """Metres."""
+
+
+class InfoResult(msgspec.Struct, frozen=True):
+    """``voxrt info --json``: what :class:`voxrt.export.RomInfo` holds, and where the voxels stand."""
+
+    name: str
+    depth: int
+    words: int
+    blocks: int
+    shared_words: int
+    """Words once equal blocks are shared."""
+    unshared_blocks: int
+    """Blocks that it would take without sharing."""
+    voxels: int
+    bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
+    """The smallest box that holds the solid voxels: its lowest voxel, and one behind its highest."""
+    levels: list[LevelInfo]
+    materials: list[MaterialInfo]
+    boards: list[BoardInfo]
+    world: WorldEntry | None
+    """Null for a memory that does not say."""
+
+
+class DiffResult(msgspec.Struct, frozen=True):
+    """``voxrt diff --json``: voxels that differ."""
+
+    voxels: int
+    appeared: int
+    """Empty in the first, solid in the second."""
+    vanished: int
+    """Solid in the first, empty in the second."""
+    recoloured: int
+    """Solid in both, of different materials."""
+    bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
+    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+
+
+class CompareResult(msgspec.Struct, frozen=True):
+    """``voxrt compare --json``; null where nothing is seen that could be compared."""
+
+    silhouette_iou: float | None
+    depth_mean: float | None
+    depth_median: float | None
+    depth_95: float | None
+    """Depths in voxels."""
+    normal_cosine: float | None
+    normal_agreement: float | None
+    psnr: float | None
+    ssim: float | None
+    outputs: dict[str, str]
+
+
+def info_result(rom: Rom) -> InfoResult:
+    """Tell programs what a memory holds."""
+    told = voxrt.rom_info(rom)
+    return InfoResult(
+        name=told.name,
+        depth=told.depth,
+        words=told.words,
+        blocks=told.blocks,
+        shared_words=told.shared_words,
+        unshared_blocks=told.unshared_blocks,
+        voxels=told.voxels,
+        bounds=told.bounds,
+        levels=list(told.levels),
+        materials=list(told.materials),
+        boards=list(told.boards),
+        world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
+    )
+
+
+def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
+    """Tell programs how like two pictures are."""
+    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
+    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})

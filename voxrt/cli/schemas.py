@@ -1,0 +1,19 @@
+"""The JSON schemas of what ``--json`` prints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from voxrt.cli.board_results import ServeResult, UploadResult
+from voxrt.cli.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult
+from voxrt.cli.results import BuildReport, RenderResult
+
+_RESULTS = (BuildReport, RenderResult, CompareResult, ConvertResult, InfoResult, DiffResult, ServeResult, UploadResult)
+
+
+def schema() -> dict[str, Any]:
+    """Give the schemas of the results and of what they are made of, by name."""
+    _, definitions = msgspec.json.schema_components(_RESULTS)
+    return definitions
