@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from voxrt.octree.vox_chunks import Vector, VoxFile
 
 _VOXEL_LIMIT = 1 << 25
-_INSTANCE_LIMIT = 1 << 20
+_INSTANCE_LIMIT = 1 << 16
 _NESTING_LIMIT = 256
 _IDENTITY = np.eye(3, dtype=np.int64)
 

@@ -167,7 +167,7 @@ def test_scenes_too_large_are_refused(tmp_path):
     with pytest.raises(DoesNotFitError, match="70001 voxels from end to end do not fit depth 16"):
         read(tmp_path, vox(ONE, *graph))
     doubling = [piece for n in range(0, 60, 2) for piece in (transform(n, n + 1), group(n + 1, n + 2, n + 2))]
-    with pytest.raises(DoesNotFitError, match="more than 1048576 scene nodes"):
+    with pytest.raises(DoesNotFitError, match="more than 65536 scene nodes"):
         read(tmp_path, vox(ONE, *doubling, transform(60, 61), shape(61, 0)))
     chain = [transform(n, n + 1) for n in range(999)]
     with pytest.raises(DoesNotFitError, match="or 256 in one another"):
