@@ -9,10 +9,10 @@ namespace voxrt {
 namespace {
 
 constexpr uint32_t kLeafCaps = 4;
-constexpr double kFar = 4;              // radii at which a node is a dipole; Barill et al. chose 2
-constexpr double kDipoleError = 0.01;   // of all dipoles together
-constexpr double kRoundingError = 1e-7; // of the sum of solid angles
-constexpr size_t kFewCaps = 48;         // are summed one by one, without dipoles
+constexpr double kFar = 4; // radii at which a node is a dipole; Barill et al. chose 2
+constexpr double kShortWire =
+    8; // radii at which pieces of rim are one short wire; nearer, its error would decide nothing
+constexpr double kPerTurn = 1 / (4 * std::numbers::pi);
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -120,9 +120,9 @@ HoleRim::Slope HoleRim::slope(const Point& q, double reach) const {
         const Point d = minus(node.middle, q);
         const double distance = length(d), nearest = distance - node.radius - reach;
         // The field of a short wire, along x d / d^3, changes by at most 2 length / d^3 a way.
-        if (nearest > 2 * node.radius) {
-            add(cross(d, node.along), 1 / (distance * distance * distance));
-            slope.error += node.length * reach * (2 * node.radius + reach) / (nearest * nearest * nearest);
+        if (nearest > kShortWire * node.radius) {
+            add(cross(d, node.along), kPerTurn / (distance * distance * distance));
+            slope.error += kPerTurn * node.length * reach * (2 * node.radius + reach) / (nearest * nearest * nearest);
         } else if (node.left >= 0) {
             stack[depth++] = node.left;
             stack[depth++] = node.right;
@@ -137,9 +137,10 @@ HoleRim::Slope HoleRim::slope(const Point& q, double reach) const {
             if (gap <= 0)
                 return {{0, 0, 0}, std::numeric_limits<double>::infinity()};
             const double la = length(a), lb = length(b);
-            add(cross(a, b), piece.times * (la + lb) / (la * lb * (la * lb + dot(a, b))));
+            add(cross(a, b), kPerTurn * piece.times * (la + lb) / (la * lb * (la * lb + dot(a, b))));
             // The change above, summed along the piece or, where that is less, along the whole line.
-            slope.error += std::abs(piece.times) * reach * reach * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
+            slope.error +=
+                kPerTurn * std::abs(piece.times) * reach * reach * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
         }
     }
     return slope;
@@ -195,14 +196,16 @@ int32_t HoleWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
+double HoleWinding::exactly_at(const Point& q) const {
+    AngleSum sum;
+    for (const Cap& cap : caps_)
+        add_solid_angle(sum, cap, q);
+    return 2 * sum.radians() * kPerTurn;
+}
+
 double HoleWinding::at(const Point& q) const {
     double total = 0;
     AngleSum near;
-    if (caps_.size() <= kFewCaps) {
-        for (const Cap& cap : caps_)
-            add_solid_angle(near, cap, q);
-        return 2 * near.radians() / (4 * std::numbers::pi);
-    }
     int32_t stack[64];
     int depth = 0;
     if (!nodes_.empty())
@@ -221,45 +224,7 @@ double HoleWinding::at(const Point& q) const {
                 add_solid_angle(near, caps_[i], q);
         }
     }
-    return (total + 2 * near.radians()) / (4 * std::numbers::pi);
-}
-
-bool HoleWinding::near_cap(const Point& q, double reach) const {
-    int32_t stack[64];
-    int depth = 0;
-    if (!nodes_.empty())
-        stack[depth++] = 0;
-    while (depth > 0) {
-        const Node& node = nodes_[stack[--depth]];
-        if (length(minus(node.centre, q)) > node.radius + reach)
-            continue;
-        if (node.left >= 0) {
-            stack[depth++] = node.left;
-            stack[depth++] = node.right;
-            continue;
-        }
-        for (uint32_t i = node.first; i < node.last; ++i) {
-            const auto& corners = caps_[i].corners;
-            const Point n = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
-            bool apart = std::abs(dot(n, minus(q, corners[0]))) > reach * length(n);
-            for (int side = 0; side < 3; ++side) {
-                const Point out = cross(minus(corners[(side + 1) % 3], corners[side]), n);
-                apart = apart || dot(out, minus(q, corners[side])) > reach * length(out);
-            }
-            if (!apart)
-                return true;
-        }
-    }
-    return false;
-}
-
-HoleWinding::Linear HoleWinding::around(const Point& q, double reach) const {
-    constexpr double whole = 4 * std::numbers::pi;
-    const HoleRim::Slope slope = rim_.slope(q, reach);
-    const double error = slope.error / whole + (caps_.size() <= kFewCaps ? kRoundingError : kDipoleError);
-    if (!(error < 0.5))
-        return {0, {0, 0, 0}, error};
-    return {at(q), {slope.gradient.x / whole, slope.gradient.y / whole, slope.gradient.z / whole}, error};
+    return (total + 2 * near.radians()) * kPerTurn;
 }
 
 } // namespace voxrt

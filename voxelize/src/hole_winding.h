@@ -27,7 +27,7 @@ public:
         Point from, to;
         int times;
     };
-    /// Within some reach of a point the solid angle differs from a linear one by `error` at most.
+    /// Within some reach of a point the solid angle over 4 pi differs from a linear one by `error` at most.
     struct Slope {
         Point gradient{0, 0, 0};
         double error = 0;
@@ -66,21 +66,13 @@ public:
 
     bool empty() const { return caps_.empty(); }
 
-    /// The caps' solid angle over 4 pi, seen from q.
+    /// The caps' solid angle over 4 pi, seen from q, by the sum of all caps or with far ones taken together.
+    double exactly_at(const Point& q) const;
     double at(const Point& q) const;
+    static constexpr double kRoundingError = 1e-6, kDipoleError = 0.01;
 
-    /// What at() is about a point: value + gradient . (p - q), give or take `error`, for p within a reach of q that no
-    /// cap parts from q. Across a cap it jumps by a whole number.
-    struct Linear {
-        double value = 0;
-        Point gradient{0, 0, 0};
-        double error = 0;
-    };
-    /// The value is found only where the error is below 1/2.
-    Linear around(const Point& q, double reach) const;
-
-    /// Whether a cap may come within `reach` of q.
-    bool near_cap(const Point& q, double reach) const;
+    /// How the same changes within `reach` of q, where no cap lies between; across one it jumps by a whole number.
+    HoleRim::Slope slope(const Point& q, double reach) const { return rim_.slope(q, reach); }
 
 private:
     struct Node {

@@ -1,10 +1,10 @@
 // Which voxels of a tile lie inside a surface with holes: those where its generalized winding number is beyond 1/2.
 //
-// That number is the one of the surface with its holes capped, known for every voxel, less what the caps add. In a cube
-// without surface it changes smoothly, and in one without caps what they add does; either way as the rim of the holes
-// lets it, nearly linearly in cubes that are small beside their distance from the rim. So large cubes are decided at
-// once, and cubes that are not are cut: down to voxels only at the rim, on the surface in the middle of a hole's doubt,
-// and where surface and caps meet.
+// That number is the one of the surface with its holes capped, known for every voxel, less what the caps add. Along a
+// way past the surface it changes smoothly, and as the rim of the holes alone lets it: nearly linearly within cubes
+// that are small beside their distance from the rim. So in a cube one voxel of each piece that the surface leaves is
+// asked; where that decides no others, as at the rim and on the surface in the middle of a hole's doubt, the cube is
+// cut.
 #pragma once
 
 #include "hole_winding.h"
@@ -67,7 +67,7 @@ public:
         z_ = k * kBrickSide;
         for (int z = 0; z < kBrickSide; ++z)
             box[z] &= ~shell[z];
-        decide({0, 0, 0, std::min(side_, kBrickSide)}, box, shell, numbers.data(), within);
+        decide({0, 0, 0, std::min(side_, kBrickSide)}, box, numbers.data(), within);
         return within;
     }
 
@@ -116,14 +116,15 @@ private:
                 for (int w = k; w < k + bricks; ++w)
                     if (brick(v * kTileBricks + u, w).shell)
                         return Verdict::mixed;
-        const HoleWinding::Linear taken = holes_->around(q, reach);
-        const Point& g = taken.gradient;
-        const double change = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + taken.error;
+        const HoleRim::Slope slope = holes_->slope(q, reach);
+        const Point& g = slope.gradient;
+        const double change =
+            std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + slope.error + HoleWinding::kRoundingError;
         if (!(change < 0.5))
             return Verdict::mixed;
         const int half = bricks / 2;
         const Brick& middle = brick((by + half) * kTileBricks + bx + half, k + half);
-        const double number = std::abs((bricks > 1 ? middle.corner : middle.middle) - taken.value);
+        const double number = std::abs((bricks > 1 ? middle.corner : middle.middle) - holes_->exactly_at(q));
         return number - change > kTie ? Verdict::inside : number + change < 0.5 ? Verdict::outside : Verdict::mixed;
     }
 
@@ -143,56 +144,91 @@ private:
         return box;
     }
 
-    /// Decides the voxels `asked` of a cell.
-    void decide(const Cell& cell, const Slices& asked, const Slices& shell, const int* numbers, Slices& within) {
+    /// Decides the voxels `open` of a cell, none of which has surface.
+    void decide(const Cell& cell, const Slices& asked, const int* numbers, Slices& within) {
         const uint64_t square = cell.side == kBrickSide
                                     ? ~uint64_t{0}
                                     : ((uint64_t{1} << cell.side * cell.side) - 1) << column_bit(cell.x, cell.y);
         Slices open{};
-        bool any = false, surface = false;
-        for (int z = cell.z; z < cell.z + cell.side; ++z) {
+        for (int z = cell.z; z < cell.z + cell.side; ++z)
             open[z] = asked[z] & square;
-            any = any || open[z] != 0;
-            surface = surface || (shell[z] & square) != 0;
-        }
-        if (!any)
+        if (is_empty(open))
             return;
-        const Point q = sample(x_ + cell.x, y_ + cell.y, z_ + cell.z, cell.side);
         if (cell.side == 1) {
+            const Point q = sample(x_ + cell.x, y_ + cell.y, z_ + cell.z, 1);
             if (std::abs(numbers[cell.z * 64 + column_bit(cell.x, cell.y)] - holes_->at(q)) > kTie)
                 within[cell.z] |= open[cell.z];
             return;
         }
-        const double reach = this->reach(cell.side);
-        if (!surface || !holes_->near_cap(q, reach)) {
-            const HoleWinding::Linear taken = holes_->around(q, reach);
-            if (taken.error < 0.5)
-                decide_linear(cell, taken, surface, numbers, open, within);
+        const HoleRim::Slope slope =
+            holes_->slope(sample(x_ + cell.x, y_ + cell.y, z_ + cell.z, cell.side), reach(cell.side));
+        if (slope.error < 0.24) { // twice it, below, decides nothing beyond 1/2
+            Slices left = open;
+            for (int z = cell.z; z < cell.z + cell.side; ++z)
+                while (left[z] != 0)
+                    decide_piece(cell, take_piece(cell, z, std::countr_zero(left[z]), left), slope, numbers, open,
+                                 within);
         }
         const int half = cell.side / 2;
         for (int i = 0; i < 8; ++i)
-            decide({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half}, open, shell,
+            decide({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half}, open,
                    numbers, within);
     }
 
-    /// Decides those voxels of a cell that its linear approximation can, and takes them off `open`.
-    static void decide_linear(const Cell& cell, const HoleWinding::Linear& taken, bool surface, const int* numbers,
-                              Slices& open, Slices& within) {
-        const int mx = cell.x + cell.side / 2, my = cell.y + cell.side / 2, mz = cell.z + cell.side / 2;
-        const int middle = numbers[mz * 64 + column_bit(mx, my)];
-        for (int z = cell.z; z < cell.z + cell.side; ++z)
-            for (uint64_t left = open[z]; left != 0; left &= left - 1) {
-                const int bit = std::countr_zero(left);
-                const double change = taken.gradient.x * (column_x(bit) - mx) +
-                                      taken.gradient.y * (column_y(bit) - my) + taken.gradient.z * (z - mz);
-                // Without surface a cap may lie between, which changes both numbers alike.
-                const double number = std::abs((surface ? numbers[z * 64 + bit] : middle) - taken.value - change);
-                if (number - taken.error > kTie)
-                    within[z] |= uint64_t{1} << bit;
-                else if (!(number + taken.error < 0.5))
-                    continue;
-                open[z] &= ~(uint64_t{1} << bit);
+    struct Voxel {
+        int z, bit; // in a brick
+    };
+
+    /// Moves the voxels of a cell that are joined to one by their sides from `left` to a list, that one first.
+    const std::vector<Voxel>& take_piece(const Cell& cell, int z, int bit, Slices& left) {
+        piece_.clear();
+        auto take = [&](int x, int y, int z) {
+            const uint64_t one = uint64_t{1} << column_bit(x, y);
+            if (left[z] & one) {
+                left[z] ^= one;
+                piece_.push_back({z, column_bit(x, y)});
             }
+        };
+        take(column_x(bit), column_y(bit), z);
+        for (size_t i = 0; i < piece_.size(); ++i) {
+            const Voxel at = piece_[i];
+            const int x = column_x(at.bit), y = column_y(at.bit);
+            if (x > cell.x)
+                take(x - 1, y, at.z);
+            if (x + 1 < cell.x + cell.side)
+                take(x + 1, y, at.z);
+            if (y > cell.y)
+                take(x, y - 1, at.z);
+            if (y + 1 < cell.y + cell.side)
+                take(x, y + 1, at.z);
+            if (at.z > cell.z)
+                take(x, y, at.z - 1);
+            if (at.z + 1 < cell.z + cell.side)
+                take(x, y, at.z + 1);
+        }
+        return piece_;
+    }
+
+    /// Decides those voxels of a piece, joined past the surface, that the slope from one of them can, and takes them
+    /// off `open`. The slope is that of a potential wherever the rim is not, so the way from one to another does not
+    /// matter.
+    void decide_piece(const Cell& cell, const std::vector<Voxel>& piece, const HoleRim::Slope& slope,
+                      const int* numbers, Slices& open, Slices& within) const {
+        const int sx = column_x(piece[0].bit), sy = column_y(piece[0].bit), sz = piece[0].z;
+        const bool exact = cell.side == kBrickSide;
+        const Point seed = sample(x_ + sx, y_ + sy, z_ + sz, 1);
+        const double start = numbers[sz * 64 + piece[0].bit] - (exact ? holes_->exactly_at(seed) : holes_->at(seed));
+        // Both the seed and the voxel may lie off the line.
+        const double error = 2 * slope.error + (exact ? HoleWinding::kRoundingError : HoleWinding::kDipoleError);
+        for (const Voxel& v : piece) {
+            const double number = std::abs(start - slope.gradient.x * (column_x(v.bit) - sx) -
+                                           slope.gradient.y * (column_y(v.bit) - sy) - slope.gradient.z * (v.z - sz));
+            if (number - error > kTie)
+                within[v.z] |= uint64_t{1} << v.bit;
+            else if (!(number + error < 0.5))
+                continue;
+            open[v.z] &= ~(uint64_t{1} << v.bit);
+        }
     }
 
     const HoleWinding* holes_ = nullptr;
@@ -201,6 +237,7 @@ private:
     int x_ = 0, y_ = 0, z_ = 0; // of the brick looked into
     std::vector<Brick> bricks_;
     std::vector<Verdict> verdicts_;
+    std::vector<Voxel> piece_;
 };
 
 } // namespace voxrt
