@@ -144,7 +144,7 @@ private:
         return box;
     }
 
-    /// Decides the voxels `open` of a cell, none of which has surface.
+    /// Decides the voxels `asked` of a cell, none of which has surface.
     void decide(const Cell& cell, const Slices& asked, const int* numbers, Slices& within) {
         const uint64_t square = cell.side == kBrickSide
                                     ? ~uint64_t{0}
@@ -160,8 +160,9 @@ private:
                 within[cell.z] |= open[cell.z];
             return;
         }
-        const HoleRim::Slope slope =
-            holes_->slope(sample(x_ + cell.x, y_ + cell.y, z_ + cell.z, cell.side), reach(cell.side));
+        const double middle = (cell.side - 1) / 2.0 + kSample; // of the points where its voxels are asked
+        const HoleRim::Slope slope = holes_->slope({x_ + cell.x + middle, y_ + cell.y + middle, z_ + cell.z + middle},
+                                                   (cell.side - 1) * kHalfDiagonal);
         if (slope.error < 0.24) { // twice it, below, decides nothing beyond 1/2
             Slices left = open;
             for (int z = cell.z; z < cell.z + cell.side; ++z)
