@@ -10,6 +10,7 @@
 #include "fixed_point.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace voxrt {
