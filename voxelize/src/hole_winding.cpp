@@ -196,11 +196,13 @@ int32_t HoleWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
-double HoleWinding::exactly_at(const Point& q) const {
+HoleWinding::Measured HoleWinding::measured_at(const Point& q) const {
+    if (caps_.size() > kFewCaps)
+        return {at(q), kDipoleError};
     AngleSum sum;
     for (const Cap& cap : caps_)
         add_solid_angle(sum, cap, q);
-    return 2 * sum.radians() * kPerTurn;
+    return {2 * sum.radians() * kPerTurn, kRoundingError};
 }
 
 double HoleWinding::at(const Point& q) const {

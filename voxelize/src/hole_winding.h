@@ -10,6 +10,7 @@
 #include "fixed_point.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace voxrt {
@@ -66,10 +67,15 @@ public:
 
     bool empty() const { return caps_.empty(); }
 
-    /// The caps' solid angle over 4 pi, seen from q, by the sum of all caps or with far ones taken together.
-    double exactly_at(const Point& q) const;
+    /// The caps' solid angle over 4 pi, seen from q, far caps taken together: within kDipoleError, by experience.
     double at(const Point& q) const;
-    static constexpr double kRoundingError = 1e-6, kDipoleError = 0.01;
+    static constexpr double kDipoleError = 0.01;
+
+    struct Measured {
+        double angle, error;
+    };
+    /// The same with what it may be off by: all caps are summed where they are few.
+    Measured measured_at(const Point& q) const;
 
     /// How the same changes within `reach` of q, where no cap lies between; across one it jumps by a whole number.
     HoleRim::Slope slope(const Point& q, double reach) const { return rim_.slope(q, reach); }
@@ -83,6 +89,10 @@ private:
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
+
+    // The sum of this many caps takes about as long as the rest of the work on a brick.
+    static constexpr size_t kFewCaps = 1000;
+    static constexpr double kRoundingError = 1e-6;
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;

@@ -118,13 +118,14 @@ private:
                         return Verdict::mixed;
         const HoleRim::Slope slope = holes_->slope(q, reach);
         const Point& g = slope.gradient;
-        const double change =
-            std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + slope.error + HoleWinding::kRoundingError;
+        double change = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + slope.error;
         if (!(change < 0.5))
             return Verdict::mixed;
         const int half = bricks / 2;
         const Brick& middle = brick((by + half) * kTileBricks + bx + half, k + half);
-        const double number = std::abs((bricks > 1 ? middle.corner : middle.middle) - holes_->exactly_at(q));
+        const HoleWinding::Measured caps = holes_->measured_at(q);
+        const double number = std::abs((bricks > 1 ? middle.corner : middle.middle) - caps.angle);
+        change += caps.error;
         return number - change > kTie ? Verdict::inside : number + change < 0.5 ? Verdict::outside : Verdict::mixed;
     }
 
@@ -216,11 +217,13 @@ private:
     void decide_piece(const Cell& cell, const std::vector<Voxel>& piece, const HoleRim::Slope& slope,
                       const int* numbers, Slices& open, Slices& within) const {
         const int sx = column_x(piece[0].bit), sy = column_y(piece[0].bit), sz = piece[0].z;
-        const bool exact = cell.side == kBrickSide;
         const Point seed = sample(x_ + sx, y_ + sy, z_ + sz, 1);
-        const double start = numbers[sz * 64 + piece[0].bit] - (exact ? holes_->exactly_at(seed) : holes_->at(seed));
+        const HoleWinding::Measured caps = cell.side == kBrickSide
+                                               ? holes_->measured_at(seed)
+                                               : HoleWinding::Measured{holes_->at(seed), HoleWinding::kDipoleError};
+        const double start = numbers[sz * 64 + piece[0].bit] - caps.angle;
         // Both the seed and the voxel may lie off the line.
-        const double error = 2 * slope.error + (exact ? HoleWinding::kRoundingError : HoleWinding::kDipoleError);
+        const double error = 2 * slope.error + caps.error;
         for (const Voxel& v : piece) {
             const double number = std::abs(start - slope.gradient.x * (column_x(v.bit) - sx) -
                                            slope.gradient.y * (column_y(v.bit) - sy) - slope.gradient.z * (v.z - sz));
