@@ -154,7 +154,7 @@ def test_what_is_not_drawn_is_counted(usd):
             token visibility = "invisible"
             def Cube "in" {}
         }
-        def Cube "guide" { uniform token purpose = "guide" }
+        def Cube "guide" (prepend apiSchemas = ["PhysicsCollisionAPI"]) { uniform token purpose = "guide" }
         def Cube "proxy" { uniform token purpose = "proxy" }
         def Cube "render" { uniform token purpose = "render" }
         def SphereLight "lamp" {}
@@ -166,6 +166,7 @@ def test_what_is_not_drawn_is_counted(usd):
         ("default-material", 7),
         ("invisible", 1),
         ("purpose", 1),
+        ("collider", 1),
         ("purpose", 1),
         ("no-shape", 1),
         ("unsupported-prim", 1),
