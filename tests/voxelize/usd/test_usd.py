@@ -273,7 +273,7 @@ def test_solid_colliders_and_disabled_ones(usd):
 def test_missing_references_are_reported_and_nothing_is_printed(usd, capfd):
     scene = usd(mesh() + 'def Xform "gone" (references = @nowhere.usda@) {}')
     (composition,) = [one for one in scene.warnings if one.kind == "composition"]
-    assert "nowhere.usda could not be opened" in composition.message
+    assert composition.message.startswith("asset nowhere.usda could not be opened")
     assert capfd.readouterr() == ("", "")
 
 
