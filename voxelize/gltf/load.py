@@ -72,7 +72,9 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
         for thing in _objects(document, name, seen, meshes, ids)
     )
     if not objects:
-        raise document.error("", "has no triangles to voxelize", "check that the scene shows a mesh")
+        said = "; ".join(one.message for one in document.notes.warnings())
+        problem = "has no triangles to voxelize" + (f" ({said})" if said else "")
+        raise document.error("", problem, "check that the scene shows a mesh")
     return Scene(path.stem, objects, table.materials(), document.notes.warnings())
 
 

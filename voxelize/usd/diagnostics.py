@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pxr import Tf, UsdUtils
@@ -12,7 +14,6 @@ from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from voxrt.voxelize.notes import Notes
 
@@ -37,7 +38,7 @@ def caught(path: Path, notes: Notes) -> Iterator[None]:
         raise AssetError(path, f"holds text that is no UTF-8 ({error.reason})", fix="export it again") from None
     finally:
         for said in delegate.TakeUncoalescedDiagnostics():
-            notes.add(*_note(_commentary(said)))
+            notes.add(*_note(_commentary(said), path))
         del delegate
 
 
@@ -49,12 +50,16 @@ def _commentary(said: object) -> str:
         return "the file holds text that is no UTF-8"
 
 
-def _note(commentary: str) -> tuple[str, str]:
+def _note(commentary: str, path: Path) -> tuple[str, str]:
     line = " ".join(commentary.split())
     if "deprecated version" in line:
         return "deprecated-format", "a layer is stored in a version of the crate format that USD will drop"
     if match := _UNOPENED.search(line):
-        return "composition", f"asset {match['asset']} could not be opened; what it holds is missing"
+        # Told from the file's folder: what a manifest says does not depend on where that folder stands.
+        asset = match["asset"]
+        if Path(asset).is_absolute():
+            asset = os.path.relpath(asset, path.parent.absolute())
+        return "composition", f"asset {asset} could not be opened; what it holds is missing"
     return ("composition" if line.startswith("In <") else "usd"), f"USD says: {line}"
 
 

@@ -148,6 +148,9 @@ class Drawing:
         purpose = imageable.ComputePurpose()
         if purpose not in (UsdGeom.Tokens.default_, UsdGeom.Tokens.render):
             self.notes.add("purpose", f"prims of purpose {purpose} were left out, with what is below them")
+            colliders = sum(one.HasAPI(UsdPhysics.CollisionAPI) for one in Usd.PrimRange(prim, PREDICATE))
+            if colliders:
+                self.notes.add("collider", f"colliders of purpose {purpose} were left out", colliders)
             return False
         return True
 

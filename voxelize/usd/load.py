@@ -13,6 +13,7 @@ from voxrt.voxelize.usd.diagnostics import caught
 from voxrt.voxelize.usd.drawing import Drawing
 from voxrt.voxelize.usd.stage import (
     metres_per_unit,
+    note_animation,
     note_layers_that_disagree,
     open_stage,
     time_code,
@@ -56,6 +57,8 @@ def load_usd(path: str | Path, *, variants: Sequence[str] = (), time: float | No
     with caught(path, notes):
         stage = open_stage(path, variants)
         note_layers_that_disagree(stage, notes)
+        if time is None:
+            note_animation(stage, notes)
         to_scene = scene_transform(up_axis(stage, notes), metres_per_unit(stage, path))
         drawing = Drawing(path, stage, notes, time_code(stage, time))
         objects = drawing.objects(to_scene)

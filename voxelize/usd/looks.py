@@ -51,6 +51,9 @@ class ImageSource:
         Applied to its linear colour and alpha.
     channel
         Which of ``rgba`` gives an opacity.
+    point
+        The coordinates of every point of a surface that has none of its own, where the author connected none; None
+        where some are connected.
     """
 
     file: str
@@ -63,6 +66,7 @@ class ImageSource:
     factor: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
     bias: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     channel: str = "a"
+    point: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +179,7 @@ def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes) -> Im
     if "black" in (wrap_s, wrap_t):
         notes.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
     primvar, turn, scale, offset = _coordinates(node, time, notes)
+    connected = _upstream(node, "st") is not None
     return ImageSource(
         file=str(getattr(file, "resolvedPath", "") or ""),
         raw=str(_value(node, "sourceColorSpace", time)) == "raw",
@@ -185,6 +190,7 @@ def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes) -> Im
         offset=offset,
         factor=_four(_value(node, "scale", time), 1.0),
         bias=_four(_value(node, "bias", time), 0.0),
+        point=None if connected else _pair(_value(node, "st", time), (0.0, 0.0)),
     )
 
 

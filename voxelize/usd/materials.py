@@ -150,9 +150,14 @@ class Materials:
             return None
         stored = primvars.at_corners(prim, source.primvar, surface, self.time, self.notes)
         if stored is None or stored.shape[2] < 2:
-            message = "textured faces without coordinates took the fallback of their texture or the default colour"
+            if source.point is None:
+                message = "textured faces without coordinates took the fallback of their texture or the default colour"
+                self.notes.add("texture", message, faces)
+                return None
+            # UsdUVTexture reads its image at (0, 0) when nothing is connected to st (UsdPreviewSurface specification).
+            message = "textured faces took one colour of their image, because no coordinates are connected to it"
             self.notes.add("texture", message, faces)
-            return None
+            stored = np.broadcast_to(np.array(source.point), (len(surface.triangles), 3, 2))
         plain = look.colour if look.image is None and look.colour else (1.0, 1.0, 1.0)
         opacity = 1.0 if look.alpha is not None else look.opacity
         cutoff = look.cutoff if look.alpha is not None else 0.0

@@ -62,6 +62,13 @@ def time_code(stage: Usd.Stage, seconds: float | None) -> Usd.TimeCode:
     return Usd.TimeCode(stage.GetStartTimeCode() + (seconds or 0.0) * stage.GetTimeCodesPerSecond())
 
 
+def note_animation(stage: Usd.Stage, notes: Notes) -> None:
+    """Count the layers that hold motion, of which one moment is shown."""
+    moving = sum(len(layer.ListAllTimeSamples()) > 1 for layer in stage.GetUsedLayers())
+    if moving:
+        notes.add("animation", "layers with animation were shown at the stage's start", moving)
+
+
 def up_axis(stage: Usd.Stage, notes: Notes) -> str:
     """Return ``"x"``, ``"y"`` or ``"z"``; USD's fallback y, noted, where the root layer says something else."""
     up = str(UsdGeom.GetStageUpAxis(stage))

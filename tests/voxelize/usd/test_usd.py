@@ -154,7 +154,7 @@ def test_what_is_not_drawn_is_counted(usd):
             token visibility = "invisible"
             def Cube "in" {}
         }
-        def Cube "guide" { uniform token purpose = "guide" }
+        def Cube "guide" (prepend apiSchemas = ["PhysicsCollisionAPI"]) { uniform token purpose = "guide" }
         def Cube "proxy" { uniform token purpose = "proxy" }
         def Cube "render" { uniform token purpose = "render" }
         def SphereLight "lamp" {}
@@ -166,6 +166,7 @@ def test_what_is_not_drawn_is_counted(usd):
         ("default-material", 7),
         ("invisible", 1),
         ("purpose", 1),
+        ("collider", 1),
         ("purpose", 1),
         ("no-shape", 1),
         ("unsupported-prim", 1),
@@ -272,7 +273,7 @@ def test_solid_colliders_and_disabled_ones(usd):
 def test_missing_references_are_reported_and_nothing_is_printed(usd, capfd):
     scene = usd(mesh() + 'def Xform "gone" (references = @nowhere.usda@) {}')
     (composition,) = [one for one in scene.warnings if one.kind == "composition"]
-    assert "nowhere.usda could not be opened" in composition.message
+    assert composition.message.startswith("asset nowhere.usda could not be opened")
     assert capfd.readouterr() == ("", "")
 
 

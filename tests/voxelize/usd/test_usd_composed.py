@@ -243,8 +243,10 @@ def test_time_in_seconds_after_the_start(tmp_path):
     )
     unit = 0.01  # USD's fallback
     for seconds, place in ((None, 0), (0, 0), (0.25, 12), (1, 48), (9, 48)):
-        (one,) = load_usd(path, time=seconds).objects
+        scene = load_usd(path, time=seconds)
+        (one,) = scene.objects
         assert one.transform[0, 3] == pytest.approx(place * unit)
+        assert [w.kind for w in scene.warnings if w.kind == "animation"] == ["animation"] * (seconds is None)
 
 
 def test_the_file_is_not_written_to(tmp_path):

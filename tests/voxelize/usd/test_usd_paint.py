@@ -225,6 +225,22 @@ def test_textures_without_coordinates_are_counted(usd):
     assert {one.kind for one in scene.warnings} == {"texture"}
 
 
+@pytest.mark.parametrize(("written", "shown"), [("", BLUE), ("float2 inputs:st = (0.9, 0.9)", GREEN)])
+def test_textures_to_which_no_coordinates_are_connected_show_one_point(usd, written, shown):
+    # UsdPreviewSurface specification, UsdUVTexture: st falls back to (0, 0), the image's lower left corner.
+    node = f"""def Shader "t" {{
+            uniform token info:id = "UsdUVTexture"
+            asset inputs:file = @./map.png@
+            token inputs:wrapS = "clamp"
+            token inputs:wrapT = "clamp"
+            {written}
+            float3 outputs:rgb
+        }}"""
+    scene = usd(material(DIFFUSE, node) + mesh("rel material:binding = </look>"), [[RED, GREEN], [BLUE, WHITE]])
+    assert middles(scene) == [shown] * 4
+    assert [(one.kind, one.count) for one in scene.warnings if one.kind == "texture"] == [("texture", 2)]
+
+
 def test_a_broken_image(usd, tmp_path):
     (tmp_path / "map.png").write_bytes(b"none")
     with pytest.raises(AssetError, match=r"map\.png: the image cannot be decoded"):
