@@ -46,12 +46,15 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
             rows = np.flatnonzero((beside[:, axis] >= 0) & (beside[:, axis] < 1 << 16))
             sought = _morton(beside[rows])
             found = np.searchsorted(codes, sought, side="right") - 1
-            touches = (found >= 0) & (levels[found] >= levels[rows]) & (sought - codes[found] < areas[found] << levels[found])
+            touches = (
+                (found >= 0) & (levels[found] >= levels[rows]) & (sought - codes[found] < areas[found] << levels[found])
+            )
             rows, found = rows[touches], found[touches]
             covered[rows] += areas[rows]
             larger = levels[found] > levels[rows]
             np.add.at(covered, found[larger], areas[rows[larger]])
-    return covered == 6 * areas
+    wholly: NDArray[np.bool_] = covered == 6 * areas
+    return wholly
 
 
 def _morton(voxels: NDArray[np.int64]) -> NDArray[np.int64]:

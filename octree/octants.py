@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,7 +63,8 @@ def octants(
     )
     grid.cell_data["material"] = materials
     grid.cell_data["level"] = levels
-    grid.cell_data["colour"] = np.array([material.colour for material in rom.materials], np.uint8)[materials]
+    if len(materials):  # PyVista takes no empty table
+        grid.cell_data["colour"] = np.array([material.colour for material in rom.materials], np.uint8)[materials]
     grid.field_data["hidden"] = np.array([np.count_nonzero(~shown)], np.int64)
     return grid
 
@@ -76,12 +78,9 @@ def import_pyvista() -> ModuleType:
         It is not installed.
     """
     try:
-        import pyvista  # noqa: PLC0415 - it and VTK are large, and optional
+        return import_module("pyvista")  # it and VTK are large, and optional
     except ImportError as error:
-        raise ViewerError(
-            "showing octants needs PyVista, which is not installed; pip install 'voxrt[view]'"
-        ) from error
-    return pyvista
+        raise ViewerError("showing octants needs PyVista, which is not installed; pip install 'voxrt[view]'") from error
 
 
 def _collect(rom: Rom, low: Corner, high: Corner | None) -> Leaves:

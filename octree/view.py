@@ -23,8 +23,8 @@ Aspect: TypeAlias = Literal["material", "level"]
 
 _TOWARDS_EYE = (0.62, 0.55, 1.0)  # a little to the right of the front, and above
 _TOWARDS_SUN = (0.35, 1.0, 0.65)
+_MARGIN = 0.92
 _TEXT = (230, 233, 238)
-_NAMED_MATERIALS = 16
 
 
 def plot(
@@ -95,9 +95,7 @@ def show(
 
     def tell(picked: pyvista.UnstructuredGrid) -> None:
         x, y, z = np.floor(picked.center).astype(np.int64).tolist()
-        plotter.add_text(
-            describe(rom, (x, y, z)), position="lower_left", font_size=10, color=_TEXT, name="picked"
-        )
+        plotter.add_text(describe(rom, (x, y, z)), position="lower_left", font_size=10, color=_TEXT, name="picked")
 
     plotter.enable_element_picking(tell, left_clicking=True, show_message=False, color=_TEXT, line_width=3)
     plotter.show()
@@ -134,19 +132,39 @@ def _draw(
         look = {"show_edges": True, "edge_color": "black", "edge_opacity": 0.45, "line_width": 1, "ambient": 0.25}
         if by == "material":
             plotter.add_mesh(grid, scalars="colour", rgb=True, **look)
-            _name_materials(plotter, rom, grid)
         else:
             _colour_levels(plotter, grid, look)
     told = f"{rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
     plotter.add_text(told, position="upper_left", font_size=10, color=_TEXT)
-    plotter.camera.focal_point = grid.center
-    plotter.camera.position = tuple(np.add(grid.center, _TOWARDS_EYE))
-    plotter.camera.up = (0, 1, 0)
-    plotter.reset_camera()
-    plotter.camera.zoom(1.25)
+    if grid.n_cells:
+        _frame(plotter, np.asarray(grid.points, np.float64), size)
     if off_screen:
         plotter.enable_anti_aliasing("ssaa")
     return plotter
+
+
+def _frame(plotter: pyvista.Plotter, points: NDArray[np.float64], size: tuple[int, int]) -> None:
+    """Stand where all points (shape (N, 3)) are in the picture, and as near as that allows.
+
+    A point is in the picture when its distance aside is at most `half` times its depth, on both sides and axes: linear
+    in where the camera stands.
+    """
+    look = -np.array(_TOWARDS_EYE) / np.linalg.norm(_TOWARDS_EYE)
+    right = np.cross(look, (0, 1, 0))
+    right /= np.linalg.norm(right)
+    up = np.cross(right, look)
+    depths, height = points @ look, _MARGIN * np.tan(np.radians(plotter.camera.view_angle) / 2)
+    stands = []
+    for axis, half in ((right, height * size[0] / size[1]), (up, height)):
+        aside = points @ axis
+        low, high = np.min(half * depths - aside), np.min(half * depths + aside)
+        stands.append(((low + high) / (2 * half), (high - low) / 2))
+    (depth_x, column), (depth_y, row) = stands
+    eye = min(depth_x, depth_y) * look + column * right + row * up
+    plotter.camera.position = tuple(eye)
+    plotter.camera.focal_point = tuple(eye + (np.mean(depths) - min(depth_x, depth_y)) * look)
+    plotter.camera.up = (0, 1, 0)
+    plotter.reset_camera_clipping_range()
 
 
 def _hush() -> None:
@@ -156,23 +174,12 @@ def _hush() -> None:
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
 
-def _name_materials(plotter: pyvista.Plotter, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
-    counts = np.bincount(grid.cell_data["material"], minlength=len(rom.materials))
-    often = [material for material in np.argsort(-counts, kind="stable")[:_NAMED_MATERIALS] if counts[material]]
-    names = [[rom.materials[material].name, rom.materials[material].colour] for material in often]
-    height = 0.035 * len(names)
-    legend = plotter.add_legend(
-        names, bcolor=None, face="rectangle", loc="upper right", size=(0.2, height), background_opacity=0
-    )
-    legend.GetEntryTextProperty().SetColor(*(channel / 255 for channel in _TEXT))
-
-
 def _colour_levels(plotter: pyvista.Plotter, grid: pyvista.UnstructuredGrid, look: dict[str, object]) -> None:
     low, high = (int(level) for level in grid.get_data_range("level"))
     plotter.add_mesh(
         grid,
         scalars="level",
-        cmap="viridis",
+        cmap="viridis_r",
         clim=(low - 0.5, high + 0.5),
         n_colors=high - low + 1,
         annotations={float(level): f"{1 << level}" for level in range(low, high + 1)},
