@@ -111,7 +111,7 @@ def describe(rom: Rom, voxel: Corner) -> str:
         (
             f"address 0x{octant.address:X}",
             f"word 0x{octant.word:08X}",
-            f"level {octant.level}: {1 << octant.level} voxels a side",
+            f"level {octant.level}: {'x'.join([str(1 << octant.level)] * 3)} voxels",
             f"voxels {ranges}",
             f"material {octant.material}: {rom.materials[octant.material].name}",
         )
@@ -183,6 +183,15 @@ def _colour_levels(plotter: pyvista.Plotter, grid: pyvista.UnstructuredGrid, loo
         clim=(low - 0.5, high + 0.5),
         n_colors=high - low + 1,
         annotations={float(level): f"{1 << level}" for level in range(low, high + 1)},
-        scalar_bar_args={"title": "voxels a side", "n_labels": 0, "color": _TEXT, "vertical": True, "position_x": 0.88},
+        scalar_bar_args={
+            "title": "voxels a side",
+            "n_labels": 0,
+            "color": _TEXT,
+            "vertical": True,
+            "position_x": 0.9,
+            "position_y": 0.72,
+            "width": 0.06,
+            "height": 0.26,
+        },
         **look,
     )

@@ -128,7 +128,7 @@ def three_towers():
 def test_description():
     assert octree.describe(rom_of(three_towers()), (1, 2, 3)).splitlines()[1:] == [
         "word 0xFFFFFF01",
-        "level 2: 4 voxels a side",
+        "level 2: 4x4x4 voxels",
         "voxels x 0...3, y 0...3, z 0...3",
         "material 1: m1",
     ]

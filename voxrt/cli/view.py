@@ -58,7 +58,7 @@ def view(
     clip
         Cut away the half of the scene that is nearer to the eye along this axis.
     level_limit
-        Make octants of 2**N voxels a side uniform, as the coarsest way to fewer of them.
+        Make octants of 2**N voxels a side uniform first, for fewer octants.
     depth
         Levels of the octree, for an asset and where no manifest says.
     size
