@@ -7,13 +7,15 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint bench sanitize clean
+.PHONY: help demo test lint hardware docs bench sanitize clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
+	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
+	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
 	@echo "make sanitize  run the native voxelizer under the address, undefined and thread sanitizers"
 	@echo "make clean   remove what the others made"
@@ -34,6 +36,16 @@ lint: $(VENV)/.installed $(VENV)/.tools
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
+
+# The registers as generated, the cocotb benches on two configurations, the formal proofs.
+hardware: $(VENV)/.hardware
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
+	git diff --exit-code -- rtl/generated board/registers.py
+	$(BIN)/python rtl/benches/run.py tiny quad
+	$(BIN)/python rtl/formal/prove.py
+
+docs: $(VENV)/.installed $(VENV)/.docs
+	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
 # Without Python, so that the sanitizers see our own code alone.
 sanitize: $(addprefix build/sanitize/voxelize-,address-undefined thread)
@@ -58,6 +70,10 @@ $(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group dev
+	@touch $@
+
+$(VENV)/.hardware $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml
+	@$(PIP) install --group $*
 	@touch $@
 
 $(VENV)/.ready:

@@ -13,8 +13,9 @@ from pathlib import Path
 from systemrdl import RDLCompiler
 from systemrdl.node import MemNode, RegNode
 
-RTL = Path(__file__).parent
+RTL = Path(__file__).resolve().parent
 SOURCE = RTL / "registers.rdl"
+BOARD = RTL.parent / "board"
 GENERATED = RTL / "generated"
 
 
@@ -34,7 +35,7 @@ def main() -> None:
     compiler.compile_file(str(SOURCE))
     top = compiler.elaborate().top
     python = [
-        '"""Made of rtl/registers.rdl: name, byte address, fields as (lowest bit, width)."""',
+        '"""Registers of the ray tracer, made of rtl/registers.rdl: name, byte address, fields as (low, width)."""',
         "",
         "REGISTERS = {",
     ]
@@ -44,8 +45,9 @@ def main() -> None:
         description = " ".join((node.get_property("desc") or "").split())
         if isinstance(node, RegNode):
             fields = list(node.fields())
-            places = ", ".join(f'"{field.inst_name}": ({field.low}, {field.width})' for field in fields)
-            python.append(f'    "{name}": (0x{node.absolute_address:03X}, {{{places}}}),')
+            python += [f'    "{name}": (', f"        0x{node.absolute_address:03X},", "        {"]
+            python += [f'            "{field.inst_name}": ({field.low}, {field.width}),' for field in fields]
+            python += ["        },", "    ),"]
             manual += [f"## 0x{node.absolute_address:03X} {name}", "", description, ""]
             manual += ["| bits | field | access | reset | |", "|---|---|---|---|---|"]
             for field in fields:
@@ -61,7 +63,9 @@ def main() -> None:
             manual += [f"## 0x{node.absolute_address:03X} {name}, {node.get_property('mementries')} words", ""]
             manual += [description, ""]
     python += ["}", f"MATERIALS = 0x{top.find_by_path('materials').absolute_address:03X}", ""]
-    (GENERATED / "voxrt_registers.py").write_text("\n".join(python))
+    # The board's room installs alone, so it holds a copy of its own.
+    for place in (GENERATED / "voxrt_registers.py", BOARD / "registers.py"):
+        place.write_text("\n".join(python))
     (GENERATED / "registers.md").write_text("\n".join(manual))
 
 

@@ -1,13 +1,38 @@
-"""Made of rtl/registers.rdl: byte address and fields (lowest bit, width) by name."""
+"""Registers of the ray tracer, made of rtl/registers.rdl: name, byte address, fields as (low, width)."""
 
 REGISTERS = {
-    "identity": (0x000, {"value": (0, 32)}),
-    "version": (0x004, {"minor": (0, 8), "major": (8, 8)}),
+    "identity": (
+        0x000,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "version": (
+        0x004,
+        {
+            "minor": (0, 8),
+            "major": (8, 8),
+        },
+    ),
     "configuration": (
         0x008,
-        {"lanes": (0, 8), "max_depth": (8, 5), "position_bits": (16, 6), "block_bits": (24, 5), "banked": (31, 1)},
+        {
+            "lanes": (0, 8),
+            "max_depth": (8, 5),
+            "position_bits": (16, 6),
+            "block_bits": (24, 5),
+            "banked": (31, 1),
+        },
     ),
-    "control": (0x00C, {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1)}),
+    "control": (
+        0x00C,
+        {
+            "start": (0, 1),
+            "continuous": (1, 1),
+            "hold": (2, 1),
+            "soft_reset": (3, 1),
+        },
+    ),
     "status": (
         0x010,
         {
@@ -18,24 +43,120 @@ REGISTERS = {
             "step_limit": (10, 1),
         },
     ),
-    "size": (0x014, {"width": (0, 12), "height": (16, 12)}),
-    "depth": (0x018, {"depth": (0, 5)}),
-    "position[0]": (0x020, {"value": (0, 32)}),
-    "position[1]": (0x024, {"value": (0, 32)}),
-    "position[2]": (0x028, {"value": (0, 32)}),
-    "look[0]": (0x030, {"value": (0, 16)}),
-    "look[1]": (0x034, {"value": (0, 16)}),
-    "look[2]": (0x038, {"value": (0, 16)}),
-    "right[0]": (0x040, {"value": (0, 16)}),
-    "right[1]": (0x044, {"value": (0, 16)}),
-    "right[2]": (0x048, {"value": (0, 16)}),
-    "up[0]": (0x050, {"value": (0, 16)}),
-    "up[1]": (0x054, {"value": (0, 16)}),
-    "up[2]": (0x058, {"value": (0, 16)}),
-    "cycles": (0x060, {"value": (0, 32)}),
-    "rays": (0x064, {"value": (0, 32)}),
-    "words_read": (0x068, {"value": (0, 32)}),
-    "hits": (0x06C, {"value": (0, 32)}),
-    "stalls": (0x070, {"value": (0, 32)}),
+    "size": (
+        0x014,
+        {
+            "width": (0, 12),
+            "height": (16, 12),
+        },
+    ),
+    "depth": (
+        0x018,
+        {
+            "depth": (0, 5),
+        },
+    ),
+    "position[0]": (
+        0x020,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "position[1]": (
+        0x024,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "position[2]": (
+        0x028,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "look[0]": (
+        0x030,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "look[1]": (
+        0x034,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "look[2]": (
+        0x038,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "right[0]": (
+        0x040,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "right[1]": (
+        0x044,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "right[2]": (
+        0x048,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "up[0]": (
+        0x050,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "up[1]": (
+        0x054,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "up[2]": (
+        0x058,
+        {
+            "value": (0, 16),
+        },
+    ),
+    "cycles": (
+        0x060,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "rays": (
+        0x064,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "words_read": (
+        0x068,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "hits": (
+        0x06C,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "stalls": (
+        0x070,
+        {
+            "value": (0, 32),
+        },
+    ),
 }
 MATERIALS = 0x400

@@ -41,18 +41,10 @@ public:
     /// Columns whose winding number is not zero.
     uint64_t inside() const { return inside_; }
 
-    /// Columns whose winding number is not `value`.
-    uint64_t differs(int value) const {
-        uint64_t columns = 0;
-        for (int i = 0; i < kPlanes; ++i)
-            columns |= value >> i & 1 ? ~planes_[i] : planes_[i];
-        return columns;
-    }
-
     /// The winding number of one column.
     int at(int bit) const {
         uint32_t value = 0;
-        for (int i = 0; i < kPlanes; ++i)
+        for (int i = 0; i < used_; ++i)
             value |= uint32_t(planes_[i] >> bit & 1) << i;
         return static_cast<int>(value);
     }

@@ -8,9 +8,11 @@
 namespace voxrt {
 namespace {
 
-constexpr size_t kMostCaps = 1 << 18;
 constexpr uint32_t kLeafCaps = 4;
-constexpr double kFar = 2; // radii at which a node is a dipole, as Barill et al. chose
+constexpr double kFar = 4; // radii at which a node is a dipole; Barill et al. chose 2
+constexpr double kShortWire =
+    8; // radii at which pieces of rim are one short wire; nearer, its error would decide nothing
+constexpr double kPerTurn = 1 / (4 * std::numbers::pi);
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -62,26 +64,6 @@ void add_solid_angle(AngleSum& sum, const HoleWinding::Cap& cap, const Point& q)
     sum.add(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb, cap.times);
 }
 
-/// Cuts caps at their longest edges' middles until the edges are short.
-std::vector<HoleWinding::Cap> cut(std::vector<HoleWinding::Cap> caps, double longest_edge) {
-    for (size_t i = 0; i < caps.size() && caps.size() < kMostCaps;) {
-        auto& [a, b, c] = caps[i].corners;
-        const double lengths[3] = {length(minus(b, a)), length(minus(c, b)), length(minus(a, c))};
-        const int longest = int(std::max_element(lengths, lengths + 3) - lengths);
-        if (!(lengths[longest] > longest_edge)) {
-            ++i;
-            continue;
-        }
-        HoleWinding::Cap half = caps[i];
-        const int next = (longest + 1) % 3;
-        const Point m = middle(half.corners[longest], half.corners[next]);
-        half.corners[longest] = m;
-        caps[i].corners[next] = m;
-        caps.push_back(half);
-    }
-    return caps;
-}
-
 } // namespace
 
 HoleRim::HoleRim(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
@@ -92,15 +74,19 @@ HoleRim::HoleRim(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 int32_t HoleRim::build(uint32_t first, uint32_t last) {
     Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     Node node;
+    node.piece = first;
     for (uint32_t i = first; i < last; ++i) {
-        const Point& at = pieces_[i].middle;
+        const auto& [from, to, times] = pieces_[i];
+        const Point at = middle(from, to), way = minus(to, from);
         low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
         high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
-        node.length += pieces_[i].length;
+        node.length += std::abs(times) * length(way);
+        node.along = {node.along.x + times * way.x, node.along.y + times * way.y, node.along.z + times * way.z};
     }
     node.middle = middle(low, high);
     for (uint32_t i = first; i < last; ++i)
-        node.radius = std::max(node.radius, length(minus(pieces_[i].middle, node.middle)) + pieces_[i].radius);
+        for (const Point& end : {pieces_[i].from, pieces_[i].to})
+            node.radius = std::max(node.radius, length(minus(end, node.middle)));
     const auto index = int32_t(nodes_.size());
     nodes_.push_back(node);
     if (last - first > 1) {
@@ -109,7 +95,7 @@ int32_t HoleRim::build(uint32_t first, uint32_t last) {
         const uint32_t half = first + (last - first) / 2;
         std::nth_element(pieces_.begin() + first, pieces_.begin() + half, pieces_.begin() + last,
                          [axis](const Piece& a, const Piece& b) {
-                             const Point &p = a.middle, &q = b.middle;
+                             const Point p = middle(a.from, a.to), q = middle(b.from, b.to);
                              return axis == 0 ? p.x < q.x : axis == 1 ? p.y < q.y : p.z < q.z;
                          });
         const int32_t left = build(first, half), right = build(half, last);
@@ -119,41 +105,52 @@ int32_t HoleRim::build(uint32_t first, uint32_t last) {
     return index;
 }
 
-double HoleRim::steepness(const Point& q, double reach) const {
-    double total = 0;
+HoleRim::Slope HoleRim::slope(const Point& q, double reach) const {
+    Slope slope;
+    auto add = [&slope](const Point& field, double scale) {
+        slope.gradient = {slope.gradient.x + scale * field.x, slope.gradient.y + scale * field.y,
+                          slope.gradient.z + scale * field.z};
+    };
     int32_t stack[64];
     int depth = 0;
     if (!nodes_.empty())
         stack[depth++] = 0;
     while (depth > 0) {
         const Node& node = nodes_[stack[--depth]];
-        const double nearest = length(minus(node.middle, q)) - node.radius - reach;
-        if (node.left < 0 && nearest <= 0)
-            return std::numeric_limits<double>::infinity();
-        if (node.left < 0 || nearest > node.radius) {
-            total += node.length / (nearest * nearest);
-        } else {
+        const Point d = minus(node.middle, q);
+        const double distance = length(d), nearest = distance - node.radius - reach;
+        // The field of a short wire, along x d / d^3, changes by at most 2 length / d^3 a way.
+        if (nearest > kShortWire * node.radius) {
+            add(cross(d, node.along), kPerTurn / (distance * distance * distance));
+            slope.error += kPerTurn * node.length * reach * (2 * node.radius + reach) / (nearest * nearest * nearest);
+        } else if (node.left >= 0) {
             stack[depth++] = node.left;
             stack[depth++] = node.right;
+        } else {
+            const Piece& piece = pieces_[node.piece];
+            const Point a = minus(piece.from, q), b = minus(piece.to, q), way = minus(b, a);
+            const double square = dot(way, way);
+            if (square == 0)
+                continue;
+            const double t = std::clamp(-dot(a, way) / square, 0.0, 1.0);
+            const double gap = length({a.x + t * way.x, a.y + t * way.y, a.z + t * way.z}) - reach;
+            if (gap <= 0)
+                return {{0, 0, 0}, std::numeric_limits<double>::infinity()};
+            const double la = length(a), lb = length(b);
+            add(cross(a, b), kPerTurn * piece.times * (la + lb) / (la * lb * (la * lb + dot(a, b))));
+            // The change above, summed along the piece or, where that is less, along the whole line.
+            slope.error +=
+                kPerTurn * std::abs(piece.times) * reach * reach * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
         }
     }
-    return total;
+    return slope;
 }
 
-HoleWinding::HoleWinding(std::vector<Cap> caps, double longest_edge) {
+HoleWinding::HoleWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
     std::vector<HoleRim::Piece> pieces;
-    for (const Cap& cap : caps) {
-        const Point along = minus(cap.corners[1], cap.corners[0]);
-        const double whole = length(along);
-        const double parts = std::clamp(std::ceil(whole / longest_edge), 1.0, 4096.0);
-        for (double i = 0.5; i < parts; ++i)
-            pieces.push_back({{cap.corners[0].x + along.x * i / parts, cap.corners[0].y + along.y * i / parts,
-                               cap.corners[0].z + along.z * i / parts},
-                              std::abs(cap.times) * whole / parts,
-                              whole / parts / 2});
-    }
+    for (const Cap& cap : caps_)
+        pieces.push_back({cap.corners[0], cap.corners[1], cap.times});
     rim_ = HoleRim(std::move(pieces));
-    caps_ = cut(std::move(caps), longest_edge);
     if (!caps_.empty())
         build(0, uint32_t(caps_.size()));
 }
@@ -199,6 +196,13 @@ int32_t HoleWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
+double HoleWinding::exactly_at(const Point& q) const {
+    AngleSum sum;
+    for (const Cap& cap : caps_)
+        add_solid_angle(sum, cap, q);
+    return 2 * sum.radians() * kPerTurn;
+}
+
 double HoleWinding::at(const Point& q) const {
     double total = 0;
     AngleSum near;
@@ -220,43 +224,7 @@ double HoleWinding::at(const Point& q) const {
                 add_solid_angle(near, caps_[i], q);
         }
     }
-    return (total + 2 * near.radians()) / (4 * std::numbers::pi);
-}
-
-/// Whether a cap may come within `reach` of q.
-bool HoleWinding::near_cap(const Point& q, double reach) const {
-    int32_t stack[64];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const Node& node = nodes_[stack[--depth]];
-        if (length(minus(node.centre, q)) > node.radius + reach)
-            continue;
-        if (node.left >= 0) {
-            stack[depth++] = node.left;
-            stack[depth++] = node.right;
-            continue;
-        }
-        for (uint32_t i = node.first; i < node.last; ++i) {
-            const auto& [a, b, c] = caps_[i].corners;
-            const Point n = cross(minus(b, a), minus(c, a)), at = centre(caps_[i]);
-            const double radius = std::max({length(minus(a, at)), length(minus(b, at)), length(minus(c, at))});
-            if (length(minus(at, q)) <= radius + reach && std::abs(dot(n, minus(q, a))) <= reach * length(n))
-                return true;
-        }
-    }
-    return false;
-}
-
-int HoleWinding::settled(const Point& q, double reach) const {
-    if (nodes_.empty())
-        return 0;
-    const double change = rim_.steepness(q, reach) * reach / (4 * std::numbers::pi) + 0.05; // and the dipoles' error
-    if (!(change < 0.5) || near_cap(q, reach))
-        return kUnsettled;
-    const double value = at(q);
-    const double nearest = std::floor(value + 0.5);
-    return std::abs(value - nearest) + change < 0.5 ? int(nearest) : kUnsettled;
+    return (total + 2 * near.radians()) * kPerTurn;
 }
 
 } // namespace voxrt

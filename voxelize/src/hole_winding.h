@@ -19,26 +19,31 @@ struct Point {
     bool operator==(const Point&) const = default;
 };
 
-/// The edges of holes. How fast the solid angle of a surface changes depends on its rim alone, like the field of a
-/// current in a wire (Biot and Savart): by at most length / distance^2 for each piece.
+/// The edges of holes. How the solid angle of a surface changes depends on its rim alone, like the field of a current
+/// in a wire (Biot and Savart).
 class HoleRim {
 public:
     struct Piece {
-        Point middle;
-        double length; // times multiplicity
-        double radius;
+        Point from, to;
+        int times;
+    };
+    /// Within some reach of a point the solid angle over 4 pi differs from a linear one by `error` at most.
+    struct Slope {
+        Point gradient{0, 0, 0};
+        double error = 0;
     };
 
     HoleRim() = default;
     explicit HoleRim(std::vector<Piece> pieces);
 
-    /// Bounds the change of the solid angle a length, within `reach` of q; infinite where the rim is as near.
-    double steepness(const Point& q, double reach) const;
+    /// The error is infinite where the rim is within `reach` of q.
+    Slope slope(const Point& q, double reach) const;
 
 private:
     struct Node {
-        Point middle{};
+        Point middle{}, along{}; // the sum of pieces as vectors
         double length = 0, radius = 0;
+        uint32_t piece = 0; // of a leaf
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
@@ -56,18 +61,18 @@ public:
     };
 
     HoleWinding() = default;
-    /// Caps with edges above `longest_edge` are cut. The first edge of each is on the rim of its hole.
-    HoleWinding(std::vector<Cap> caps, double longest_edge);
+    /// The first edge of each cap is on the rim of its hole.
+    explicit HoleWinding(std::vector<Cap> caps);
 
     bool empty() const { return caps_.empty(); }
 
-    /// The caps' solid angle over 4 pi, seen from q.
+    /// The caps' solid angle over 4 pi, seen from q, by the sum of all caps or with far ones taken together.
+    double exactly_at(const Point& q) const;
     double at(const Point& q) const;
+    static constexpr double kRoundingError = 1e-6, kDipoleError = 0.01;
 
-    /// The integer k such that at() lies strictly between k - 1/2 and k + 1/2 within `reach` of q, or kUnsettled.
-    int settled(const Point& q, double reach) const;
-
-    static constexpr int kUnsettled = 1 << 20;
+    /// How the same changes within `reach` of q, where no cap lies between; across one it jumps by a whole number.
+    HoleRim::Slope slope(const Point& q, double reach) const { return rim_.slope(q, reach); }
 
 private:
     struct Node {
@@ -78,7 +83,6 @@ private:
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
-    bool near_cap(const Point& q, double reach) const;
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -91,7 +90,7 @@ double highest_winding(const std::vector<HoleWinding::Cap>& caps) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         }
-    const HoleWinding winding(caps, std::numeric_limits<double>::infinity());
+    const HoleWinding winding(caps);
     double highest = 0;
     for (int i = 0; i < kProbes * kProbes * kProbes; ++i) {
         const double u = (i % kProbes + 0.5) / kProbes, v = (i / kProbes % kProbes + 0.5) / kProbes;

@@ -12,8 +12,6 @@
 
 namespace voxrt {
 
-inline constexpr double kLongestCap = 16; // voxels; longer caps are cut, so that bounds stay tight near them
-
 /// The edges that a surface walks oftener one way than the other, its sheets left out.
 struct Boundary {
     struct Edge {
@@ -67,7 +65,7 @@ OpenSurface::OpenSurface(std::shared_ptr<const Boundary> found, At&& at) : bound
             caps.push_back(cap);
         seen.push_back({{in_voxels(cap[0]), in_voxels(cap[1]), in_voxels(cap[2])}, edge.times});
     }
-    holes = HoleWinding(std::move(seen), kLongestCap);
+    holes = HoleWinding(std::move(seen));
 }
 
 } // namespace voxrt

@@ -3,12 +3,12 @@
 // Each brick column is swept upwards once. Between shell bricks the winding numbers stand still, so a run of bricks
 // there is claimed or skipped as a whole.
 //
-// Where the surface has holes, the sweep knows the winding number of the surface with its holes capped, and what the
-// caps add is taken off: a whole number for most of space, found once for a large cube or a brick; voxel by voxel only
-// in bricks on a cap or where the two halves of a hole's doubt meet. A voxel is inside when what is left is beyond 1/2.
+// Where the surface has holes, the sweep knows the winding number of the surface with its holes capped, and OpenInside
+// takes off what the caps add.
 #pragma once
 
 #include "column_winding.h"
+#include "open_inside.h"
 #include "survey.h"
 #include "tile_voxels.h"
 
@@ -59,12 +59,12 @@ public:
                            const VoxelBox& box, const Window& window) {
         Claim result;
         sort_spills(layer);
-        settled_.assign(size_t(kTileColumns) * layer.height(), 0);
-        const int low = std::max(box.low[2], 0) >> kBrickBits, high = std::min(box.high[2], window.top) >> kBrickBits;
-        for (int cube = low / kTileBricks; cube <= high / kTileBricks; ++cube)
-            settle(layer, holes, window, 0, 0, cube * kTileBricks, kTileBricks);
+        inside_.start(holes, box, window);
         for (int column = 0; column < kTileColumns; ++column)
-            sweep_open(tile, layer, column, interior, holes, box, window, result);
+            number_open(layer, column);
+        inside_.settle();
+        for (int column = 0; column < kTileColumns; ++column)
+            sweep_open(tile, layer, column, interior, result);
         return result;
     }
 
@@ -134,67 +134,49 @@ private:
         }
     }
 
-    /// Finds, for the bricks of a cube of `bricks` a side, the whole number that the caps add there.
-    void settle(const ObjectLayer& layer, const HoleWinding& holes, const Window& w, int bx, int by, int k,
-                int bricks) {
-        if (k >= layer.height())
-            return;
-        const double half = bricks * kBrickSide / 2.0;
-        const int value =
-            holes.settled({w.x0 + bx * kBrickSide + half, w.y0 + by * kBrickSide + half, k * kBrickSide + half},
-                          half * 1.7320508075688772);
-        if (value == HoleWinding::kUnsettled && bricks > 1) {
-            const int step = bricks / 2;
-            for (int i = 0; i < 8; ++i)
-                settle(layer, holes, w, bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step);
-            return;
+    /// Tells the winding numbers of the closed surface where the settling of large cubes asks for them.
+    void number_open(ObjectLayer& layer, int column) {
+        ColumnWinding winding;
+        OpenInside::Brick last;
+        for (int k = 0; k < layer.height(); ++k) {
+            const ShellBrick* brick = layer.find(column, k);
+            if (brick != nullptr) {
+                const Crossings crossings(*brick);
+                for (int z = 0; z < kBrickSide; ++z) {
+                    advance(winding, crossings, layer.index_of(*brick), brick->has_spill, z);
+                    if (z == 0)
+                        last.corner = winding.at(0);
+                    if (z == kBrickSide / 2)
+                        last.middle = winding.at(column_bit(kBrickSide / 2, kBrickSide / 2));
+                }
+                last.shell = brick->material != 0 || brick->cells != kNone;
+            }
+            inside_.brick(column, k) = last;
+            if (brick != nullptr)
+                last = {winding.at(0), winding.at(column_bit(kBrickSide / 2, kBrickSide / 2)), false};
         }
-        for (int y = by; y < by + bricks; ++y)
-            for (int x = bx; x < bx + bricks; ++x)
-                for (int z = k; z < std::min(k + bricks, layer.height()); ++z)
-                    settled_[size_t(y * kTileBricks + x) * layer.height() + z] = value;
     }
 
-    void sweep_open(TileVoxels& tile, ObjectLayer& layer, int column, uint8_t interior, const HoleWinding& holes,
-                    const VoxelBox& box, const Window& w, Claim& result) {
+    void sweep_open(TileVoxels& tile, ObjectLayer& layer, int column, uint8_t interior, Claim& result) {
         static const ShellBrick nothing;
         ColumnWinding winding;
-        const int x0 = w.x0 + column % kTileBricks * kBrickSide, y0 = w.y0 + column / kTileBricks * kBrickSide;
-        uint64_t columns = 0; // inside the box and the grid
-        for (int bit = 0; bit < 64; ++bit) {
-            const int x = x0 + column_x(bit), y = y0 + column_y(bit);
-            if (x >= box.low[0] && x <= std::min(box.high[0], w.x1) && y >= box.low[1] &&
-                y <= std::min(box.high[1], w.y1))
-                columns |= uint64_t{1} << bit;
-        }
         for (int k = 0; k < layer.height(); ++k) {
             const ShellBrick* found = layer.find(column, k);
             const ShellBrick& brick = found != nullptr ? *found : nothing;
-            const int value = settled_[size_t(column) * layer.height() + k];
-            if (found == nullptr && value == 0 && winding.inside() == 0)
+            const OpenInside::Verdict verdict = inside_.verdict(column, k);
+            if (found == nullptr && verdict == OpenInside::Verdict::outside)
                 continue;
-            Slices within{};
             const Slices shell = slices_of(brick.shell);
             const Crossings crossings(brick);
+            if (verdict == OpenInside::Verdict::mixed)
+                numbers_.resize(kBrickVoxels);
             for (int z = 0; z < kBrickSide; ++z) {
                 if (found != nullptr)
                     advance(winding, crossings, layer.index_of(brick), brick.has_spill, z);
-                const int at = k * kBrickSide + z;
-                if (at < box.low[2] || at > std::min(box.high[2], w.top))
-                    continue;
-                if (value != HoleWinding::kUnsettled) {
-                    within[z] = winding.differs(value) & columns;
-                    continue;
-                }
-                for (uint64_t left = columns & ~shell[z]; left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    constexpr double sample = 0.5 + 1.0 / 8192;
-                    const double seen =
-                        holes.at({x0 + column_x(bit) + sample, y0 + column_y(bit) + sample, at + sample});
-                    if (std::abs(winding.at(bit) - seen) > 0.5 + 1e-6)
-                        within[z] |= uint64_t{1} << bit;
-                }
+                for (int bit = 0; verdict == OpenInside::Verdict::mixed && bit < 64; ++bit)
+                    numbers_[z * 64 + bit] = winding.at(bit);
             }
+            const Slices within = inside_.inside(column, k, shell, numbers_);
             if (is_full(within) && is_empty(shell))
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
             else
@@ -235,7 +217,8 @@ private:
     }
 
     std::vector<Spill> spills_;
-    std::vector<int> settled_; // by brick place: what the caps add, or kUnsettled
+    OpenInside inside_;
+    std::vector<int> numbers_; // of the closed surface in a brick, by slice and bit
 };
 
 } // namespace voxrt
