@@ -129,7 +129,14 @@ def _draw(
     plotter.add_light(pv.Light(position=_TOWARDS_SUN, light_type="scene light", intensity=0.75))
     plotter.add_light(pv.Light(light_type="headlight", intensity=0.2))
     if grid.n_cells:
-        look = {"show_edges": True, "edge_color": "black", "edge_opacity": 0.45, "line_width": 1, "ambient": 0.25}
+        look = {
+            "show_edges": True,
+            "edge_color": "black",
+            "edge_opacity": 0.45,
+            "line_width": 1,
+            "ambient": 0.25,
+            "culling": "back",
+        }
         if by == "material":
             plotter.add_mesh(grid, scalars="colour", rgb=True, **look)
         else:
