@@ -1,10 +1,14 @@
-"""Make the README's pictures: ``python examples/make_pictures.py`` renders the example scenes by the ray tracer."""
+"""Make the README's pictures: ``python examples/make_pictures.py`` renders the example scenes by the ray tracer.
+
+The picture of octants needs ``voxrt[view]``.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import voxrt
+from voxrt import octree
 
 EXAMPLES = Path(__file__).resolve().parent
 PICTURES = EXAMPLES.parent / "docs" / "pictures"
@@ -17,6 +21,9 @@ def main() -> None:
         picture = PICTURES / Path(name).with_suffix(".png")
         voxrt.build(EXAMPLES / name, preview=picture, size=size)
         print(picture)
+    octants = PICTURES / "octants.png"
+    octree.plot(voxrt.build(EXAMPLES / "courtyard.glb").rom, size=(800, 600), screenshot=octants)
+    print(octants)
 
 
 if __name__ == "__main__":

@@ -10,12 +10,15 @@ from voxrt.octree.census import Census, census
 from voxrt.octree.decode import decode
 from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
 from voxrt.octree.diff import Difference, diff
-from voxrt.octree.errors import RomError
+from voxrt.octree.errors import RomError, ViewerError
 from voxrt.octree.leaves import Leaves, leaves
+from voxrt.octree.octant import Octant, octant_at
+from voxrt.octree.octants import octants
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 from voxrt.octree.surface import SurfaceChange, surface_change
+from voxrt.octree.view import describe, picture, plot, show
 from voxrt.octree.vox import read_vox
 
 __all__ = [
@@ -27,15 +30,18 @@ __all__ = [
     "Difference",
     "Fit",
     "Leaves",
+    "Octant",
     "Octree",
     "Rom",
     "RomError",
     "SurfaceChange",
+    "ViewerError",
     "build",
     "census",
     "coarsen",
     "count_in_box",
     "decode",
+    "describe",
     "detect_dialect",
     "diff",
     "encode",
@@ -44,8 +50,13 @@ __all__ = [
     "from_points",
     "leaves",
     "material_at",
+    "octant_at",
+    "octants",
+    "picture",
+    "plot",
     "read_vox",
     "share",
+    "show",
     "solid_bounds",
     "surface_change",
     "to_dense",

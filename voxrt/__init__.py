@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, diff
+    from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
@@ -49,6 +49,7 @@ __all__ = [
     "Scene",
     "SceneWarning",
     "SimulatorError",
+    "ViewerError",
     "ViewpointError",
     "aim_camera",
     "build",
@@ -68,7 +69,7 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "diff"),
+    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),

@@ -107,7 +107,7 @@ def test_the_traceback_comes_with_debug_only(voxrt, process):
     assert finished.err.splitlines()[-1].startswith("voxrt: error: nothing.glb: no such file")
 
 
-@pytest.mark.parametrize("command", ["build", "render", "compare", "convert", "info", "diff"])
+@pytest.mark.parametrize("command", ["build", "render", "compare", "view", "convert", "info", "diff"])
 def test_help_has_an_example(voxrt, command):
     finished = voxrt(command, "--help")
     assert finished.code == 0

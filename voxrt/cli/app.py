@@ -76,6 +76,11 @@ _add_command(
     "voxrt compare courtyard.mem courtyard.glb -o likeness.png",
 )
 _add_command(
+    "view",
+    "Show the octants of a memory, or of an asset, in a window or as a picture.",
+    "voxrt view courtyard.mem --by level --screenshot octants.png",
+)
+_add_command(
     "serve",
     "Show scenes live in the browser, until interrupted.",
     "voxrt serve courtyard.mem dog.usda",
@@ -137,7 +142,7 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
             code = ExitCode.DOES_NOT_FIT
         case MemoryError():
             problem, code = "out of memory; use a smaller --depth or a larger --voxel-size", ExitCode.DOES_NOT_FIT
-        case voxrt.SimulatorError():
+        case voxrt.SimulatorError() | voxrt.ViewerError():
             code = ExitCode.SIMULATOR
         case _:
             system = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"
