@@ -1,23 +1,31 @@
-// Follows rays through the octree: a ring of eight stages that holds eight rays; every clock one of them reads one
+// Follows rays through the octree: a ring of eleven stages that holds eleven rays; every clock one of them reads one
 // octree word. A memory that takes longer than two clocks adds a stage and a ray a clock, before stage 1.
 //
-//   stage     work                                                                          state kept by slot
-//   0 fetch   the memory takes the address; far planes of the cell                          corner, size
-//   1 wait    the memory's output register                                                  size
-//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes (pointer) mirrored, dead, weight
-//   3 product distance x weight, in two parts; the pointer goes onto the stack              stack
-//   4 sum     T of three planes                                                             key
-//   5 compare leaf: T among themselves; pointer: T with the ray's key. Far planes again     corner, size, dead
-//   6 select  leaf: the smallest T is the new key, the ancestor that holds both cells;      -
-//             pointer: the child's corner
-//   7 turn    the block from the stack, the octant; or a new ray in the place of one that   all
-//             ended
+//   stage     work                                                                        state of a slot, read
+//   0 fetch   the memory takes the address                                                mirrored, dead
+//   1 wait    the memory's output register; distance to the cell's near planes            -
+//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weight
+//   3 product distance x weight, in two parts; the pointer goes onto the stack            -
+//   4 sum     T of three planes                                                           key, dead
+//   5 compare leaf: T among themselves; pointer: T with the ray's key                     corner, size
+//   6 exit    leaf: the axis that it is left by, and the corner's place on that axis      -
+//   7 add     the size to that place                                                      -
+//   8 turn    the size of the next cell; the smallest T is the new key; a new ray in the  tag
+//             place of one that ended
+//   9 corner  the next cell's corner and octant; the stack is read                        mirrored
+//   10 block  the block from the stack, or the root's                                     -
 //
 // A ray's key (T, face) is the last plane that it crossed. Corner and size (one-hot) are those of the cell read; its
 // octant is the corner's bit at size. Planes of cells at that time crossed are those with keys <= the ray's key, so
-// no two planes tie and a pointer's child is found by three compares. Leaving a leaf by one face changes the corner on
-// one axis: corner + size. The one bit that this sets is the size of the cell that follows, below the common ancestor,
-// whose block is on the stack under that size; outside the world when it is the world's own size.
+// no two planes tie and a pointer's child is found by three compares. All T that are ever compared lie within the
+// world's side of each other, so that T modulo 2**KeyBits is enough.
+//
+// The next corner is the old one with one bit set, that of the next size:
+//   pointer   size / 2, on the axes whose middle plane is behind
+//   leaf      place + size on the exit axis sets one bit and clears those below it, down to size. The bit set is the
+//             size of the cell that follows, below the common ancestor, whose block is on the stack under that size;
+//             the bits cleared are cleared on all axes. Outside the world when the bit is the world's own size.
+//   new ray   half the world, on the axes of its first octant; all other bits are cleared
 //
 // The ring never stops: rays start only when the pixel buffer has a place for them. A word that the memory did not
 // deliver (mem_ack_i low) is asked for again at the ray's next turn.
@@ -31,6 +39,7 @@ module voxrt_lane
   parameter  int unsigned MemoryClocks = 2,
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
   localparam int unsigned TimeBits     = DistanceBits + WeightBits,
+  localparam int unsigned KeyBits      = key_bits(MaxDepth),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits)
 ) (
   input  logic                           clk_i,
@@ -49,7 +58,7 @@ module voxrt_lane
   input  logic        [             2:0] ray_dead_i,
   input  logic        [             2:0] ray_octant_i,
   input  logic        [  WeightBits-1:0] ray_weight_i      [3],
-  input  logic signed [    TimeBits-1:0] ray_entry_time_i,
+  input  logic signed [     KeyBits-1:0] ray_entry_time_i,
   input  face_e                          ray_entry_face_i,
   // Octree memory: the word comes two clocks after its address, or not.
   output logic                           mem_read_o,
@@ -69,61 +78,77 @@ module voxrt_lane
   output logic                           step_limit_o
 );
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
+  localparam int unsigned Stages = 11;
   localparam int unsigned Extra = MemoryClocks - 2;
-  localparam int unsigned Slots = 8 + Extra;
+  localparam int unsigned Slots = Stages + Extra;
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
+  localparam int unsigned CellBits = DistanceBits - FractionBits;
 
-  // Which slot is in which stage.
-  logic [SlotBits-1:0] slot[8];
+  // Which slot is in which stage, and whether there is a ray in it that has not ended.
+  logic [SlotBits-1:0] slot  [Stages];
   logic [SlotBits-1:0] slot_q[Slots];
+  logic [   Slots-1:0] active_q;
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= slot_q[(s+Slots-1)%Slots];
     if (!rst_ni) for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= SlotBits'(s);
   end
 
-  always_comb for (int unsigned s = 0; s < 8; s++) slot[s] = slot_q[s+Extra];
+  always_comb for (int unsigned s = 0; s < Stages; s++) slot[s] = slot_q[s+Extra];
 
   // State by slot.
-  logic        [  WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
-  logic        [             2:0] mirrored_q[Slots];
-  logic        [             2:0] dead_q    [Slots];
-  logic        [     TagBits-1:0] tag_q     [Slots];
-  logic signed [    TimeBits-1:0] key_time_q[Slots];
-  face_e                          key_face_q[Slots];
-  logic        [    MaxDepth-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
-  logic        [    MaxDepth-1:0] size_q    [Slots];
-  logic        [   BlockBits-1:0] stack_q   [2 ** (SlotBits + LevelBits)];
+  logic        [WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
+  logic        [           2:0] mirrored_q[Slots];
+  logic        [           2:0] dead_q    [Slots];
+  logic        [   TagBits-1:0] tag_q     [Slots];
+  logic signed [   KeyBits-1:0] key_time_q[Slots];
+  face_e                        key_face_q[Slots];
+  logic        [  MaxDepth-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
+  logic        [  MaxDepth-1:0] size_q    [Slots];
 
-  // There is a ray in this stage that has not ended.
-  logic [Slots-1:0] active_q;
-
-  // 0 fetch, 1 wait: far planes.
+  // 0 fetch.
   logic [BlockBits-1:0] block0_q;
   logic [2:0]           octant0_q;
-  logic [MaxDepth:0]    far1_q   [3], far2_q   [3];
-  logic [MaxDepth-1:0]  corner1_q[3], middle2_q[3];
-  logic [MaxDepth-1:0]  size1_q, size2_q;
+  logic [MaxDepth-1:0]  corner0_q[Extra+1][3];
+  logic [MaxDepth-1:0]  size0_q  [Extra+1];
+  logic [MaxDepth-1:0]  corner1_q[3];
+  logic [MaxDepth-1:0]  size1_q;
+  logic [2:0]           mirrored1_q, dead1_q;
 
   assign mem_read_o   = active_q[0];
   assign mem_block_o  = block0_q;
   assign mem_octant_o = octant0_q;
 
   always_ff @(posedge clk_i) begin
-    corner1_q[0] <= corner_x_q[slot[0]];
-    corner1_q[1] <= corner_y_q[slot[0]];
-    corner1_q[2] <= corner_z_q[slot[0]];
-    far1_q[0]    <= {1'b0, corner_x_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    far1_q[1]    <= {1'b0, corner_y_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    far1_q[2]    <= {1'b0, corner_z_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    size1_q      <= size_q[slot[0]];
-    size2_q      <= size1_q;
-    for (int unsigned a = 0; a < 3; a++) begin
-      far2_q[a]    <= far1_q[a];
-      middle2_q[a] <= corner1_q[a] | (size1_q >> 1);
+    for (int unsigned s = 1; s <= Extra; s++) begin
+      corner0_q[s] <= corner0_q[s-1];
+      size0_q[s]   <= size0_q[s-1];
+    end
+    corner1_q   <= corner0_q[Extra];
+    size1_q     <= size0_q[Extra];
+    mirrored1_q <= mirrored_q[slot[0]];
+    dead1_q     <= dead_q[slot[0]];
+  end
+
+  // 1 wait: corner - origin. The fraction of that is the other origin's, as the two add up to whole voxels. On a dead
+  // axis the origin's fraction counts as above 0.
+  logic signed [    CellBits-1:0] near2_q    [3];
+  logic        [FractionBits-1:0] fraction2_q[3];
+  logic        [    MaxDepth-1:0] size2_q;
+
+  for (genvar a = 0; a < 3; a++) begin : gen_near
+    logic whole;
+    assign whole = origin_i[a][FractionBits-1:0] == '0 && !dead1_q[a];
+
+    always_ff @(posedge clk_i) begin
+      near2_q[a] <= CellBits'(corner1_q[a]) + CellBits'(whole)
+          + ~CellBits'((mirrored1_q[a] ? mirrored_origin_i[a] : origin_i[a]) >>> FractionBits);
+      fraction2_q[a] <= mirrored1_q[a] ? origin_i[a][FractionBits-1:0] : mirrored_origin_i[a][FractionBits-1:0];
     end
   end
+
+  always_ff @(posedge clk_i) size2_q <= size1_q;
 
   // 2 decode.
   typedef enum logic [1:0] {
@@ -147,11 +172,12 @@ module voxrt_lane
     else if (leaf && mem_word_i[8:0] == '0) action = Leave;
   end
 
-  logic signed [DistanceBits-1:0] distance3_q[3];
+  logic signed [    CellBits-1:0] cell3_q    [3];
+  logic        [FractionBits-1:0] fraction3_q[3];
   logic        [  WeightBits-1:0] weight3_q  [3];
-  action_e                        action3_q, action4_q, action5_q, action6_q;
+  action_e                        action3_q, action4_q, action5_q, action6_q, action7_q;
   logic        [   BlockBits-1:0] block3_q;
-  material_t                      material3_q, material4_q, material5_q, material6_q, material7_q;
+  material_t                      material3_q, material4_q, material5_q, material6_q, material7_q, material8_q;
   logic        [   LevelBits-1:0] child_level3_q;
   logic                           bad_pointer_q, step_limit_q;
 
@@ -164,9 +190,8 @@ module voxrt_lane
   always_ff @(posedge clk_i) begin
     action3_q <= action;
     for (int unsigned a = 0; a < 3; a++) begin
-      distance3_q[a] <= DistanceBits'({(leaf ? far2_q[a] : {1'b0, middle2_q[a]}), FractionBits'(0)}) -
-          ((mirrored_q[slot[2]][a] ? mirrored_origin_i[a] : origin_i[a]) |
-           DistanceBits'(dead_q[slot[2]][a] ? 2 ** FractionBits - 1 : 0));
+      cell3_q[a]     <= near2_q[a] + CellBits'({1'b0, leaf ? size2_q : size2_q >> 1});
+      fraction3_q[a] <= fraction2_q[a];
     end
     weight3_q[0]   <= weight_x_q[slot[2]];
     weight3_q[1]   <= weight_y_q[slot[2]];
@@ -182,161 +207,205 @@ module voxrt_lane
   assign step_limit_o  = step_limit_q;
 
   // 3 product, 4 sum.
-  logic signed [TimeBits-1:0] time5[3];
+  logic signed [TimeBits-1:0] exact_time5[3];
+  logic signed [KeyBits-1:0]  time5      [3];
 
   for (genvar a = 0; a < 3; a++) begin : gen_time
     voxrt_plane_time #(
       .DistanceBits(DistanceBits)
     ) u_time (
       .clk_i,
-      .distance_i(distance3_q[a]),
+      .distance_i({cell3_q[a], fraction3_q[a]}),
       .weight_i  (weight3_q[a]),
-      .time_o    (time5[a])
+      .time_o    (exact_time5[a])
     );
+
+    assign time5[a] = KeyBits'(exact_time5[a]);
   end
 
-  logic signed [TimeBits-1:0] key_time5_q;
-  face_e                      key_face5_q;
+  logic signed [KeyBits-1:0] key_time5_q;
+  face_e                     key_face5_q;
+  logic        [        2:0] dead5_q;
 
   always_ff @(posedge clk_i) begin
-    if (action3_q == Descend) stack_q[{slot[3], child_level3_q}] <= block3_q;
     action4_q   <= action3_q;
     action5_q   <= action4_q;
     material4_q <= material3_q;
     material5_q <= material4_q;
     key_time5_q <= key_time_q[slot[4]];
     key_face5_q <= key_face_q[slot[4]];
+    dead5_q     <= dead_q[slot[4]];
   end
 
-  // 5 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key.
+  // 5 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key, on a dead
+  // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
+  logic        [ KeyBits-1:0] other    [3];
+  logic        [   KeyBits:0] difference[3];
+  logic        [         2:0] first;  // Of equals.
   logic        [         2:0] before6_q;
-  logic signed [TimeBits-1:0] time6_q[3], key_time6_q;
-  face_e                      key_face6_q;
-  logic        [  MaxDepth:0] far6_q   [3];
+  logic signed [ KeyBits-1:0] time6_q  [3];
+  face_e                      key_face6_q, key_face7_q;
   logic        [MaxDepth-1:0] corner6_q[3], size6_q;
   logic        [         2:0] dead6_q;
-  logic        [  MaxDepth:0] far5     [3];
 
-  assign far5[0] = {1'b0, corner_x_q[slot[5]]} + {1'b0, size_q[slot[5]]};
-  assign far5[1] = {1'b0, corner_y_q[slot[5]]} + {1'b0, size_q[slot[5]]};
-  assign far5[2] = {1'b0, corner_z_q[slot[5]]} + {1'b0, size_q[slot[5]]};
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      other[a]      = action5_q == Leave ? time5[(a+1)%3] : key_time5_q;
+      first[a]      = action5_q == Leave ? a != 2 : 2'(a) <= key_face5_q;
+      difference[a] = {time5[a], 1'b0} - {other[a], first[a]};
+    end
+  end
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      // Equal times go by axis: x is before y, y before z, and x before z.
-      before6_q[a] <= $signed({time5[a], 1'b0}) < (action5_q == Leave ?
-          $signed({time5[(a+1)%3], a != 2}) : $signed({key_time5_q, 2'(a) <= key_face5_q}));
-      if (dead_q[slot[5]][a] && action5_q != Leave) before6_q[a] <= time5[a] < 0;
+      before6_q[a] <= difference[a][KeyBits];
+      if (dead5_q[a] && action5_q != Leave) before6_q[a] <= time5[a][KeyBits-1];
     end
+  end
+
+  always_ff @(posedge clk_i) begin
     time6_q      <= time5;
-    key_time6_q  <= key_time5_q;
     key_face6_q  <= key_face5_q;
-    far6_q       <= far5;
     corner6_q[0] <= corner_x_q[slot[5]];
     corner6_q[1] <= corner_y_q[slot[5]];
     corner6_q[2] <= corner_z_q[slot[5]];
     size6_q      <= size_q[slot[5]];
-    dead6_q      <= dead_q[slot[5]];
+    dead6_q      <= dead5_q;
     action6_q    <= action5_q;
     material6_q  <= material5_q;
   end
 
-  // 6 select.
-  logic                       x_before_y, y_before_z, x_before_z;
-  logic        [         2:0] exit;  // One-hot.
-  logic signed [TimeBits-1:0] key_time7_q;
-  face_e                      key_face7_q;
-  logic        [MaxDepth-1:0] corner7_q[3], size7_q;
-  logic                       ended7_q;
-  logic        [  MaxDepth:0] next_size;  // One-hot.
-  logic        [MaxDepth-1:0] kept;
+  // 6 exit.
+  logic                      x_before_y, y_before_z, x_before_z;
+  logic       [         2:0] exit;  // One-hot.
+  face_e                     exit_face, exit_face7_q, exit_face8_q;
+  logic signed [KeyBits-1:0] time7_q  [3], time8_q[3];
+  logic       [MaxDepth-1:0] corner7_q[3], corner8_q[3];
+  logic       [MaxDepth-1:0] size7_q, place7_q;
+  logic       [         2:0] set7_q, set8_q;  // Axes on which the corner gets the next size's bit.
+  logic                      dead7_q;
 
   assign x_before_y = !dead6_q[0] && (dead6_q[1] || before6_q[0]);
   assign y_before_z = !dead6_q[1] && (dead6_q[2] || before6_q[1]);
   assign x_before_z = !dead6_q[0] && (dead6_q[2] || !before6_q[2]);
   assign exit       = {!x_before_z && !y_before_z, !x_before_y && y_before_z, x_before_y && x_before_z};
-
-  always_comb begin
-    next_size = '0;
-    for (int unsigned a = 0; a < 3; a++) if (exit[a]) next_size |= far6_q[a] & ~{1'b0, corner6_q[a]};
-    kept = ~(next_size[MaxDepth-1:0] - 1'b1);
-  end
+  assign exit_face  = exit[0] ? FaceX : exit[1] ? FaceY : FaceZ;
 
   always_ff @(posedge clk_i) begin
-    key_time7_q <= key_time6_q;
-    key_face7_q <= key_face6_q;
-    corner7_q   <= corner6_q;
-    size7_q     <= size6_q;
-    ended7_q    <= action6_q == Finish;
-    material7_q <= material6_q;
-    if (action6_q == Descend) begin
-      for (int unsigned a = 0; a < 3; a++) if (before6_q[a]) corner7_q[a] <= corner6_q[a] | (size6_q >> 1);
-      size7_q <= size6_q >> 1;
+    // Registers keep what they have where no ray is.
+    if (active_q[6+Extra]) begin
+      time7_q   <= time6_q;
+      corner7_q <= corner6_q;
     end
-    if (action6_q == Leave) begin
-      key_time7_q <= time6_q[2];
-      key_face7_q <= FaceZ;
-      if (exit[0]) begin
-        key_time7_q <= time6_q[0];
-        key_face7_q <= FaceX;
-      end
-      if (exit[1]) begin
-        key_time7_q <= time6_q[1];
-        key_face7_q <= FaceY;
-      end
-      for (int unsigned a = 0; a < 3; a++) begin
-        corner7_q[a] <= (exit[a] ? far6_q[a][MaxDepth-1:0] : corner6_q[a]) & kept;
-      end
-      size7_q  <= next_size[MaxDepth-1:0];
-      ended7_q <= (next_size & world_i) != '0 || dead6_q == '1;
-    end
+    action7_q    <= action6_q;
+    material7_q  <= material6_q;
+    key_face7_q  <= key_face6_q;
+    exit_face7_q <= exit_face;
+    size7_q      <= size6_q;
+    place7_q     <= corner6_q[exit_face];
+    dead7_q      <= dead6_q == '1;
+    set7_q       <= action6_q == Leave ? exit : action6_q == Descend ? before6_q : '0;
   end
 
-  // 7 turn.
-  logic                 ends, starts, resolves;
-  logic [MaxDepth-1:0]  top_size, size7;
-  logic [BlockBits-1:0] block7;
-  logic [2:0]           octant7;
+  // 7 add.
+  logic [MaxDepth:0]   sum8_q;
+  logic [MaxDepth-1:0] place8_q, inner_size8_q;
+  logic                leaves8_q, finished8_q;
+  face_e               face8_q;
 
-  assign ends     = active_q[7+Extra] && ended7_q;
-  assign starts   = ray_valid_i && !ray_resolved_i && take_ready_i && (ends || !active_q[7+Extra]);
+  always_ff @(posedge clk_i) begin
+    if (active_q[7+Extra]) begin
+      time8_q   <= time7_q;
+      corner8_q <= corner7_q;
+    end
+    sum8_q        <= {1'b0, place7_q} + (action7_q == Leave ? {1'b0, size7_q} : '0);
+    place8_q      <= place7_q;
+    inner_size8_q <= action7_q == Leave ? '0 : action7_q == Descend ? size7_q >> 1 : size7_q;
+    set8_q        <= set7_q;
+    exit_face8_q  <= exit_face7_q;
+    leaves8_q     <= action7_q == Leave;
+    finished8_q   <= action7_q == Finish || (action7_q == Leave && dead7_q);
+    material8_q   <= material7_q;
+    face8_q       <= material7_q == '0 ? FaceNone : key_face7_q;
+  end
+
+  // 8 turn.
+  logic                      ends, starts, resolves;
+  logic       [MaxDepth-1:0] corner9_q[3], size9_q, cleared9_q;
+  logic       [         2:0] set9_q;
+  logic signed [KeyBits-1:0] keys     [4];
+  face_e                     key_face;
+
+  assign ends     = active_q[8+Extra] && (finished8_q || (sum8_q & world_i) != '0);
+  assign starts   = ray_valid_i && !ray_resolved_i && take_ready_i && (ends || !active_q[8+Extra]);
   assign resolves = ray_valid_i && ray_resolved_i && take_ready_i && !ends;
-  assign top_size = world_i[MaxDepth:1];
 
   assign ray_ready_o = starts || resolves;
   assign take_o      = starts || resolves;
 
   assign fill_o       = ends || resolves;
-  assign fill_tag_o   = ends ? tag_q[slot[7]] : take_tag_i;
-  assign fill_pixel_o = !ends ? ray_pixel_i :
-      material7_q == '0 ? '{material: '0, face: FaceNone} : '{material: material7_q, face: key_face7_q};
+  assign fill_tag_o   = ends ? tag_q[slot[8]] : take_tag_i;
+  assign fill_pixel_o = ends ? '{material: material8_q, face: face8_q} : ray_pixel_i;
 
-  assign size7  = starts ? top_size : size7_q;
-  assign block7 = size7 == top_size ? root_block_i : stack_q[{slot[7], level_of(size7_q)}];
+  // FaceNone stands for a new ray's time.
+  assign key_face = face_e'(exit_face8_q | {2{starts}});
+  assign keys     = '{time8_q[0], time8_q[1], time8_q[2], ray_entry_time_i};
 
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) octant7[a] = (corner7_q[a] & size7_q) != '0;
-    octant7 = starts ? ray_octant_i ^ ray_mirrored_i : octant7 ^ mirrored_q[slot[7]];
+  always_ff @(posedge clk_i) begin
+    size9_q    <= starts ? world_i[MaxDepth:1] : inner_size8_q | (sum8_q[MaxDepth-1:0] & ~place8_q);
+    cleared9_q <= place8_q & ~sum8_q[MaxDepth-1:0];
+    set9_q     <= starts ? ray_octant_i : set8_q;
+    corner9_q  <= corner8_q;
+    if (starts) corner9_q <= '{default: '0};
+    active_q          <= {active_q[Slots-2:0], active_q[Slots-1]};
+    active_q[9+Extra] <= starts || (active_q[8+Extra] && !ends);
+    if (!rst_ni) active_q <= '0;
+    if (starts || leaves8_q) begin
+      key_time_q[slot[8]] <= keys[key_face];
+      key_face_q[slot[8]] <= starts ? ray_entry_face_i : exit_face8_q;
+    end
+    if (starts) begin
+      weight_x_q[slot[8]] <= ray_weight_i[0];
+      weight_y_q[slot[8]] <= ray_weight_i[1];
+      weight_z_q[slot[8]] <= ray_weight_i[2];
+      mirrored_q[slot[8]] <= ray_mirrored_i;
+      dead_q[slot[8]]     <= ray_dead_i;
+      tag_q[slot[8]]      <= take_tag_i;
+    end
+  end
+
+  // 9 corner. The stack has the blocks of cells by slot and size, in block RAM.
+  (* ram_style = "block" *)
+  logic [BlockBits-1:0] stack_q[2 ** (SlotBits + LevelBits)];
+  logic [MaxDepth-1:0]  corner10_q[3], size10_q;
+  logic [BlockBits-1:0] block10_q;
+  logic [2:0]           octant10_q;
+  logic                 top10_q;
+
+  always_ff @(posedge clk_i) begin
+    if (action3_q == Descend) stack_q[{slot[3], child_level3_q}] <= block3_q;
+    block10_q <= stack_q[{slot[9], level_of(size9_q)}];
   end
 
   always_ff @(posedge clk_i) begin
-    active_q  <= rst_ni ? {active_q[Slots-2:0], starts || (active_q[7+Extra] && !ends)} : '0;
-    block0_q  <= block7;
-    octant0_q <= octant7;
-
-    size_q[slot[7]]     <= size7;
-    corner_x_q[slot[7]] <= starts ? (ray_octant_i[0] ? top_size : '0) : corner7_q[0];
-    corner_y_q[slot[7]] <= starts ? (ray_octant_i[1] ? top_size : '0) : corner7_q[1];
-    corner_z_q[slot[7]] <= starts ? (ray_octant_i[2] ? top_size : '0) : corner7_q[2];
-    key_time_q[slot[7]] <= starts ? ray_entry_time_i : key_time7_q;
-    key_face_q[slot[7]] <= starts ? ray_entry_face_i : key_face7_q;
-    if (starts) begin
-      weight_x_q[slot[7]] <= ray_weight_i[0];
-      weight_y_q[slot[7]] <= ray_weight_i[1];
-      weight_z_q[slot[7]] <= ray_weight_i[2];
-      mirrored_q[slot[7]] <= ray_mirrored_i;
-      dead_q[slot[7]]     <= ray_dead_i;
-      tag_q[slot[7]]      <= take_tag_i;
+    for (int unsigned a = 0; a < 3; a++) begin
+      corner10_q[a] <= (corner9_q[a] & ~cleared9_q) | (set9_q[a] ? size9_q : '0);
+      octant10_q[a] <= (set9_q[a] || (corner9_q[a] & size9_q) != '0) != mirrored_q[slot[9]][a];
     end
+    size10_q <= size9_q;
+    top10_q  <= (size9_q & world_i[MaxDepth:1]) != '0;
+  end
+
+  // 10 block.
+  always_ff @(posedge clk_i) begin
+    block0_q     <= top10_q ? root_block_i : block10_q;
+    octant0_q    <= octant10_q;
+    corner0_q[0] <= corner10_q;
+    size0_q[0]   <= size10_q;
+
+    corner_x_q[slot[10]] <= corner10_q[0];
+    corner_y_q[slot[10]] <= corner10_q[1];
+    corner_z_q[slot[10]] <= corner10_q[2];
+    size_q[slot[10]]     <= size10_q;
   end
 endmodule

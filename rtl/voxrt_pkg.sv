@@ -56,6 +56,11 @@ package voxrt_pkg;
     return (position_bits > world_bits ? position_bits : world_bits) + 1;
   endfunction
 
+  // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in it.
+  function automatic int unsigned key_bits(int unsigned max_depth);
+    return WeightBits + max_depth + FractionBits + 1;
+  endfunction
+
   // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block.
   function automatic int unsigned payload_bits(int unsigned block_bits);
     return block_bits > 9 ? block_bits : 9;

@@ -57,7 +57,6 @@ module voxrt_rtu
   output logic        [            31:0] stalls_o             // Clocks in which a pixel waited to be accepted.
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
-  localparam int unsigned TimeBits = DistanceBits + WeightBits;
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned RayFifoDepth = 16;
   localparam int unsigned BufferDepth = 128;
@@ -136,7 +135,7 @@ module voxrt_rtu
     logic [2:0]                 dead;
     logic [2:0]                 octant;
     logic [2:0][WeightBits-1:0] weight;
-    logic [TimeBits-1:0]        entry_time;
+    logic [key_bits(MaxDepth)-1:0] entry_time;
     face_e                      entry_face;
   } ray_t;
 
