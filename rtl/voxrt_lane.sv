@@ -1,28 +1,34 @@
-// Follows rays through the octree: a ring of eight stages that holds eight rays; every clock one of them reads one
+// Follows rays through the octree: a ring of eleven stages that holds eleven rays; every clock one of them reads one
 // octree word. A memory that takes longer than two clocks adds a stage and a ray a clock, before stage 1.
 //
-//   stage     work                                                                          state kept by slot
-//   0 fetch   the memory takes the address; far planes of the cell                          corner, size
-//   1 wait    the memory's output register                                                  size
-//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes (pointer) mirrored, dead, weight
-//   3 product distance x weight, in two parts; the pointer goes onto the stack              stack
-//   4 sum     T of three planes                                                             key
-//   5 compare leaf: T among themselves; pointer: T with the ray's key. Far planes again     corner, size, dead
-//   6 select  leaf: the smallest T is the new key, the ancestor that holds both cells;      -
-//             pointer: the child's corner
-//   7 turn    the block from the stack, the octant; or a new ray in the place of one that   all
-//             ended
+//   stage     work                                                                        state of a slot, read
+//   0 fetch   the memory takes the address                                                mirrored, dead
+//   1 wait    the memory's output register; distance to the cell's near planes            -
+//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weight
+//   3 product distance x weight, in two parts; the pointer goes onto the stack            -
+//   4 sum     T of three planes                                                           key, dead
+//   5 compare leaf: T among themselves; pointer: T with the ray's key                     corner, size
+//   6 exit    leaf: the axis that it is left by, and the corner's place on that axis      -
+//   7 add     the size to that place                                                      -
+//   8 turn    the size of the next cell; the smallest T is the new key; a new ray in the  tag
+//             place of one that ended
+//   9 corner  the next cell's corner and octant; the stack is read                        mirrored
+//   10 block  the block from the stack, or the root's                                     -
 //
 // A ray's key (T, face) is the last plane that it crossed. Corner and size (one-hot) are those of the cell read; its
 // octant is the corner's bit at size. Planes of cells at that time crossed are those with keys <= the ray's key, so
-// no two planes tie and a pointer's child is found by three compares. Leaving a leaf by one face changes the corner on
-// one axis: corner + size. The one bit that this sets is the size of the cell that follows, below the common ancestor,
-// whose block is on the stack under that size; outside the world when it is the world's own size.
+// no two planes tie and a pointer's child is found by three compares. All T that are ever compared lie within the
+// world's side of each other, so that T modulo 2**KeyBits is enough.
+//
+// The next corner is the old one with one bit set, that of the next size:
+//   pointer   size / 2, on the axes whose middle plane is behind
+//   leaf      place + size on the exit axis sets one bit and clears those below it, down to size. The bit set is the
+//             size of the cell that follows, below the common ancestor, whose block is on the stack under that size;
+//             the bits cleared are cleared on all axes. Outside the world when the bit is the world's own size.
+//   new ray   half the world, on the axes of its first octant; all other bits are cleared
 //
 // The ring never stops: rays start only when the pixel buffer has a place for them. A word that the memory did not
 // deliver (mem_ack_i low) is asked for again at the ray's next turn.
-//
-// T is kept modulo 2**TimeBits: planes that a ray compares lie within one world, wherever its origin is.
 //
 // Mirrors: a ray that hits one starts anew at the root in its slot, with the key of the hit, the mirror bit of that axis
 // flipped and the origin moved by 16 (side - 2 plane), so that the plane's T stays; it stands in the cell that it came
@@ -33,7 +39,7 @@
 // 1/32 voxel, comes back with the tag. Whether what it hits is before the light is a compare of cells on the axis of
 // the face: T_hit < T_light there says that the plane is before the light's coordinate.
 // A ray whose sub-cell finds voxrt_light's queue full asks again at its next turn, and changes places with a shadow ray if
-// one waits: so the two wait for each other never.
+// one waits: so neither waits for the other for ever.
 module voxrt_lane
   import voxrt_pkg::*;
 #(
@@ -45,7 +51,7 @@ module voxrt_lane
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
-  localparam int unsigned TimeBits     = lane_time_bits(MaxDepth, Light),
+  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
   localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors)
@@ -75,7 +81,7 @@ module voxrt_lane
   input  logic        [             2:0] ray_dead_i,
   input  logic        [             2:0] ray_octant_i,
   input  logic        [  WeightBits-1:0] ray_weight_i      [3],
-  input  logic        [    TimeBits-1:0] ray_entry_time_i,
+  input  logic        [     KeyBits-1:0] ray_entry_time_i,
   input  face_e                          ray_entry_face_i,
   // With Light or Mirrors; mirrored frame. A shadow ray has its place in the pixel buffer already.
   input  logic signed [  OriginBits-1:0] ray_origin_i      [3],
@@ -111,70 +117,76 @@ module voxrt_lane
   output logic                           step_limit_o
 );
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
+  localparam int unsigned Stages = 11;
   localparam int unsigned Extra = MemoryClocks - 2;
-  localparam int unsigned Slots = 8 + Extra;
+  localparam int unsigned Slots = Stages + Extra;
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
 
   // Rays have their own origins, and a root that is a leaf is read as if it were eight.
   localparam bit OwnOrigin = Light || Mirrors;
   localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;
+  localparam int unsigned TimeBits = DistanceBits + WeightBits;
   // Corners and sizes count 1 / 2**SubBits voxel.
   localparam int unsigned SubBits = Light ? FractionBits : 0;
   localparam int unsigned CellBits = MaxDepth + SubBits;
 
-  // Which slot is in which stage.
-  logic [SlotBits-1:0] slot[8];
+  // Which slot is in which stage, and whether there is a ray in it that has not ended.
+  logic [SlotBits-1:0] slot  [Stages];
   logic [SlotBits-1:0] slot_q[Slots];
+  logic [   Slots-1:0] active_q;
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= slot_q[(s+Slots-1)%Slots];
     if (!rst_ni) for (int unsigned s = 0; s < Slots; s++) slot_q[s] <= SlotBits'(s);
   end
 
-  always_comb for (int unsigned s = 0; s < 8; s++) slot[s] = slot_q[s+Extra];
+  always_comb for (int unsigned s = 0; s < Stages; s++) slot[s] = slot_q[s+Extra];
 
   // State by slot.
-  logic        [  WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
-  logic        [             2:0] mirrored_q[Slots];
-  logic        [             2:0] dead_q    [Slots];
-  logic        [     TagBits-1:0] tag_q     [Slots];
-  logic        [    TimeBits-1:0] key_time_q[Slots];
-  face_e                          key_face_q[Slots];
-  logic        [    CellBits-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
-  logic        [    CellBits-1:0] size_q    [Slots];
-  logic        [   BlockBits-1:0] stack_q   [2 ** (SlotBits + LevelBits)];
+  logic        [WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
+  logic        [           2:0] mirrored_q[Slots];
+  logic        [           2:0] dead_q    [Slots];
+  logic        [   TagBits-1:0] tag_q     [Slots];
+  logic        [   KeyBits-1:0] key_time_q[Slots];
+  face_e                        key_face_q[Slots];
+  logic        [  CellBits-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
+  logic        [  CellBits-1:0] size_q    [Slots];
 
-  // There is a ray in this stage that has not ended.
-  logic [Slots-1:0] active_q;
-
-  // 0 fetch, 1 wait: far planes.
+  // 0 fetch.
   logic [BlockBits-1:0] block0_q;
   logic [2:0]           octant0_q;
-  logic [CellBits:0]    far1_q   [3], far2_q   [3];
-  logic [CellBits-1:0]  corner1_q[3], middle2_q[3];
-  logic [CellBits-1:0]  size1_q, size2_q;
-  logic                 sinks0, sinks2, sinks7;  // The ray has hit, and looks for the sub-cell.
-  logic                 shadow2, shadow7;        // It is a shadow ray.
+  logic [CellBits-1:0]  corner0_q[Extra+1][3];
+  logic [CellBits-1:0]  size0_q  [Extra+1];
+  logic [CellBits-1:0]  corner1_q[3];
+  logic [CellBits-1:0]  size1_q;
+  logic [2:0]           mirrored1_q, dead1_q;
+  logic                 sinks0, sinks2, sinks3, sinks8;  // The ray has hit, and looks for the sub-cell.
+  logic                 shadow1, shadow2, shadow8;       // It is a shadow ray.
+  logic                 root_is_leaf;
 
-  assign mem_read_o   = active_q[0] && !sinks0 && !(OwnOrigin && root_i[PayloadBits]);
+  assign root_is_leaf = OwnOrigin && root_i[PayloadBits];
+  assign mem_read_o   = active_q[0] && !sinks0 && !root_is_leaf;
   assign mem_block_o  = block0_q;
   assign mem_octant_o = octant0_q;
 
   always_ff @(posedge clk_i) begin
-    corner1_q[0] <= corner_x_q[slot[0]];
-    corner1_q[1] <= corner_y_q[slot[0]];
-    corner1_q[2] <= corner_z_q[slot[0]];
-    far1_q[0]    <= {1'b0, corner_x_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    far1_q[1]    <= {1'b0, corner_y_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    far1_q[2]    <= {1'b0, corner_z_q[slot[0]]} + {1'b0, size_q[slot[0]]};
-    size1_q      <= size_q[slot[0]];
-    size2_q      <= size1_q;
-    for (int unsigned a = 0; a < 3; a++) begin
-      far2_q[a]    <= far1_q[a];
-      middle2_q[a] <= corner1_q[a] | (size1_q >> 1);
+    for (int unsigned s = 1; s <= Extra; s++) begin
+      corner0_q[s] <= corner0_q[s-1];
+      size0_q[s]   <= size0_q[s-1];
     end
+    corner1_q   <= corner0_q[Extra];
+    size1_q     <= size0_q[Extra];
+    mirrored1_q <= mirrored_q[slot[0]];
+    dead1_q     <= dead_q[slot[0]];
   end
+
+  // 1 wait, 2 decode: from the origin to the cell's near planes; to the far or middle planes.
+  logic signed [DistanceBits-1:0] distance3_q[3];
+  logic        [    CellBits-1:0] size2_q;
+  logic                           takes_far;
+
+  always_ff @(posedge clk_i) size2_q <= size1_q;
 
   // 2 decode.
   typedef enum logic [1:0] {
@@ -188,8 +200,8 @@ module voxrt_lane
   logic [PayloadBits:0] word;
   action_e              action;
 
-  assign word        = OwnOrigin && root_i[PayloadBits] ? root_i : mem_word_i;
-  assign arrived     = (mem_ack_i || (OwnOrigin && root_i[PayloadBits])) && !sinks2;
+  assign word        = root_is_leaf ? root_i : mem_word_i;
+  assign arrived     = (mem_ack_i || root_is_leaf) && !sinks2;
   assign leaf        = word[PayloadBits];
   assign bad_pointer = leaf && word[8];
   assign step_limit  = !leaf && size2_q[SubBits];
@@ -202,11 +214,13 @@ module voxrt_lane
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
-  logic signed [DistanceBits-1:0] distance3_q[3];
+  // A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
+  assign takes_far = Light ? action == Leave : leaf;
+
   logic        [  WeightBits-1:0] weight3_q  [3];
-  action_e                        action3_q, action4_q, action5_q, action6_q;
+  action_e                        action3_q, action4_q, action5_q, action6_q, action7_q;
   logic        [   BlockBits-1:0] block3_q;
-  material_t                      material3_q, material4_q, material5_q, material6_q, material7_q;
+  material_t                      material3_q, material4_q, material5_q, material6_q, material7_q, material8_q;
   logic        [   LevelBits-1:0] child_level3_q;
   logic                           bad_pointer_q, step_limit_q;
 
@@ -216,26 +230,8 @@ module voxrt_lane
     for (int unsigned i = 0; i < MaxDepth; i++) if (size[i+SubBits]) level_of |= LevelBits'(i);
   endfunction
 
-  // Planes and origins at stage 2. A ray that sinks, or will, needs middle planes of its leaf. Planes and the origin of an
-  // axis that is dead must not meet: where planes may have any fraction, a distance one less gives the same sign.
-  logic signed [DistanceBits-1:0] plane2[3], origin2[3];
-  logic                           takes_far;
-  logic        [             2:0] before_dead2;
-
-  assign takes_far = Light ? action == Leave : leaf;
-
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      plane2[a] = DistanceBits'(takes_far ? far2_q[a] : {1'b0, middle2_q[a]}) <<< (FractionBits - SubBits);
-      if (shadow2) plane2[a] = plane2[a] <<< 1;
-    end
-  end
-
   always_ff @(posedge clk_i) begin
     action3_q <= action;
-    for (int unsigned a = 0; a < 3; a++) begin
-      distance3_q[a] <= plane2[a] - origin2[a] - DistanceBits'(before_dead2[a]);
-    end
     weight3_q[0]   <= weight_x_q[slot[2]];
     weight3_q[1]   <= weight_y_q[slot[2]];
     weight3_q[2]   <= weight_z_q[slot[2]];
@@ -250,203 +246,299 @@ module voxrt_lane
   assign step_limit_o  = step_limit_q;
 
   // 3 product, 4 sum.
-  logic [TimeBits-1:0] time5[3];
+  logic signed [TimeBits-1:0] exact_time5[3];
+  logic        [KeyBits-1:0]  time5      [3];
 
   for (genvar a = 0; a < 3; a++) begin : gen_time
     voxrt_plane_time #(
-      .DistanceBits(DistanceBits),
-      .TimeBits    (TimeBits)
+      .DistanceBits(DistanceBits)
     ) u_time (
       .clk_i,
       .distance_i(distance3_q[a]),
       .weight_i  (weight3_q[a]),
-      .time_o    (time5[a])
+      .time_o    (exact_time5[a])
     );
+
+    assign time5[a] = KeyBits'(exact_time5[a]);
   end
 
-  logic [TimeBits-1:0] key_time5_q;
-  face_e               key_face5_q;
-  logic                sinks3_q;
+  logic [KeyBits-1:0] key_time5_q;
+  face_e              key_face5_q;
+  logic [        2:0] dead5_q;
 
   always_ff @(posedge clk_i) begin
-    sinks3_q <= sinks2;
-    if (action3_q == Descend && !sinks3_q) stack_q[{slot[3], child_level3_q}] <= block3_q;
     action4_q   <= action3_q;
     action5_q   <= action4_q;
     material4_q <= material3_q;
     material5_q <= material4_q;
     key_time5_q <= key_time_q[slot[4]];
     key_face5_q <= key_face_q[slot[4]];
+    dead5_q     <= dead_q[slot[4]];
   end
 
-  // 5 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key.
-  logic [         2:0] before6_q;
-  logic [TimeBits-1:0] time6_q[3], key_time6_q;
-  face_e               key_face6_q;
-  logic [  CellBits:0] far6_q   [3];
-  logic [CellBits-1:0] corner6_q[3], size6_q;
-  logic [         2:0] dead6_q;
-  logic [  CellBits:0] far5     [3];
-  logic [  TimeBits:0] ahead5   [3];  // Negative: before. Equal times go by axis.
-
-  assign far5[0] = {1'b0, corner_x_q[slot[5]]} + {1'b0, size_q[slot[5]]};
-  assign far5[1] = {1'b0, corner_y_q[slot[5]]} + {1'b0, size_q[slot[5]]};
-  assign far5[2] = {1'b0, corner_z_q[slot[5]]} + {1'b0, size_q[slot[5]]};
+  // 5 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key, on a dead
+  // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
+  logic        [ KeyBits-1:0] other    [3];
+  logic        [   KeyBits:0] difference[3];
+  logic        [         2:0] first;  // Of equals.
+  logic        [         2:0] before6_q;
+  logic        [ KeyBits-1:0] time6_q  [3];
+  face_e                      key_face6_q, key_face7_q;
+  logic        [CellBits-1:0] corner6_q[3], size6_q;
+  logic        [         2:0] dead6_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      // x is before y, y before z, and x before z.
-      ahead5[a] = {time5[a], 1'b0} -
-          (action5_q == Leave ? {time5[(a+1)%3], a != 2} : {key_time5_q, 2'(a) <= key_face5_q});
+      other[a]      = action5_q == Leave ? time5[(a+1)%3] : key_time5_q;
+      first[a]      = action5_q == Leave ? a != 2 : 2'(a) <= key_face5_q;
+      difference[a] = {time5[a], 1'b0} - {other[a], first[a]};
     end
   end
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      before6_q[a] <= ahead5[a][TimeBits];
-      if (dead_q[slot[5]][a] && action5_q != Leave) before6_q[a] <= time5[a][TimeBits-1];
+      before6_q[a] <= difference[a][KeyBits];
+      if (dead5_q[a] && action5_q != Leave) before6_q[a] <= time5[a][KeyBits-1];
     end
+  end
+
+  always_ff @(posedge clk_i) begin
     time6_q      <= time5;
-    key_time6_q  <= key_time5_q;
     key_face6_q  <= key_face5_q;
-    far6_q       <= far5;
     corner6_q[0] <= corner_x_q[slot[5]];
     corner6_q[1] <= corner_y_q[slot[5]];
     corner6_q[2] <= corner_z_q[slot[5]];
     size6_q      <= size_q[slot[5]];
-    dead6_q      <= dead_q[slot[5]];
+    dead6_q      <= dead5_q;
     action6_q    <= action5_q;
     material6_q  <= material5_q;
   end
 
-  // 6 select.
-  logic                       x_before_y, y_before_z, x_before_z;
-  logic        [         2:0] exit;  // One-hot.
-  logic        [TimeBits-1:0] key_time7_q;
-  face_e                      key_face7_q;
-  logic        [CellBits-1:0] corner7_q[3], size7_q;
-  logic                       ended7_q;
-  logic        [  CellBits:0] next_size;  // One-hot.
-  logic        [CellBits-1:0] kept;
+  // 6 exit.
+  logic                      x_before_y, y_before_z, x_before_z;
+  logic       [         2:0] exit;  // One-hot.
+  face_e                     exit_face, exit_face7_q, exit_face8_q;
+  logic       [ KeyBits-1:0] time7_q  [3], time8_q[3];
+  logic       [CellBits-1:0] corner7_q[3], corner8_q[3];
+  logic       [CellBits-1:0] size7_q, place7_q;
+  logic       [         2:0] set7_q, set8_q;  // Axes on which the corner gets the next size's bit.
+  logic                      dead7_q, descends6, descends7_q;
 
   assign x_before_y = !dead6_q[0] && (dead6_q[1] || before6_q[0]);
   assign y_before_z = !dead6_q[1] && (dead6_q[2] || before6_q[1]);
   assign x_before_z = !dead6_q[0] && (dead6_q[2] || !before6_q[2]);
   assign exit       = {!x_before_z && !y_before_z, !x_before_y && y_before_z, x_before_y && x_before_z};
-
-  always_comb begin
-    next_size = '0;
-    for (int unsigned a = 0; a < 3; a++) if (exit[a]) next_size |= far6_q[a] & ~{1'b0, corner6_q[a]};
-    kept = ~(next_size[CellBits-1:0] - 1'b1);
-  end
+  assign exit_face  = exit[0] ? FaceX : exit[1] ? FaceY : FaceZ;
+  assign descends6  = action6_q == Descend || (Light && action6_q == Finish);
 
   always_ff @(posedge clk_i) begin
-    key_time7_q <= key_time6_q;
-    key_face7_q <= key_face6_q;
-    corner7_q   <= corner6_q;
-    size7_q     <= size6_q;
-    ended7_q    <= action6_q == Finish;
-    material7_q <= material6_q;
-    if (action6_q == Descend || (Light && action6_q == Finish)) begin
-      for (int unsigned a = 0; a < 3; a++) if (before6_q[a]) corner7_q[a] <= corner6_q[a] | (size6_q >> 1);
-      size7_q <= size6_q >> 1;
+    // Registers keep what they have where no ray is.
+    if (active_q[6+Extra]) begin
+      time7_q   <= time6_q;
+      corner7_q <= corner6_q;
     end
-    if (action6_q == Leave) begin
-      key_time7_q <= time6_q[2];
-      key_face7_q <= FaceZ;
-      if (exit[0]) begin
-        key_time7_q <= time6_q[0];
-        key_face7_q <= FaceX;
-      end
-      if (exit[1]) begin
-        key_time7_q <= time6_q[1];
-        key_face7_q <= FaceY;
-      end
-      for (int unsigned a = 0; a < 3; a++) begin
-        corner7_q[a] <= (exit[a] ? far6_q[a][CellBits-1:0] : corner6_q[a]) & kept;
-      end
-      size7_q  <= next_size[CellBits-1:0];
-      ended7_q <= (next_size[CellBits:SubBits] & world_i) != '0 || dead6_q == '1;
-    end
+    action7_q    <= action6_q;
+    material7_q  <= material6_q;
+    key_face7_q  <= key_face6_q;
+    exit_face7_q <= exit_face;
+    size7_q      <= size6_q;
+    place7_q     <= corner6_q[exit_face];
+    dead7_q      <= dead6_q == '1;
+    descends7_q  <= descends6;
+    set7_q       <= action6_q == Leave ? exit : descends6 ? before6_q : '0;
   end
 
-  // 7 turn.
-  logic                 finishes, meets_face, reflects, reflects_out, shows_mean, sinks, requests, ends;
-  logic                 starts, resolves;
-  logic [CellBits-1:0]  top_size, size7;
-  logic [BlockBits-1:0] block7;
-  logic [2:0]           upper7, mirrored7, octant7;  // Of the root or of the cell: halves, in the mirrored frame.
-  mirrors_t             met7;
+  // 7 add.
+  logic [CellBits:0]   sum8_q;
+  logic [CellBits-1:0] place8_q, inner_size8_q;
+  logic                leaves8_q, finished8_q;
+  face_e               face8_q, key_face8_q;
 
-  // A ray that finishes is reflected, or goes on to the sub-cell, or ends.
-  assign finishes   = active_q[7+Extra] && ended7_q;
-  assign meets_face = finishes && material7_q != '0 && key_face7_q != FaceNone && !shadow7;
+  always_ff @(posedge clk_i) begin
+    if (active_q[7+Extra]) begin
+      time8_q   <= time7_q;
+      corner8_q <= corner7_q;
+    end
+    sum8_q        <= {1'b0, place7_q} + (action7_q == Leave ? {1'b0, size7_q} : '0);
+    place8_q      <= place7_q;
+    inner_size8_q <= action7_q == Leave ? '0 : descends7_q ? size7_q >> 1 : size7_q;
+    set8_q        <= set7_q;
+    exit_face8_q  <= exit_face7_q;
+    leaves8_q     <= action7_q == Leave;
+    finished8_q   <= action7_q == Finish || (action7_q == Leave && dead7_q);
+    material8_q   <= material7_q;
+    face8_q       <= material7_q == '0 ? FaceNone : key_face7_q;
+    key_face8_q   <= key_face7_q;
+  end
+
+  // 8 turn. A ray that finishes is reflected, or goes on to the sub-cell, or ends.
+  logic                finishes, meets_face, reflects, reflects_out, shows_mean, sinks, requests;
+  logic                ends, starts, resolves, renews;
+  logic [CellBits-1:0] corner9_q[3], size9_q, cleared9_q, top_size;
+  logic [         2:0] set9_q, set8, mirrored8;
+  logic [ KeyBits-1:0] keys     [4];
+  face_e               key_face;
+
+  assign finishes   = active_q[8+Extra] && (finished8_q || (sum8_q[CellBits:SubBits] & world_i) != '0);
+  assign meets_face = finishes && face8_q != FaceNone && !shadow8;
   assign sinks      = Light && meets_face && light_i && !reflects && !reflects_out && !shows_mean;
-  assign requests   = Light && active_q[7+Extra] && sinks7 && size7_q[0] &&
+  assign requests   = Light && active_q[8+Extra] && sinks8 && inner_size8_q[0] &&
       (request_ready_i || (ray_valid_i && ray_shadow_i && !ray_resolved_i));
   assign ends       = finishes && !reflects && !sinks;
 
   assign starts   = ray_valid_i && !ray_resolved_i && (ray_shadow_i || take_ready_i) &&
-      (ends || requests || !active_q[7+Extra]);
+      (ends || requests || !active_q[8+Extra]);
   assign resolves = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
+  assign renews   = starts || reflects;
   assign top_size = CellBits'(world_i[MaxDepth:1]) << SubBits;
 
   assign ray_ready_o = starts || resolves;
   assign take_o      = ray_ready_o && !ray_shadow_i;
 
   assign fill_o        = ends || resolves;
-  assign fill_tag_o    = finishes || requests ? tag_q[slot[7]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_pixel_o = (finishes && !reflects && !shadow7) || (resolves && !ray_shadow_i);
-  assign fill_pixel_o  = !finishes ? ray_pixel_i : material7_q == '0 || reflects_out ?
-      '{material: '0, face: FaceNone} : '{material: material7_q, face: key_face7_q};
+  assign fill_tag_o    = finishes || requests ? tag_q[slot[8]] : ray_shadow_i ? ray_tag_i : take_tag_i;
+  assign store_pixel_o = (finishes && !reflects && !shadow8) || (resolves && !ray_shadow_i);
+  assign fill_pixel_o  = !finishes ? ray_pixel_i : reflects_out ?
+      '{material: '0, face: FaceNone} : '{material: material8_q, face: face8_q};
 
-  assign size7  = starts || reflects ? top_size : size7_q;
-  assign block7 = size7 == top_size ? root_i[BlockBits-1:0] : stack_q[{slot[7], level_of(size7_q)}];
+  // FaceNone stands for a new ray's time.
+  assign key_face = face_e'(exit_face8_q | {2{starts}});
+  assign keys     = '{time8_q[0], time8_q[1], time8_q[2], ray_entry_time_i};
 
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) octant7[a] = (corner7_q[a] & size7) != '0;
-    if (starts) octant7 = ray_octant_i;
-    else if (reflects) octant7 = upper7;
+  always_ff @(posedge clk_i) begin
+    size9_q    <= renews ? top_size : inner_size8_q | (sum8_q[CellBits-1:0] & ~place8_q);
+    cleared9_q <= place8_q & ~sum8_q[CellBits-1:0];
+    set9_q     <= starts ? ray_octant_i : set8;
+    corner9_q  <= corner8_q;
+    if (renews) corner9_q <= '{default: '0};
+    active_q          <= {active_q[Slots-2:0], active_q[Slots-1]};
+    active_q[9+Extra] <= starts || (active_q[8+Extra] && !ends && !requests);
+    if (!rst_ni) active_q <= '0;
+    if (starts || leaves8_q) begin
+      key_time_q[slot[8]] <= keys[key_face];
+      key_face_q[slot[8]] <= starts ? ray_entry_face_i : exit_face8_q;
+    end
+    if (starts) begin
+      weight_x_q[slot[8]] <= ray_weight_i[0];
+      weight_y_q[slot[8]] <= ray_weight_i[1];
+      weight_z_q[slot[8]] <= ray_weight_i[2];
+      dead_q[slot[8]]     <= ray_dead_i;
+      tag_q[slot[8]]      <= ray_shadow_i ? ray_tag_i : take_tag_i;
+    end
+    if (renews) mirrored_q[slot[8]] <= starts ? ray_mirrored_i : mirrored8;
+  end
+
+  // 9 corner. The stack has the blocks of cells by slot and size, in block RAM.
+  (* ram_style = "block" *)
+  logic [BlockBits-1:0] stack_q[2 ** (SlotBits + LevelBits)];
+  logic [CellBits-1:0]  corner10_q[3], size10_q;
+  logic [BlockBits-1:0] block10_q;
+  logic [2:0]           octant10_q;
+  logic                 top10_q;
+
+  always_ff @(posedge clk_i) begin
+    if (action3_q == Descend && !sinks3) stack_q[{slot[3], child_level3_q}] <= block3_q;
+    block10_q <= stack_q[{slot[9], level_of(size9_q)}];
   end
 
   always_ff @(posedge clk_i) begin
-    active_q  <= rst_ni ? {active_q[Slots-2:0], starts || (active_q[7+Extra] && !ends && !requests)} : '0;
-    block0_q  <= block7;
-    octant0_q <= octant7 ^ (starts ? ray_mirrored_i : mirrored7);
-
-    size_q[slot[7]]     <= size7;
-    corner_x_q[slot[7]] <= starts || reflects ? (octant7[0] ? top_size : '0) : corner7_q[0];
-    corner_y_q[slot[7]] <= starts || reflects ? (octant7[1] ? top_size : '0) : corner7_q[1];
-    corner_z_q[slot[7]] <= starts || reflects ? (octant7[2] ? top_size : '0) : corner7_q[2];
-    key_time_q[slot[7]] <= starts ? ray_entry_time_i : key_time7_q;
-    key_face_q[slot[7]] <= starts ? ray_entry_face_i : key_face7_q;
-    if (starts) begin
-      weight_x_q[slot[7]] <= ray_weight_i[0];
-      weight_y_q[slot[7]] <= ray_weight_i[1];
-      weight_z_q[slot[7]] <= ray_weight_i[2];
-      dead_q[slot[7]]     <= ray_dead_i;
-      tag_q[slot[7]]      <= ray_shadow_i ? ray_tag_i : take_tag_i;
+    for (int unsigned a = 0; a < 3; a++) begin
+      corner10_q[a] <= (corner9_q[a] & ~cleared9_q) | (set9_q[a] ? size9_q : '0);
+      octant10_q[a] <= (set9_q[a] || (corner9_q[a] & size9_q) != '0) != mirrored_q[slot[9]][a];
     end
-    if (starts || reflects) mirrored_q[slot[7]] <= starts ? ray_mirrored_i : mirrored7;
+    size10_q <= size9_q;
+    top10_q  <= (size9_q & top_size) != '0;
   end
 
-  // The mirror image of the ray.
+  // 10 block.
+  always_ff @(posedge clk_i) begin
+    block0_q     <= top10_q ? root_i[BlockBits-1:0] : block10_q;
+    octant0_q    <= octant10_q;
+    corner0_q[0] <= corner10_q;
+    size0_q[0]   <= size10_q;
+
+    corner_x_q[slot[10]] <= corner10_q[0];
+    corner_y_q[slot[10]] <= corner10_q[1];
+    corner_z_q[slot[10]] <= corner10_q[2];
+    size_q[slot[10]]     <= size10_q;
+  end
+
+  // Distances from the ray's own origin, or from the camera.
+  if (OwnOrigin) begin : gen_own_origin
+    logic signed [DistanceBits-1:0] origin_x_q[Slots], origin_y_q[Slots], origin_z_q[Slots];
+    logic signed [DistanceBits-1:0] origin1[3], near2_q[3], step2, shift8;
+    logic                           unused_origin;
+
+    assign unused_origin = &{origin_i[0], origin_i[1], origin_i[2], mirrored_origin_i[0], mirrored_origin_i[1],
+                             mirrored_origin_i[2], mirrored1_q};
+
+    assign origin1[0] = origin_x_q[slot[1]];
+    assign origin1[1] = origin_y_q[slot[1]];
+    assign origin1[2] = origin_z_q[slot[1]];
+    assign step2      = (DistanceBits'(size2_q) << (FractionBits - SubBits)) >> !takes_far;
+
+    // Planes of a dead axis must not meet the origin: a distance one less has the sign that tells where it is.
+    always_ff @(posedge clk_i) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        near2_q[a] <= (DistanceBits'(corner1_q[a]) << (FractionBits - SubBits) << shadow1) - origin1[a] -
+            DistanceBits'(dead1_q[a]);
+        distance3_q[a] <= near2_q[a] + (step2 << shadow2);
+      end
+      if (starts) origin_x_q[slot[8]] <= DistanceBits'(ray_origin_i[0]);
+      else if (reflects && key_face8_q == FaceX) origin_x_q[slot[8]] <= origin_x_q[slot[8]] + shift8;
+      if (starts) origin_y_q[slot[8]] <= DistanceBits'(ray_origin_i[1]);
+      else if (reflects && key_face8_q == FaceY) origin_y_q[slot[8]] <= origin_y_q[slot[8]] + shift8;
+      if (starts) origin_z_q[slot[8]] <= DistanceBits'(ray_origin_i[2]);
+      else if (reflects && key_face8_q == FaceZ) origin_z_q[slot[8]] <= origin_z_q[slot[8]] + shift8;
+    end
+
+    if (Mirrors) begin : gen_shift
+      assign shift8 = gen_mirrors.shift8_q;
+    end else begin : gen_no_shift
+      assign shift8 = '0;
+    end
+  end else begin : gen_shared_origin
+    localparam int unsigned WholeBits = DistanceBits - FractionBits;
+    logic signed [   WholeBits-1:0] near2_q    [3];
+    logic        [FractionBits-1:0] fraction2_q[3];
+    logic                           unused_origin;
+
+    assign unused_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2], shadow1, shadow2};
+
+    // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
+    // origin's fraction counts as above 0.
+    for (genvar a = 0; a < 3; a++) begin : gen_near
+      logic whole;
+      assign whole = origin_i[a][FractionBits-1:0] == '0 && !dead1_q[a];
+
+      always_ff @(posedge clk_i) begin
+        near2_q[a] <= WholeBits'(corner1_q[a]) + WholeBits'(whole)
+            + ~WholeBits'((mirrored1_q[a] ? mirrored_origin_i[a] : origin_i[a]) >>> FractionBits);
+        fraction2_q[a] <= mirrored1_q[a] ? origin_i[a][FractionBits-1:0] : mirrored_origin_i[a][FractionBits-1:0];
+        distance3_q[a] <= {near2_q[a] + WholeBits'({1'b0, takes_far ? size2_q : size2_q >> 1}), fraction2_q[a]};
+      end
+    end
+  end
+
+  // The mirror image of a ray.
+  mirrors_t met8;
+
   if (Mirrors) begin : gen_mirrors
-    logic                           reflects_here, ends_here, outward7_q;
-    logic signed [DistanceBits-1:0] shift7_q;
-    logic        [    MaxDepth-1:0] plane6;
+    logic                           reflects_here, outward8_q;
+    logic signed [DistanceBits-1:0] shift8_q;
+    logic        [    MaxDepth-1:0] plane7;
 
     always_comb begin
-      unique case (key_face6_q)
-        FaceX:   plane6 = corner6_q[0][CellBits-1:SubBits];
-        FaceY:   plane6 = corner6_q[1][CellBits-1:SubBits];
-        default: plane6 = corner6_q[2][CellBits-1:SubBits];
+      unique case (key_face7_q)
+        FaceX:   plane7 = corner7_q[0][CellBits-1:SubBits];
+        FaceY:   plane7 = corner7_q[1][CellBits-1:SubBits];
+        default: plane7 = corner7_q[2][CellBits-1:SubBits];
       endcase
     end
 
     always_ff @(posedge clk_i) begin
-      shift7_q   <= (DistanceBits'(world_i) - DistanceBits'({plane6, 1'b0})) <<< FractionBits;
-      outward7_q <= plane6 == '0;  // The world's own side: back where the ray came from there is nothing.
+      shift8_q   <= (DistanceBits'(world_i) - DistanceBits'({plane7, 1'b0})) <<< FractionBits;
+      outward8_q <= plane7 == '0;  // The world's own side: back where the ray came from there is nothing.
     end
 
     voxrt_reflect #(
@@ -458,116 +550,75 @@ module voxrt_lane
       .table_material_i,
       .table_row_i,
       .material_i(material3_q),
-      .slot5_i   (slot[5]),
-      .slot7_i   (slot[7]),
+      .slot6_i   (slot[6]),
+      .slot8_i   (slot[8]),
       .hit_i     (meets_face),
       .starts_i  (starts),
       .reflects_o(reflects_here),
-      .ends_o    (ends_here),
-      .met_o     (met7)
+      .ends_o    (shows_mean),
+      .met_o     (met8)
     );
 
-    assign reflects     = reflects_here && !outward7_q;
-    assign reflects_out = reflects_here && outward7_q;
-    assign shows_mean   = ends_here;
+    assign reflects     = reflects_here && !outward8_q;
+    assign reflects_out = reflects_here && outward8_q;
 
+    // The root's octant in which the ray goes on.
     always_comb begin
       for (int unsigned a = 0; a < 3; a++) begin
-        mirrored7[a] = mirrored_q[slot[7]][a] ^ (reflects && key_face7_q == 2'(a));
-        upper7[a]    = key_face7_q == 2'(a) ? !shift7_q[DistanceBits-1] : (corner7_q[a] & top_size) != '0;
+        mirrored8[a] = mirrored_q[slot[8]][a] ^ (reflects && key_face8_q == 2'(a));
+        set8[a]      = set8_q[a];
+        if (reflects) set8[a] = key_face8_q == 2'(a) ? !shift8_q[DistanceBits-1] : (corner8_q[a] & top_size) != '0;
       end
     end
   end else begin : gen_no_mirrors
     logic unused_mirrors;
-    assign unused_mirrors = &{table_write_i, table_material_i, table_row_i, bounces_i, met7};
-    assign reflects     = 1'b0;
-    assign reflects_out = 1'b0;
-    assign shows_mean   = 1'b0;
-    assign met7         = '0;
-    assign mirrored7    = mirrored_q[slot[7]];
-    assign upper7       = '0;
-  end
-
-  // Origins by slot.
-  if (OwnOrigin) begin : gen_own_origin
-    logic signed [DistanceBits-1:0] origin_x_q[Slots], origin_y_q[Slots], origin_z_q[Slots];
-    logic signed [DistanceBits-1:0] shift7;
-    logic                           unused_origin;
-    assign unused_origin = &{origin_i[0], origin_i[1], origin_i[2], mirrored_origin_i[0], mirrored_origin_i[1],
-                             mirrored_origin_i[2]};
-
-    if (Mirrors) begin : gen_shift
-      assign shift7 = gen_mirrors.shift7_q;
-    end else begin : gen_no_shift
-      assign shift7 = '0;
-    end
-
-    assign origin2[0] = origin_x_q[slot[2]];
-    assign origin2[1] = origin_y_q[slot[2]];
-    assign origin2[2] = origin_z_q[slot[2]];
-
-    always_ff @(posedge clk_i) begin
-      if (starts) origin_x_q[slot[7]] <= DistanceBits'(ray_origin_i[0]);
-      else if (reflects && key_face7_q == FaceX) origin_x_q[slot[7]] <= origin_x_q[slot[7]] + shift7;
-      if (starts) origin_y_q[slot[7]] <= DistanceBits'(ray_origin_i[1]);
-      else if (reflects && key_face7_q == FaceY) origin_y_q[slot[7]] <= origin_y_q[slot[7]] + shift7;
-      if (starts) origin_z_q[slot[7]] <= DistanceBits'(ray_origin_i[2]);
-      else if (reflects && key_face7_q == FaceZ) origin_z_q[slot[7]] <= origin_z_q[slot[7]] + shift7;
-    end
-
-    assign before_dead2 = dead_q[slot[2]];
-  end else begin : gen_shared_origin
-    logic unused_ray_origin;
-    assign unused_ray_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2]};
-
-    always_comb begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        origin2[a] = (mirrored_q[slot[2]][a] ? mirrored_origin_i[a] : origin_i[a]) |
-            DistanceBits'(dead_q[slot[2]][a] ? 2 ** FractionBits - 1 : 0);
-      end
-    end
-
-    assign before_dead2 = '0;
+    assign unused_mirrors = &{table_write_i, table_material_i, table_row_i, bounces_i, met8, key_face8_q};
+    assign {reflects, reflects_out, shows_mean} = '0;
+    assign met8      = '0;
+    assign mirrored8 = mirrored_q[slot[8]];
+    assign set8      = set8_q;
   end
 
   // Down to the sub-cell, and the answers of shadow rays.
   if (Light) begin : gen_light
-    logic              sinks_q[Slots];
+    logic              sinks_q [Slots];
     logic              shadow_q[Slots];
     logic [MaxDepth:0] light_plane[3];
     logic              in_shadow;
 
     assign sinks0  = sinks_q[slot_q[0]];
     assign sinks2  = sinks_q[slot[2]];
-    assign sinks7  = sinks_q[slot[7]];
+    assign sinks3  = sinks_q[slot[3]];
+    assign sinks8  = sinks_q[slot[8]];
+    assign shadow1 = shadow_q[slot[1]];
     assign shadow2 = shadow_q[slot[2]];
-    assign shadow7 = shadow_q[slot[7]];
+    assign shadow8 = shadow_q[slot[8]];
 
     always_ff @(posedge clk_i) begin
-      if (starts || sinks) sinks_q[slot[7]] <= !starts;
-      if (starts) shadow_q[slot[7]] <= ray_shadow_i;
+      if (starts || sinks) sinks_q[slot[8]] <= !starts;
+      if (starts) shadow_q[slot[8]] <= ray_shadow_i;
     end
 
     // The hit's plane is before the light's.
     always_comb begin
-      in_shadow = key_face7_q == FaceNone;
+      in_shadow = face8_q == FaceNone;
       for (int unsigned a = 0; a < 3; a++) begin
-        light_plane[a] = mirrored_q[slot[7]][a] ? mirrored_light_plane_i[a] : light_plane_i[a];
-        if (key_face7_q == 2'(a) && {1'b0, corner7_q[a][CellBits-1:SubBits]} < light_plane[a]) in_shadow = 1'b1;
+        light_plane[a] = mirrored_q[slot[8]][a] ? mirrored_light_plane_i[a] : light_plane_i[a];
+        if (face8_q == 2'(a) && {1'b0, corner8_q[a][CellBits-1:SubBits]} < light_plane[a]) in_shadow = 1'b1;
+        request_place_o[a] = corner8_q[a] | CellBits'(set8_q[a]);
       end
     end
 
-    assign fill_lit_o         = finishes ? material7_q == '0 || !in_shadow : ray_lit_i;
+    assign fill_lit_o         = finishes ? material8_q == '0 || !in_shadow : ray_lit_i;
     assign request_o          = requests;
-    assign request_tag_o      = tag_q[slot[7]];
-    assign request_face_o     = key_face7_q;
-    assign request_mirrored_o = mirrored7;
-    assign request_place_o    = corner7_q;
+    assign request_tag_o      = tag_q[slot[8]];
+    assign request_face_o     = key_face8_q;
+    assign request_mirrored_o = mirrored8;
   end else begin : gen_no_light
     logic unused_light;
     assign unused_light = &{request_ready_i, ray_lit_i, light_i, light_plane_i[0], light_plane_i[1], light_plane_i[2],
                             mirrored_light_plane_i[0], mirrored_light_plane_i[1], mirrored_light_plane_i[2]};
-    assign {sinks0, sinks2, sinks7, shadow2, shadow7} = '0;
+    assign {sinks0, sinks2, sinks3, sinks8, shadow1, shadow2, shadow8} = '0;
     assign fill_lit_o         = 1'b0;
     assign request_o          = 1'b0;
     assign request_tag_o      = '0;
@@ -576,14 +627,13 @@ module voxrt_lane
     assign request_place_o    = '{default: '0};
   end
 
-  // Detail.
-  assign store_detail_o = (ends && !shadow7) || (resolves && !ray_shadow_i) || requests;
+  assign store_detail_o = (ends && !shadow8) || (resolves && !ray_shadow_i) || requests;
 
   always_comb begin
     fill_detail_o = '0;
-    if (Mirrors && shows_mean) fill_detail_o = DetailBits'(met7);
+    if (Mirrors && shows_mean) fill_detail_o = DetailBits'(met8);
     if (Light && requests) begin
-      fill_detail_o = DetailBits'({mirrored7, request_place_o[2], request_place_o[1], request_place_o[0]});
+      fill_detail_o = DetailBits'({mirrored8, request_place_o[2], request_place_o[1], request_place_o[0]});
     end
     fill_detail_o[DetailBits-1-:2] = requests ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
   end

@@ -107,8 +107,8 @@ package voxrt_pkg;
     return $clog2(reach + 1) + 1;
   endfunction
 
-  // T modulo a power of two that is more than twice what lies between any two planes that a ray crosses in the world.
-  function automatic int unsigned lane_time_bits(int unsigned max_depth, bit light);
+  // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in it.
+  function automatic int unsigned key_bits(int unsigned max_depth, bit light);
     return WeightBits + max_depth + (light ? LitFractionBits : FractionBits) + 1;
   endfunction
 

@@ -23,7 +23,7 @@ module voxrt_ray_setup
   localparam int unsigned LitBits      = MaxDepth + LitFractionBits + 2,
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
   localparam int unsigned TimeBits     = DistanceBits + WeightBits,
-  localparam int unsigned LaneTimeBits = lane_time_bits(MaxDepth, Light),
+  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
 ) (
   input  logic                           clk_i,
@@ -53,7 +53,7 @@ module voxrt_ray_setup
   output logic        [             2:0] dead_o,
   output logic        [             2:0] octant_o,               // First octant of the root, mirrored frame.
   output logic        [  WeightBits-1:0] weight_o          [3],
-  output logic        [LaneTimeBits-1:0] entry_time_o,
+  output logic        [     KeyBits-1:0] entry_time_o,            // As lanes compare it.
   output face_e                          entry_face_o,
   output logic signed [DistanceBits-1:0] origin_o          [3],  // Mirrored frame.
   output logic                           shadow_o,
@@ -226,7 +226,8 @@ module voxrt_ray_setup
   end
 
   // 7: the entry key, the last near plane that is ahead.
-  logic signed [TimeBits-1:0] entry_time_q[7:9];
+  logic signed [TimeBits-1:0] entry_time_q[7:8];
+  logic        [KeyBits-1:0]  entry_time9_q;
   face_e                      entry_face_q[7:9];
   logic [2:0]                 enters;
   logic [9:7]                 outside_q;
@@ -271,7 +272,7 @@ module voxrt_ray_setup
   // 9: out.
   always_ff @(posedge clk_i) begin
     if (valid_q[8]) begin
-      entry_time_q[9]  <= entry_time_q[8];
+      entry_time9_q    <= KeyBits'(entry_time_q[8]);
       entry_face_q[9]  <= entry_face_q[8];
       past_middle_q[9] <= past_middle_q[8];
       outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8] || dark8;
@@ -286,7 +287,7 @@ module voxrt_ray_setup
   assign dead_o       = dead_q[9];
   assign octant_o     = past_middle_q[9];
   assign weight_o     = weight_q[9];
-  assign entry_time_o = entry_time_q[9][LaneTimeBits-1:0];
+  assign entry_time_o = entry_time9_q;
   assign entry_face_o = entry_face_q[9];
   assign lit_o        = !dark9 && !overflow_q[9];
 

@@ -66,7 +66,7 @@ module voxrt_rtu
   output logic        [            31:0] stalls_o             // Clocks in which a pixel waited to be accepted.
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
-  localparam int unsigned TimeBits = lane_time_bits(MaxDepth, Light);
+  localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned PlaceBits = MaxDepth + FractionBits;
   localparam int unsigned LitBits = MaxDepth + LitFractionBits + 2;
@@ -162,7 +162,7 @@ module voxrt_rtu
   pixel_t                         ray_pixel;
   logic        [             2:0] ray_mirrored, ray_dead, ray_octant;
   logic        [  WeightBits-1:0] ray_weight[3];
-  logic        [    TimeBits-1:0] ray_entry_time;
+  logic        [    KeyBits-1:0] ray_entry_time;
   face_e                          ray_entry_face;
   logic signed [DistanceBits-1:0] ray_origin[3];
   logic        [     TagBits-1:0] ray_tag;

@@ -12,7 +12,7 @@ module voxrt_track
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned TagBits      = $clog2(PixelDepth) + 1,
   localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
-  localparam int unsigned TimeBits     = lane_time_bits(MaxDepth, Light),
+  localparam int unsigned KeyBits     = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
   localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors)
@@ -42,7 +42,7 @@ module voxrt_track
   input  logic        [           2:0] ray_dead_i,
   input  logic        [           2:0] ray_octant_i,
   input  logic        [WeightBits-1:0] ray_weight_i            [3],
-  input  logic        [  TimeBits-1:0] ray_entry_time_i,
+  input  logic        [  KeyBits-1:0] ray_entry_time_i,
   input  face_e                        ray_entry_face_i,
   input  logic signed [OriginBits-1:0] ray_origin_i            [3],
   input  logic                         ray_shadow_i,
@@ -78,7 +78,7 @@ module voxrt_track
     logic [2:0]                 dead;
     logic [2:0]                 octant;
     logic [2:0][WeightBits-1:0] weight;
-    logic [TimeBits-1:0]        entry_time;
+    logic [KeyBits-1:0]        entry_time;
     face_e                      entry_face;
   } ray_t;
 
