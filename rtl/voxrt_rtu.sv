@@ -58,8 +58,8 @@ module voxrt_rtu
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
-  localparam int unsigned RayFifoDepth = 16;
-  localparam int unsigned BufferDepth = 128;
+  localparam int unsigned RayFifoDepth = 32;
+  localparam int unsigned BufferDepth = 512;
   localparam int unsigned TagBits = $clog2(BufferDepth) + 1;
 
   // Frame.
@@ -98,8 +98,8 @@ module voxrt_rtu
   assign busy_o = busy_q;
 
   // Ray generator: a ray goes to the lane whose turn it is when that lane's FIFO has a place.
-  logic                       direction_valid, issues;
-  logic signed [ScanBits-1:0] direction[3];
+  logic                       corner, direction_valid, issues;
+  logic signed [ScanBits-1:0] line_step[3], direction[3];
   logic [Lanes-1:0]           turn_q;  // One-hot.
   logic [Lanes-1:0]           has_credit;
   logic                       unused_first, unused_line_end, unused_last;
@@ -111,13 +111,26 @@ module voxrt_rtu
     if (!rst_ni || start_q) turn_q <= Lanes'(1);
   end
 
+  voxrt_scan u_scan (
+    .clk_i,
+    .rst_ni,
+    .start_i      (start_q),
+    .look_i       (look_q),
+    .right_i      (right_q),
+    .up_i         (up_q),
+    .half_width_i (width_q[SizeBits-1:1]),
+    .half_height_i(height_q[SizeBits-1:1]),
+    .corner_o     (corner),
+    .line_step_o  (line_step)
+  );
+
   voxrt_ray_generator u_ray_generator (
     .clk_i,
     .rst_ni,
     .start_i    (start_q),
-    .look_i     (look_q),
+    .corner_i   (corner),
+    .line_step_i(line_step),
     .right_i    (right_q),
-    .up_i       (up_q),
     .width_i    (width_q),
     .height_i   (height_q),
     .valid_o    (direction_valid),
@@ -315,12 +328,12 @@ module voxrt_rtu
   voxrt_shader u_shader (
     .clk_i,
     .rst_ni,
-    .start_i   (start_q),
-    .look_i    (look_q),
-    .right_i   (right_q),
-    .up_i      (up_q),
-    .width_i   (width_q),
-    .height_i  (height_q),
+    .start_i    (start_q),
+    .corner_i   (corner),
+    .line_step_i(line_step),
+    .right_i    (right_q),
+    .width_i    (width_q),
+    .height_i   (height_q),
     .table_write_i,
     .table_material_i,
     .table_colour_i,

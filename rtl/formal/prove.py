@@ -18,9 +18,12 @@ BIN = Path(sys.executable).parent
 
 PROOFS = {
     "voxrt_fifo": ("prove", 4),
-    "voxrt_pixel_buffer": ("bmc", 11),
+    "voxrt_pixel_buffer": ("bmc", 15),
     "voxrt_pixel_packer": ("bmc", 9),
 }
+
+# What a module is made of.
+PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",)}
 
 JOB = """
 [options]
@@ -38,7 +41,8 @@ prep -top {name}_properties -flatten
 
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
-    files = [RTL / "voxrt_pkg.sv", RTL / f"{name}.sv", FORMAL / f"{name}_properties.sv"]
+    parts = [name, *PARTS.get(name, ())]
+    files = [RTL / "voxrt_pkg.sv", *(RTL / f"{part}.sv" for part in parts), FORMAL / f"{name}_properties.sv"]
     sources = " ".join(path.name for path in files)
     job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
     with tempfile.TemporaryDirectory() as folder:
@@ -59,7 +63,7 @@ def main() -> int:
     failed = False
     for name in sys.argv[1:] or PROOFS:
         mode, depth = PROOFS[name]
-        for kind, clocks in ((mode, depth), ("cover", 12)):
+        for kind, clocks in ((mode, depth), ("cover", 18)):
             holds = run(name, kind, clocks)
             failed |= not holds
             print(f"{name}: {kind}, {clocks} clocks: {'holds' if holds else 'FAILS'}", flush=True)
