@@ -55,7 +55,8 @@ module voxrt_lane
   localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
-  localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors)
+  localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors),
+  localparam int unsigned Width        = pixel_bits(MaxDepth, Light, Mirrors)
 ) (
   input  logic                           clk_i,
   input  logic                           rst_ni,
@@ -102,10 +103,8 @@ module voxrt_lane
   output logic                           fill_o,                 // The pixel is whole.
   output logic        [     TagBits-1:0] fill_tag_o,             // Of what is filled or stored.
   output logic                           fill_lit_o,
-  output logic                           store_pixel_o,
-  output pixel_t                         fill_pixel_o,
-  output logic                           store_detail_o,
-  output logic        [  DetailBits-1:0] fill_detail_o,
+  output logic                           store_o,
+  output logic        [       Width-1:0] store_pixel_o,
   // Sub-cells for voxrt_light, as ShadeLight has them.
   output logic                           request_o,
   input  logic                           request_ready_i,
@@ -375,6 +374,10 @@ module voxrt_lane
   // 8 turn. A ray that finishes is reflected, or goes on to the sub-cell, or ends.
   logic                finishes, meets_face, reflects, reflects_out, shows_mean, is_lightable, sinks, requests;
   logic                turned_away;
+  pixel_t              pixel8;
+  material_t           sinks_material8;
+  shade_e              shade8;
+  mirrors_t            met8;
   logic                ends, starts, resolves, renews;
   logic [CellBits-1:0] corner9_q[3], size9_q, cleared9_q, top_size;
   logic [         2:0] set9_q, set8, mirrored8;
@@ -398,11 +401,34 @@ module voxrt_lane
   assign ray_ready_o = starts || resolves;
   assign take_o      = ray_ready_o && !ray_shadow_i;
 
-  assign fill_o        = ends || resolves;
-  assign fill_tag_o    = finishes || requests ? tag_q[slot[8]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_pixel_o = (finishes && !reflects && !shadow8) || (resolves && !ray_shadow_i);
-  assign fill_pixel_o  = !finishes ? ray_pixel_i : reflects_out ?
-      '{material: '0, face: FaceNone} : '{material: material8_q, face: face8_q};
+  // A shadow ray has its pixel stored already.
+  assign fill_o     = ends || resolves;
+  assign fill_tag_o = finishes || requests ? tag_q[slot[8]] : ray_shadow_i ? ray_tag_i : take_tag_i;
+  assign store_o    = (ends && !shadow8) || (resolves && !ray_shadow_i) || requests;
+
+  always_comb begin
+    pixel8 = '{material: material8_q, face: face8_q};
+    if (reflects_out) pixel8 = '{material: '0, face: FaceNone};
+    if (requests) pixel8 = '{material: sinks_material8, face: key_face8_q};
+    else if (!finishes) pixel8 = ray_pixel_i;
+    shade8 = requests || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
+  end
+
+  if (OwnOrigin) begin : gen_detail
+    logic [DetailBits-3:0] payload;
+    always_comb begin
+      payload = '0;
+      if (Mirrors) payload = (DetailBits - 2)'(met8);
+      if (Light && requests) begin
+        payload = (DetailBits - 2)'({mirrored8, request_place_o[2], request_place_o[1], request_place_o[0]});
+      end
+    end
+    assign store_pixel_o = {shade8, payload, pixel8};
+  end else begin : gen_no_detail
+    logic unused_shade;
+    assign unused_shade  = &{shade8, met8, mirrored8};
+    assign store_pixel_o = pixel8;
+  end
 
   // FaceNone stands for a new ray's time.
   assign key_face = face_e'(exit_face8_q | {2{starts}});
@@ -524,7 +550,6 @@ module voxrt_lane
   end
 
   // The mirror image of a ray.
-  mirrors_t met8;
 
   if (Mirrors) begin : gen_mirrors
     logic                           reflects_here, outward8_q;
@@ -584,8 +609,9 @@ module voxrt_lane
 
   // Down to the sub-cell, and the answers of shadow rays.
   if (Light) begin : gen_light
-    logic              sinks_q [Slots];
-    logic              shadow_q[Slots];
+    logic              sinks_q   [Slots];
+    logic              shadow_q  [Slots];
+    material_t         material_q[Slots];  // That a ray has hit.
     logic              in_shadow;
 
     assign sinks0  = sinks_q[slot_q[0]];
@@ -599,7 +625,10 @@ module voxrt_lane
     always_ff @(posedge clk_i) begin
       if (starts || sinks) sinks_q[slot[8]] <= !starts;
       if (starts) shadow_q[slot[8]] <= ray_shadow_i;
+      if (sinks) material_q[slot[8]] <= material8_q;
     end
+
+    assign sinks_material8 = material_q[slot[8]];
 
     // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
     always_comb begin
@@ -626,22 +655,12 @@ module voxrt_lane
                             to_light_i[0][0], to_light_i[0][1], to_light_i[0][2], to_light_i[1][0], to_light_i[1][1],
                             to_light_i[1][2]};
     assign {sinks0, sinks2, sinks3, sinks8, shadow1, shadow2, shadow8, turned_away} = '0;
+    assign sinks_material8 = '0;
     assign fill_lit_o         = 1'b0;
     assign request_o          = 1'b0;
     assign request_tag_o      = '0;
     assign request_face_o     = FaceNone;
     assign request_mirrored_o = '0;
     assign request_place_o    = '{default: '0};
-  end
-
-  assign store_detail_o = (ends && !shadow8) || (resolves && !ray_shadow_i) || requests;
-
-  always_comb begin
-    fill_detail_o = '0;
-    if (Mirrors && shows_mean) fill_detail_o = DetailBits'(met8);
-    if (Light && requests) begin
-      fill_detail_o = DetailBits'({mirrored8, request_place_o[2], request_place_o[1], request_place_o[0]});
-    end
-    fill_detail_o[DetailBits-1-:2] = requests || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
   end
 endmodule

@@ -7,16 +7,16 @@ module voxrt_pixels
   parameter  bit          Flat       = 1'b0,
   parameter  bit          Light      = 1'b0,
   parameter  bit          Mirrors    = 1'b0,
-  localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors),
+  localparam int unsigned Width      = pixel_bits(MaxDepth, Light, Mirrors),
   localparam int unsigned LightBits  = light_bits(MaxDepth)
 ) (
   input  logic                         clk_i,
   input  logic                         rst_ni,
   // Frame.
   input  logic                         start_i,
-  input  logic signed [CameraBits-1:0] look_i    [3],
+  input  logic                         corner_i,
+  input  logic signed [  ScanBits-1:0] line_step_i[3],
   input  logic signed [CameraBits-1:0] right_i   [3],
-  input  logic signed [CameraBits-1:0] up_i      [3],
   input  logic        [  SizeBits-1:0] width_i,
   input  logic        [  SizeBits-1:0] height_i,
   input  logic        [    MaxDepth:0] world_i,
@@ -30,9 +30,8 @@ module voxrt_pixels
   // From the tracks.
   input  logic        [     Lanes-1:0] valid_i,
   output logic        [     Lanes-1:0] ready_o,
-  input  pixel_t                       pixel_i   [Lanes],
   input  logic        [     Lanes-1:0] lit_i,
-  input  logic        [DetailBits-1:0] detail_i  [Lanes],
+  input  logic        [     Width-1:0] pixel_i   [Lanes],
   // Out.
   output logic                         out_valid_o,
   input  logic                         out_ready_i,
@@ -43,17 +42,17 @@ module voxrt_pixels
   output logic                         out_last_o
 );
   localparam bit Given = Light || Mirrors;
-  localparam int unsigned Width = $bits(pixel_t) + (Given ? 1 + DetailBits : 0);
+  localparam int unsigned MergeBits = Width + (Light ? 1 : 0);
 
-  logic        [Width-1:0] tracks[Lanes];
-  logic        [Width-1:0] merged;
+  logic    [MergeBits-1:0] tracks[Lanes];
+  logic    [MergeBits-1:0] merged;
   logic                    merged_valid, merged_ready, shaded_valid, shaded_ready;
   pixel_t                  shaded;
   brightness_t             brightness;
 
   voxrt_merge #(
     .Lanes(Lanes),
-    .Width(Width)
+    .Width(MergeBits)
   ) u_merge (
     .clk_i,
     .rst_ni,
@@ -66,14 +65,9 @@ module voxrt_pixels
     .pixel_o(merged)
   );
 
+  always_comb for (int unsigned i = 0; i < Lanes; i++) tracks[i] = MergeBits'({lit_i[i], pixel_i[i]});
+
   if (Given) begin : gen_given
-    logic                  lit;
-    logic [DetailBits-1:0] detail;
-    pixel_t                pixel;
-
-    always_comb for (int unsigned i = 0; i < Lanes; i++) tracks[i] = {lit_i[i], detail_i[i], pixel_i[i]};
-    assign {lit, detail, pixel} = merged;
-
     voxrt_brightness #(
       .MaxDepth(MaxDepth),
       .Light   (Light),
@@ -87,9 +81,9 @@ module voxrt_pixels
       .ambient_i   (ambient_i),
       .valid_i     (merged_valid),
       .ready_o     (merged_ready),
-      .pixel_i     (pixel),
-      .lit_i       (lit),
-      .detail_i    (detail),
+      .pixel_i     (pixel_t'(merged[$bits(pixel_t)-1:0])),
+      .lit_i       (Light && merged[MergeBits-1]),
+      .detail_i    (merged[Width-1:$bits(pixel_t)]),
       .valid_o     (shaded_valid),
       .ready_i     (shaded_ready),
       .pixel_o     (shaded),
@@ -97,10 +91,7 @@ module voxrt_pixels
     );
   end else begin : gen_angle
     logic unused_detail;
-    assign unused_detail = &{lit_i, world_i, light_i[0], light_i[1], light_i[2], ambient_i};
-    logic [Lanes-1:0] unused_details;
-    always_comb for (int unsigned i = 0; i < Lanes; i++) unused_details[i] = &detail_i[i];
-    always_comb for (int unsigned i = 0; i < Lanes; i++) tracks[i] = pixel_i[i];
+    assign unused_detail = &{world_i, light_i[0], light_i[1], light_i[2], ambient_i};
     assign shaded       = merged;
     assign shaded_valid = merged_valid;
     assign merged_ready = shaded_ready;
@@ -114,9 +105,9 @@ module voxrt_pixels
     .clk_i,
     .rst_ni,
     .start_i,
-    .look_i,
+    .corner_i,
+    .line_step_i,
     .right_i,
-    .up_i,
     .width_i,
     .height_i,
     .table_write_i,

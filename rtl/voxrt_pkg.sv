@@ -117,7 +117,11 @@ package voxrt_pkg;
     return (max_depth + FractionBits >= DirectionBits ? max_depth + FractionBits + 1 : DirectionBits) + 1;
   endfunction
 
-  // A pixel's shade and its payload.
+  // A pixel between lane and shader: its detail, {shade, payload}, and a pixel_t below it; or the pixel_t alone.
+  function automatic int unsigned pixel_bits(int unsigned max_depth, bit light, bit mirrors);
+    return (light || mirrors ? detail_bits(max_depth, light, mirrors) : 0) + $bits(pixel_t);
+  endfunction
+
   function automatic int unsigned detail_bits(int unsigned max_depth, bit light, bit mirrors);
     int unsigned light_payload = light ? 3 + 3 * (max_depth + FractionBits) : 0;
     int unsigned mirrors_payload = mirrors ? $bits(mirrors_t) : 0;

@@ -70,9 +70,9 @@ module voxrt_rtu
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned PlaceBits = MaxDepth + FractionBits;
   localparam int unsigned LitBits = MaxDepth + LitFractionBits + 2;
-  localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);
-  localparam int unsigned RayDepth = 16;
-  localparam int unsigned PixelDepth = 128;
+  localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
+  localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
+  localparam int unsigned PixelDepth = 512;
   localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
 
   // Frame.
@@ -121,8 +121,8 @@ module voxrt_rtu
 
   // Rays of the camera: a ray goes to the lane whose turn it is when its queue has a place. Shadow rays go first, at any
   // clock that they come.
-  logic                         direction_valid, issues;
-  logic signed [  ScanBits-1:0] direction[3], way[3], ray_direction[3];
+  logic                         corner, direction_valid, issues;
+  logic signed [  ScanBits-1:0] line_step[3], direction[3], way[3], ray_direction[3];
   logic        [     Lanes-1:0] turn_q;  // One-hot.
   logic        [     Lanes-1:0] has_place;
   logic                         shadow_valid;
@@ -140,13 +140,26 @@ module voxrt_rtu
     if (!rst_ni || start_q) turn_q <= Lanes'(1);
   end
 
+  voxrt_scan u_scan (
+    .clk_i,
+    .rst_ni,
+    .start_i      (start_q),
+    .look_i       (look_q),
+    .right_i      (right_q),
+    .up_i         (up_q),
+    .half_width_i (width_q[SizeBits-1:1]),
+    .half_height_i(height_q[SizeBits-1:1]),
+    .corner_o     (corner),
+    .line_step_o  (line_step)
+  );
+
   voxrt_ray_generator u_ray_generator (
     .clk_i,
     .rst_ni,
     .start_i    (start_q),
-    .look_i     (look_q),
+    .corner_i   (corner),
+    .line_step_i(line_step),
     .right_i    (right_q),
-    .up_i       (up_q),
     .width_i    (width_q),
     .height_i   (height_q),
     .valid_o    (direction_valid),
@@ -234,8 +247,7 @@ module voxrt_rtu
   // Tracks.
   logic   [    Lanes-1:0] pixel_valid, pixel_ready, pixel_lit, read, word_read, bad_pointer, step_limit;
   logic   [    Lanes-1:0] request, request_ready, shadow_started;
-  pixel_t                 pixel            [Lanes];
-  logic   [DetailBits-1:0] detail          [Lanes];
+  logic   [    Width-1:0] pixel            [Lanes];
   logic   [BlockBits-1:0] block            [Lanes];
   logic   [          2:0] octant           [Lanes];
   logic   [PayloadBits:0] word             [Lanes];
@@ -299,7 +311,6 @@ module voxrt_rtu
       .pixel_ready_i         (pixel_ready[i]),
       .pixel_o               (pixel[i]),
       .lit_o                 (pixel_lit[i]),
-      .detail_o              (detail[i]),
       .bad_pointer_o         (bad_pointer[i]),
       .step_limit_o          (step_limit[i])
     );
@@ -374,24 +385,23 @@ module voxrt_rtu
   ) u_pixels (
     .clk_i,
     .rst_ni,
-    .start_i  (start_q),
-    .look_i   (look_q),
-    .right_i  (right_q),
-    .up_i     (up_q),
-    .width_i  (width_q),
-    .height_i (height_q),
-    .world_i  (world_q),
-    .light_i  (light_q),
-    .flat_i   (shading_q.flat),
-    .ambient_i(shading_q.ambient),
+    .start_i       (start_q),
+    .corner_i      (corner),
+    .line_step_i   (line_step),
+    .right_i       (right_q),
+    .width_i       (width_q),
+    .height_i      (height_q),
+    .world_i       (world_q),
+    .light_i       (light_q),
+    .flat_i        (shading_q.flat),
+    .ambient_i     (shading_q.ambient),
     .table_write_i,
     .table_material_i,
     .table_colour_i(table_row_i.colour),
-    .valid_i  (pixel_valid),
-    .ready_o  (pixel_ready),
-    .pixel_i  (pixel),
-    .lit_i    (pixel_lit),
-    .detail_i (detail),
+    .valid_i       (pixel_valid),
+    .ready_o       (pixel_ready),
+    .lit_i         (pixel_lit),
+    .pixel_i       (pixel),
     .out_valid_o,
     .out_ready_i,
     .out_colour_o,

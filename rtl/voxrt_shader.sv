@@ -18,9 +18,9 @@ module voxrt_shader
   input  logic                         rst_ni,
   // Frame, as voxrt_ray_generator wants it.
   input  logic                         start_i,
-  input  logic signed [CameraBits-1:0] look_i            [3],
+  input  logic                         corner_i,
+  input  logic signed [  ScanBits-1:0] line_step_i       [3],
   input  logic signed [CameraBits-1:0] right_i           [3],
-  input  logic signed [CameraBits-1:0] up_i              [3],
   input  logic        [  SizeBits-1:0] width_i,
   input  logic        [  SizeBits-1:0] height_i,
   // Material table; row 0 is the background.
@@ -62,9 +62,9 @@ module voxrt_shader
     .clk_i,
     .rst_ni,
     .start_i,
-    .look_i,
+    .corner_i,
+    .line_step_i,
     .right_i,
-    .up_i,
     .width_i,
     .height_i,
     .valid_o    (direction_valid),

@@ -7,7 +7,7 @@ module voxrt_track
   parameter  int unsigned BlockBits    = 12,
   parameter  int unsigned MemoryClocks = 2,
   parameter  int unsigned RayDepth     = 16,   // Rays that wait, of the camera and shadow rays each.
-  parameter  int unsigned PixelDepth   = 128,  // Pixels between start and merge.
+  parameter  int unsigned PixelDepth   = 512,  // Pixels between start and merge.
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned TagBits      = $clog2(PixelDepth) + 1,
@@ -15,7 +15,7 @@ module voxrt_track
   localparam int unsigned KeyBits     = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
-  localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors)
+  localparam int unsigned Width        = pixel_bits(MaxDepth, Light, Mirrors)
 ) (
   input  logic                         clk_i,
   input  logic                         rst_ni,
@@ -65,9 +65,8 @@ module voxrt_track
   // Pixels.
   output logic                         pixel_valid_o,
   input  logic                         pixel_ready_i,
-  output pixel_t                       pixel_o,
   output logic                         lit_o,
-  output logic        [DetailBits-1:0] detail_o,
+  output logic        [     Width-1:0] pixel_o,
   // Sticky errors.
   output logic                         bad_pointer_o,
   output logic                         step_limit_o
@@ -173,10 +172,9 @@ module voxrt_track
     assign ray_tag    = '0;
   end
 
-  logic                    take, take_ready, fill, lit, store_pixel, store_detail;
+  logic                    take, take_ready, fill, lit, store;
   logic   [   TagBits-1:0] take_tag, tag;
-  pixel_t                  pixel;
-  logic   [DetailBits-1:0] detail;
+  logic   [     Width-1:0] pixel;
 
   voxrt_lane #(
     .MaxDepth    (MaxDepth),
@@ -225,10 +223,8 @@ module voxrt_track
     .fill_o            (fill),
     .fill_tag_o        (tag),
     .fill_lit_o        (lit),
-    .store_pixel_o     (store_pixel),
-    .fill_pixel_o      (pixel),
-    .store_detail_o    (store_detail),
-    .fill_detail_o     (detail),
+    .store_o           (store),
+    .store_pixel_o     (pixel),
     .request_o,
     .request_ready_i,
     .request_tag_o,
@@ -240,25 +236,23 @@ module voxrt_track
   );
 
   voxrt_pixel_buffer #(
-    .Depth     (PixelDepth),
-    .DetailBits(DetailBits)
+    .Width      (Width),
+    .Depth      (PixelDepth),
+    .StoresFirst(Light)
   ) u_pixels (
     .clk_i,
     .rst_ni,
-    .take_i        (take),
-    .ready_o       (take_ready),
-    .tag_o         (take_tag),
-    .fill_i        (fill),
-    .tag_i         (tag),
-    .lit_i         (lit),
-    .store_pixel_i (store_pixel),
-    .pixel_i       (pixel),
-    .store_detail_i(store_detail),
-    .detail_i      (detail),
-    .valid_o       (pixel_valid_o),
-    .ready_i       (pixel_ready_i),
-    .pixel_o,
+    .take_i (take),
+    .ready_o(take_ready),
+    .tag_o  (take_tag),
+    .fill_i (fill),
+    .tag_i  (tag),
+    .lit_i  (lit),
+    .store_i(store),
+    .pixel_i(pixel),
+    .valid_o(pixel_valid_o),
+    .ready_i(pixel_ready_i),
     .lit_o,
-    .detail_o
+    .pixel_o
   );
 endmodule

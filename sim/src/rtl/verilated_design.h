@@ -48,12 +48,12 @@ public:
         const std::string memory = "TOP.voxrt_rtu.u_memory";
         *variable(memory, "root_q") = memory_word(words[0]);
         if (limits_.banked) {
-            uint32_t* banks[8];
-            for (unsigned bank = 0; bank < 8; ++bank)
+            uint32_t* banks[16];
+            for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
                     variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
             for (std::size_t row = 0; row + 1 < words.size(); ++row)
-                banks[(row ^ row >> 3) & 7][row >> 3] = memory_word(words[row + 1]);
+                banks[(row ^ row >> 4) & 15][row >> 4] = memory_word(words[row + 1]);
         } else {
             for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
                 uint32_t* rows =
@@ -158,7 +158,7 @@ private:
         model_->eval();
     }
 
-    // The pixel buffers clear themselves, 128 places a clock each, after reset.
+    // The pixel buffers clear themselves after reset, a place a clock; no ray starts until they have.
     void reset() {
         model_->start_i = 0;
         model_->out_ready_i = 0;
@@ -166,7 +166,8 @@ private:
         for (int i = 0; i < 16; ++i)
             clock();
         model_->rst_ni = 1;
-        clock();
+        for (int i = 0; i < 512; ++i)
+            clock();
     }
 
     void set_frame(const FrameRequest& request) {
