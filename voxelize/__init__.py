@@ -8,7 +8,6 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid, fit_grid
 from voxrt.voxelize.load import load
 from voxrt.voxelize.paint import Coat, Paint
-from voxrt.voxelize.texture import Texture
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -26,12 +25,14 @@ from voxrt.voxelize.scene import (
     Tints,
     Viewpoint,
 )
-from voxrt.voxelize.tint import tint
+from voxrt.voxelize.texture import Texture
+from voxrt.voxelize.tint import DEFAULT_COLOURS, tint
 from voxrt.voxelize.voxelize import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 __all__ = [
     "DEFAULT_COLOUR",
+    "DEFAULT_COLOURS",
     "EMPTY",
     "MATERIAL_LIMIT",
     "AssetError",

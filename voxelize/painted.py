@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 _SAMPLED_TRIANGLES = 1 << 10
 _SAMPLES = 1 << 12
 
-# A paint's name, whether it is a mirror, and its sRGB colour where it is the same all over.
-_Key: TypeAlias = tuple[str, bool, tuple[int, int, int] | None]
+_Key: TypeAlias = tuple[str, bool]  # a paint's name and whether it is a mirror
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -51,12 +50,28 @@ class Unfinished:
 
 
 @dataclass(eq=False, slots=True)
-class _Wearer:
-    """The triangles that share a material, in all meshes."""
+class _Wearers:
+    """The triangles that wear paint of one name.
+
+    Attributes
+    ----------
+    faces
+        The number of a mesh, and its triangles.
+    colours
+        The sRGB colours that paint has where it is the same all over a mesh's triangles; else None among them.
+    light, area
+        The mean colour (linear) times the area; and the area.
+    """
 
     faces: list[tuple[int, NDArray[np.intp]]] = field(default_factory=list)
+    colours: set[tuple[int, int, int] | None] = field(default_factory=set)
     light: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     area: float = 0.0
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all of it has one colour."""
+        return len(self.colours) == 1 and None not in self.colours
 
 
 def finish(unfinished: Sequence[Unfinished], table: MaterialTable, notes: Notes) -> list[Mesh]:
@@ -82,30 +97,29 @@ def finish(unfinished: Sequence[Unfinished], table: MaterialTable, notes: Notes)
     DoesNotFitError
         The uniform materials leave no id to the painted surfaces.
     """
-    wearers: dict[_Key, _Wearer] = {}
+    painted: dict[_Key, _Wearers] = {}
     materials = [one.materials.copy() for one in unfinished]
-    coats = [one.coat for one in unfinished]
+    rows = [one.coat.rows.copy() if one.coat is not None else None for one in unfinished]
     for at, one in enumerate(unfinished):
         if one.coat is None:
             continue
         solid = remaining(one.coat)
         cut = int(((one.coat.rows >= 0) & ~solid).sum())
         notes.add("transparent", "painted faces that are transparent all over are air", cut)
-        rows = np.where(solid, one.coat.rows, -1).astype(np.int32)
         for row, paint in enumerate(one.coat.paints):
-            faces = np.flatnonzero(rows == row)
+            faces = np.flatnonzero(solid & (one.coat.rows == row))
             if len(faces):
-                colour = _only_colour(one.coat, paint, faces)
-                wearer = wearers.setdefault((paint.name, paint.mirror, colour), _Wearer())
-                wearer.faces.append((at, faces))
-                _add_light(wearer, one, one.coat, paint, faces)
-                if colour is not None:
-                    rows[faces] = -1
-        coats[at] = replace(one.coat, rows=rows) if (rows >= 0).any() else None
-    for wearer, number in zip(wearers.values(), _numbers(wearers, table), strict=True):
-        for at, faces in wearer.faces:
+                wearers = painted.setdefault((paint.name, paint.mirror), _Wearers())
+                wearers.faces.append((at, faces))
+                wearers.colours.add(_only_colour(one.coat, paint, faces))
+                _add_light(wearers, one, one.coat, paint, faces)
+    for wearers, number in zip(painted.values(), _numbers(painted, table), strict=True):
+        for at, faces in wearers.faces:
             materials[at][faces] = number
-    return [_mesh(one, own, coat) for one, own, coat in zip(unfinished, materials, coats, strict=True)]
+            own = rows[at]
+            if wearers.uniform and own is not None:
+                own[faces] = -1
+    return [_mesh(*one) for one in zip(unfinished, materials, rows, strict=True)]
 
 
 def _only_colour(coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> tuple[int, int, int] | None:
@@ -117,7 +131,7 @@ def _only_colour(coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> tuple[int
     return red, green, blue
 
 
-def _add_light(wearer: _Wearer, one: Unfinished, coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> None:
+def _add_light(wearers: _Wearers, one: Unfinished, coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> None:
     """Add the mean colour of some triangles, from samples, by their area."""
     some = faces[:: -(-len(faces) // _SAMPLED_TRIANGLES)]
     weights = centroids(isqrt(_SAMPLES // len(some)))
@@ -127,34 +141,36 @@ def _add_light(wearer: _Wearer, one: Unfinished, coat: Coat, paint: Paint, faces
     areas = _areas(one, some)
     share = np.repeat(areas / (areas.max() or 1.0) + 1e-9, len(weights)) * (1e-9 + (found[:, 3] >= paint.cutoff))
     area = float(areas.sum()) * len(faces) / len(some)
-    wearer.light += share @ found[:, :3] / share.sum() * (area + 1e-300)
-    wearer.area += area + 1e-300
+    wearers.light += share @ found[:, :3] / share.sum() * (area + 1e-300)
+    wearers.area += area + 1e-300
 
 
-def _numbers(wearers: dict[_Key, _Wearer], table: MaterialTable) -> list[int]:
+def _numbers(painted: dict[_Key, _Wearers], table: MaterialTable) -> list[int]:
     """Append the materials of paints to `table`; return their ids. Paints that are too many share some."""
     free = MATERIAL_LIMIT - (len(table) - 1)
-    if free < 1 and wearers:
+    if free < 1 and painted:
         raise DoesNotFitError(
             f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
         )
-    if any(colour is None for _, _, colour in wearers):
+    if not all(wearers.uniform for wearers in painted.values()):
         free = -(-free // 2)  # the rest is for shades
-    colours = srgb_from_linear(np.array([one.light / one.area for one in wearers.values()]).reshape(-1, 3))
-    if len(wearers) <= free:
-        found = [tuple(colour) for colour in colours.tolist()]
-        keys: list[object] = list(wearers)
-    else:
-        palette, rows = quantize(colours, np.array([one.area for one in wearers.values()]), free)
-        found = [tuple(palette[row].tolist()) for row in rows]
-        keys = [(int(row), mirror) for row, (_, mirror, _) in zip(rows, wearers, strict=True)]
+    means = srgb_from_linear(np.array([one.light / one.area for one in painted.values()]).reshape(-1, 3))
+    colours = [next(iter(one.colours)) or mean for one, mean in zip(painted.values(), means.tolist(), strict=True)]
+    keys: list[object] = list(painted)
+    if len(painted) > free:
+        palette, rows = quantize(means, np.array([one.area for one in painted.values()]), free)
+        colours = palette[rows].tolist()
+        keys = [(int(row), mirror) for row, (_, mirror) in zip(rows, painted, strict=True)]
     return [
-        table.id_of(("paint", key), name, colour, mirror=mirror)
-        for key, (name, mirror, _), colour in zip(keys, wearers, found, strict=True)
+        table.id_of(("paint", key), name, (red, green, blue), mirror=mirror)
+        for key, (name, mirror), (red, green, blue) in zip(keys, painted, colours, strict=True)
     ]
 
 
-def _mesh(one: Unfinished, materials: NDArray[np.uint8], coat: Coat | None) -> Mesh:
+def _mesh(one: Unfinished, materials: NDArray[np.uint8], rows: NDArray[np.int32] | None) -> Mesh:
+    coat = None
+    if one.coat is not None and rows is not None and (rows[materials != 0] >= 0).any():
+        coat = replace(one.coat, rows=rows)
     solid = materials != 0
     if solid.all():
         return Mesh(one.positions, one.triangles, materials, coat)
@@ -163,8 +179,8 @@ def _mesh(one: Unfinished, materials: NDArray[np.uint8], coat: Coat | None) -> M
     triangles = one.triangles[solid]
     used = np.zeros(len(one.positions), dtype=np.bool_)  # a vertex of air must not stretch the scene's bounds
     used[triangles] = True
-    rows = np.cumsum(used, dtype=np.int32) - np.int32(1)
-    return Mesh(one.positions[used], rows[triangles], materials[solid], coat)
+    moved = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    return Mesh(one.positions[used], moved[triangles], materials[solid], coat)
 
 
 def _areas(one: Unfinished, faces: NDArray[np.intp]) -> NDArray[np.float64]:

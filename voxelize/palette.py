@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _PIXELS = 1 << 14
+_FEW = 1 << 16
 _UNTIL_CHANGES = 1
 # Beyond this many colours, k-means sees them at 5 bits a channel: it is slow, and entries lie farther apart than that.
 _DISTINCT = 1 << 13
@@ -64,13 +65,16 @@ def quantize(
 
 
 def _distinct(packed: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[np.int32]]:
-    """Return the distinct colours in ascending order, and the place of each among them, without sorting."""
+    """Return the distinct colours in ascending order, and the place of each among them; many are not sorted."""
+    if len(packed) < _FEW:
+        found, places = np.unique(packed, return_inverse=True)
+        return found, places.astype(np.int32)
     seen = np.zeros(1 << 24, np.bool_)
     seen[packed] = True
     found = np.flatnonzero(seen).astype(np.uint32)
-    places = np.empty(1 << 24, np.int32)
-    places[found] = np.arange(len(found), dtype=np.int32)
-    return found, places[packed]
+    place_of = np.empty(1 << 24, np.int32)
+    place_of[found] = np.arange(len(found), dtype=np.int32)
+    return found, place_of[packed]
 
 
 def _packed(srgb: NDArray[np.uint8]) -> NDArray[np.uint32]:

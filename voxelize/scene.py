@@ -84,7 +84,8 @@ class Mesh:
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
-        uint8, shape (T,): material ids, 1 … 255. Painted triangles have that of their paint.
+        uint8, shape (T,): material ids, 1 … 255. Painted triangles have that of their paint, and
+        once they are tinted that of most of the mesh's paint.
     coat
         The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
     tints

@@ -107,14 +107,14 @@ def _wrapped(coordinate: NDArray[np.float64], wrap: Wrap) -> NDArray[np.float64]
 
 def _pixels(texture: Texture, places: NDArray[np.int64]) -> NDArray[np.float64]:
     stored = np.ascontiguousarray(texture.pixels).view(np.uint32).reshape(-1)[places].view(np.uint8).reshape(-1, 4)
-    linear = LINEAR_OF_SRGB8[stored]
+    linear: NDArray[np.float64] = LINEAR_OF_SRGB8[stored]
     linear[:, 3] = stored[:, 3] / 255.0
     return linear
 
 
 def _rows(y: NDArray[np.int64], texture: Texture) -> NDArray[np.int64]:
     height, width = texture.pixels.shape[:2]
-    return _index(y, height, texture.wrap[1]) * width
+    return _index(y, height, texture.wrap[1]) * np.int64(width)
 
 
 def _columns(x: NDArray[np.int64], texture: Texture) -> NDArray[np.int64]:

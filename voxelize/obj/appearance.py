@@ -11,8 +11,8 @@ from voxrt.voxelize.colour import LINEAR_OF_SRGB8
 from voxrt.voxelize.images import decode_image
 from voxrt.voxelize.obj.mtl import MtlMaterial, MtlTexture, find_companion, read_mtl
 from voxrt.voxelize.paint import Coat, Paint
-from voxrt.voxelize.texture import Texture
 from voxrt.voxelize.scene import DEFAULT_COLOUR
+from voxrt.voxelize.texture import Texture
 
 if TYPE_CHECKING:
     from pathlib import Path
