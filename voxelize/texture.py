@@ -98,11 +98,9 @@ def _mean(plane: NDArray[np.float32]) -> NDArray[np.float32]:
 def _wrapped(coordinate: NDArray[np.float64], wrap: Wrap) -> NDArray[np.float64]:
     """Bring coordinates into 0 … 1, or 0 … 2 for mirrored ones, where they are exact however far out they were."""
     if wrap == "clamp":
-        return np.clip(coordinate, 0.0, 1.0)
-    if wrap == "repeat":
-        found: NDArray[np.float64] = coordinate - np.floor(coordinate)
-        return found
-    return np.mod(coordinate, 2.0)
+        return np.nan_to_num(np.clip(coordinate, 0.0, 1.0))
+    with np.errstate(invalid="ignore"):
+        return np.nan_to_num(coordinate - np.floor(coordinate) if wrap == "repeat" else np.mod(coordinate, 2.0))
 
 
 def _pixels(texture: Texture, places: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -35,7 +35,7 @@ DEFAULT_COLOURS = 32
 """How many colours painted surfaces get together, where nobody says: pictures of models then differ from those with all
 254 by 45 to 63 dB (38 for a photograph); twice as many take up to a quarter more words for 2 to 4 dB."""
 
-_MOST_CELLS = 1 << 24
+_MOST_CELLS = 1 << 23
 _LONGEST = 1 << 16
 _CHUNK = 1 << 18
 _RIGHT = 1e-6
@@ -147,7 +147,7 @@ def _outlines(frames: Iterable[_Frame]) -> list[_Outline]:
         cells = sum(int(np.prod(outline.sizes, axis=1, dtype=np.int64).sum()) for outline in outlines)
         if cells <= _MOST_CELLS or scale < 1e-9:
             break
-        scale *= 0.7
+        scale *= 0.9
     for outline in outlines:
         rows = np.arange(len(outline.base))
         second, apex = (outline.base + 1) % 3, (outline.base + 2) % 3
@@ -234,9 +234,9 @@ def _steps(paint: Paint, coat: Coat, outline: _Outline, members: NDArray[np.intp
     if paint.texture is None:
         return np.ones(len(members), np.int64)
     height, width = paint.texture.pixels.shape[:2]
-    uv = coat.uv[members] * (width, height)
-    one, other = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     with np.errstate(over="ignore", invalid="ignore"):
+        uv = coat.uv[members] * (width, height)
+        one, other = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
         pixels = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
     across = np.sqrt(np.nan_to_num(pixels) / np.prod(outline.sizes[members], axis=1, dtype=np.int64))
     largest = max(width, height)

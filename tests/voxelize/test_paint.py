@@ -76,6 +76,15 @@ def test_far_coordinates_stay_exact():
     assert sample(painted, np.array([0]), np.array([[1.0, 0, 0]]))[0].tolist() == [0, 1, 0, 1]
 
 
+@pytest.mark.parametrize("wrap", WRAPS)
+@pytest.mark.parametrize("nearest", [True, False])
+@pytest.mark.parametrize("beyond", [np.nan, np.inf, -np.inf, 1.7e308, -1.7e308])
+def test_coordinates_beyond_numbers_have_some_colour(wrap, nearest, beyond):
+    texture = Texture(np.full((3, 5, 4), 255, np.uint8), (wrap, wrap), nearest)
+    painted = coat(uv=[[(beyond, 0), (0, beyond), (beyond, beyond)]], texture=texture)
+    assert sample(painted, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [1, 1, 1, 1]
+
+
 def encoded(linear):
     """The nearest of 256 codes."""
     return int(np.abs(LINEAR_OF_SRGB8 - linear).argmin())
