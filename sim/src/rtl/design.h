@@ -14,9 +14,9 @@ namespace voxrt::rtl {
 struct Limits {
     unsigned lanes;
     bool banked;
-    unsigned max_depth;     // depth is 1 .. max_depth
-    unsigned position_bits; // signed
-    unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
+    unsigned max_depth;        // depth is 1 .. max_depth
+    unsigned position_bits;    // signed
+    unsigned block_bits;       // blocks of eight words that the memory holds: 2 ** block_bits
     bool flat, light, mirrors; // features that are built in; others are off, whatever is asked for
 
     std::size_t memory_words() const { return (std::size_t{8} << block_bits) + 1; }
@@ -39,7 +39,7 @@ struct FrameRequest {
     int32_t light_position[3]; // 1/16 voxel
     uint8_t ambient;           // 1/256
     uint8_t bounces;           // 0 .. bounce_limit
-    uint32_t stall_seed;      // 0: the output is always ready; else it stalls in a pattern of this seed's
+    uint32_t stall_seed;       // 0: the output is always ready; else it stalls in a pattern of this seed's
 };
 
 // Row by row from the top; colour 3 bytes a pixel.

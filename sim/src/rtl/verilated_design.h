@@ -190,8 +190,8 @@ private:
                 static_cast<uint32_t>(request.light_position[axis]) & ((1u << limits_.light_bits()) - 1);
         }
         // voxrt_pkg::shading_t.
-        model_->shading_i = static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 |
-                                                  request.bounces);
+        model_->shading_i =
+            static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 | request.bounces);
         model_->width_i = static_cast<uint16_t>(request.width);
         model_->height_i = static_cast<uint16_t>(request.height);
         model_->depth_i = static_cast<uint8_t>(request.depth);
