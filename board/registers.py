@@ -175,6 +175,12 @@ REGISTERS = {
             "bounces": (16, 4),
         },
     ),
+    "root": (
+        0x078,
+        {
+            "address": (0, 32),
+        },
+    ),
     "light[0]": (
         0x080,
         {

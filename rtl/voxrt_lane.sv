@@ -30,17 +30,8 @@
 // The ring never stops: rays start only when the pixel buffer has a place for them. A word that the memory did not
 // deliver (mem_ack_i low) is asked for again at the ray's next turn.
 //
-// Mirrors: a ray that hits one starts anew at the root in its slot, with the key of the hit, the mirror bit of that axis
-// flipped and the origin moved by 16 (side - 2 plane), so that the plane's T stays; it stands in the cell that it came
-// from. The root's octant needs no compare: that cell and the one hit differ on the one axis alone.
-//
-// Light: a camera's ray that hits goes on with its descent, by the same compares, to the sub-cell of 1/16 voxel: no word is
-// read, corner and size have four bits more. The sub-cell leaves for voxrt_light; the slot is free. A shadow ray, in
-// 1/32 voxel, comes back with the tag. Whether what it hits is before the light is a compare of cells on the axis of
-// the face: T_hit < T_light there says that the plane is before the light's coordinate. Another such compare finds
-// faces that are turned away from the light, whose rays need neither sub-cell nor shadow ray.
-// A ray whose sub-cell finds voxrt_light's queue full asks again at its next turn, and changes places with a shadow ray if
-// one waits: so neither waits for the other for ever.
+// Mirrors and Light give rays more ways to go on than to leave a leaf: voxrt_lane_turn. With Light, corner and size have four
+// bits more, for sub-cells, and rays that look for theirs read no word.
 module voxrt_lane
   import voxrt_pkg::*;
 #(
@@ -55,7 +46,6 @@ module voxrt_lane
   localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
-  localparam int unsigned DetailBits   = detail_bits(MaxDepth, Light, Mirrors),
   localparam int unsigned Width        = pixel_bits(MaxDepth, Light, Mirrors)
 ) (
   input  logic                           clk_i,
@@ -123,10 +113,6 @@ module voxrt_lane
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
 
-  // Rays have their own origins, and a root that is a leaf is read as if it were eight.
-  localparam bit OwnOrigin = Light || Mirrors;
-  localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;
-  localparam int unsigned TimeBits = DistanceBits + WeightBits;
   // Corners and sizes count 1 / 2**SubBits voxel.
   localparam int unsigned SubBits = Light ? FractionBits : 0;
   localparam int unsigned CellBits = MaxDepth + SubBits;
@@ -144,14 +130,12 @@ module voxrt_lane
   always_comb for (int unsigned s = 0; s < Stages; s++) slot[s] = slot_q[s+Extra];
 
   // State by slot.
-  logic        [WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
-  logic        [           2:0] mirrored_q[Slots];
-  logic        [           2:0] dead_q    [Slots];
-  logic        [   TagBits-1:0] tag_q     [Slots];
-  logic        [   KeyBits-1:0] key_time_q[Slots];
-  face_e                        key_face_q[Slots];
-  logic        [  CellBits-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
-  logic        [  CellBits-1:0] size_q    [Slots];
+  logic [         2:0] mirrored_q[Slots];
+  logic [         2:0] dead_q    [Slots];
+  logic [ KeyBits-1:0] key_time_q[Slots];
+  face_e               key_face_q[Slots];
+  logic [CellBits-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
+  logic [CellBits-1:0] size_q    [Slots];
 
   // 0 fetch.
   logic [BlockBits-1:0] block0_q;
@@ -161,11 +145,12 @@ module voxrt_lane
   logic [CellBits-1:0]  corner1_q[3];
   logic [CellBits-1:0]  size1_q;
   logic [2:0]           mirrored1_q, dead1_q;
-  logic                 sinks0, sinks2, sinks3, sinks8;  // The ray has hit, and looks for the sub-cell.
-  logic                 shadow1, shadow2, shadow8;       // It is a shadow ray.
+  logic                 sinks0, sinks2, sinks3;  // The ray has hit, and looks for the sub-cell.
+  logic                 shadow1, shadow2;        // It is a shadow ray.
   logic                 root_is_leaf;
 
-  assign root_is_leaf = OwnOrigin && root_i[PayloadBits];
+  // Then it is read as if it were eight.
+  assign root_is_leaf = (Light || Mirrors) && root_i[PayloadBits];
   assign mem_read_o   = active_q[0] && !sinks0 && !root_is_leaf;
   assign mem_block_o  = block0_q;
   assign mem_octant_o = octant0_q;
@@ -181,10 +166,8 @@ module voxrt_lane
     dead1_q     <= dead_q[slot[0]];
   end
 
-  // 1 wait, 2 decode: from the origin to the cell's near planes; to the far or middle planes.
-  logic signed [DistanceBits-1:0] distance3_q[3];
-  logic        [    CellBits-1:0] size2_q;
-  logic                           takes_far;
+  // 1 wait.
+  logic [CellBits-1:0] size2_q;
 
   always_ff @(posedge clk_i) size2_q <= size1_q;
 
@@ -214,15 +197,11 @@ module voxrt_lane
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
-  // A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
-  assign takes_far = Light ? action == Leave : leaf;
-
-  logic        [  WeightBits-1:0] weight3_q  [3];
-  action_e                        action3_q, action4_q, action5_q, action6_q, action7_q;
-  logic        [   BlockBits-1:0] block3_q;
-  material_t                      material3_q, material4_q, material5_q, material6_q, material7_q, material8_q;
-  logic        [   LevelBits-1:0] child_level3_q;
-  logic                           bad_pointer_q, step_limit_q;
+  action_e              action3_q, action4_q, action5_q, action6_q, action7_q;
+  logic [BlockBits-1:0] block3_q;
+  material_t            material3_q, material4_q, material5_q, material6_q, material7_q, material8_q;
+  logic [LevelBits-1:0] child_level3_q;
+  logic                 bad_pointer_q, step_limit_q;
 
   // Binary number of a one-hot size.
   function automatic logic [LevelBits-1:0] level_of(logic [CellBits-1:0] size);
@@ -231,10 +210,7 @@ module voxrt_lane
   endfunction
 
   always_ff @(posedge clk_i) begin
-    action3_q <= action;
-    weight3_q[0]   <= weight_x_q[slot[2]];
-    weight3_q[1]   <= weight_y_q[slot[2]];
-    weight3_q[2]   <= weight_z_q[slot[2]];
+    action3_q      <= action;
     block3_q       <= word[BlockBits-1:0];
     material3_q    <= leaf && !bad_pointer ? word[7:0] : '0;
     child_level3_q <= level_of(size2_q >> 1);
@@ -245,22 +221,40 @@ module voxrt_lane
   assign bad_pointer_o = bad_pointer_q;
   assign step_limit_o  = step_limit_q;
 
-  // 3 product, 4 sum.
-  logic signed [TimeBits-1:0] exact_time5[3];
-  logic        [KeyBits-1:0]  time5      [3];
+  // 1 to 4: T of planes. A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
+  logic                       starts, reflects;
+  face_e                      key_face8_q;
+  logic        [KeyBits-1:0]  time5[3];
+  logic signed [MaxDepth+1:0] shift8;
 
-  for (genvar a = 0; a < 3; a++) begin : gen_time
-    voxrt_plane_time #(
-      .DistanceBits(DistanceBits)
-    ) u_time (
-      .clk_i,
-      .distance_i(distance3_q[a]),
-      .weight_i  (weight3_q[a]),
-      .time_o    (exact_time5[a])
-    );
-
-    assign time5[a] = KeyBits'(exact_time5[a]);
-  end
+  voxrt_cell_times #(
+    .MaxDepth    (MaxDepth),
+    .PositionBits(PositionBits),
+    .Slots       (Slots),
+    .Light       (Light),
+    .Mirrors     (Mirrors)
+  ) u_times (
+    .clk_i,
+    .origin_i,
+    .mirrored_origin_i,
+    .slot1_i     (slot[1]),
+    .corner1_i   (corner1_q),
+    .mirrored1_i (mirrored1_q),
+    .dead1_i     (dead1_q),
+    .shadow1_i   (shadow1),
+    .slot2_i     (slot[2]),
+    .size2_i     (size2_q),
+    .shadow2_i   (shadow2),
+    .takes_far_i (Light ? action == Leave : leaf),
+    .slot8_i     (slot[8]),
+    .starts_i    (starts),
+    .weight_i    (ray_weight_i),
+    .ray_origin_i,
+    .reflects_i  (reflects),
+    .face_i      (key_face8_q),
+    .shift_i     (shift8),
+    .time_o      (time5)
+  );
 
   logic [KeyBits-1:0] key_time5_q;
   face_e              key_face5_q;
@@ -352,7 +346,7 @@ module voxrt_lane
   logic [CellBits:0]   sum8_q;
   logic [CellBits-1:0] place8_q, inner_size8_q;
   logic                leaves8_q, finished8_q;
-  face_e               face8_q, key_face8_q;
+  face_e               face8_q;
 
   always_ff @(posedge clk_i) begin
     if (active_q[7+Extra]) begin
@@ -371,64 +365,80 @@ module voxrt_lane
     key_face8_q   <= key_face7_q;
   end
 
-  // 8 turn. A ray that finishes is reflected, or goes on to the sub-cell, or ends.
-  logic                finishes, meets_face, reflects, reflects_out, shows_mean, is_lightable, sinks, requests;
-  logic                turned_away;
-  pixel_t              pixel8;
-  material_t           sinks_material8;
-  shade_e              shade8;
-  mirrors_t            met8;
-  logic                ends, starts, resolves, renews;
+  // 8 turn.
+  logic                leaves, continues, renews;
   logic [CellBits-1:0] corner9_q[3], size9_q, cleared9_q, top_size;
   logic [         2:0] set9_q, set8, mirrored8;
   logic [ KeyBits-1:0] keys     [4];
   face_e               key_face;
 
-  assign finishes   = active_q[8+Extra] && (finished8_q || (sum8_q[CellBits:SubBits] & world_i) != '0);
-  assign meets_face = finishes && face8_q != FaceNone && !shadow8;
-  assign is_lightable = Light && meets_face && light_i && !reflects && !reflects_out && !shows_mean;
-  assign sinks        = is_lightable && !turned_away;
-  assign requests   = Light && active_q[8+Extra] && sinks8 && inner_size8_q[0] &&
-      (request_ready_i || (ray_valid_i && ray_shadow_i && !ray_resolved_i));
-  assign ends       = finishes && !reflects && !sinks;
-
-  assign starts   = ray_valid_i && !ray_resolved_i && (ray_shadow_i || take_ready_i) &&
-      (ends || requests || !active_q[8+Extra]);
-  assign resolves = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
+  assign leaves   = (sum8_q[CellBits:SubBits] & world_i) != '0;
   assign renews   = starts || reflects;
   assign top_size = CellBits'(world_i[MaxDepth:1]) << SubBits;
 
-  assign ray_ready_o = starts || resolves;
-  assign take_o      = ray_ready_o && !ray_shadow_i;
-
-  // A shadow ray has its pixel stored already.
-  assign fill_o     = ends || resolves;
-  assign fill_tag_o = finishes || requests ? tag_q[slot[8]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_o    = (ends && !shadow8) || (resolves && !ray_shadow_i) || requests;
-
-  always_comb begin
-    pixel8 = '{material: material8_q, face: face8_q};
-    if (reflects_out) pixel8 = '{material: '0, face: FaceNone};
-    if (requests) pixel8 = '{material: sinks_material8, face: key_face8_q};
-    else if (!finishes) pixel8 = ray_pixel_i;
-    shade8 = requests || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
-  end
-
-  if (OwnOrigin) begin : gen_detail
-    logic [DetailBits-3:0] payload;
-    always_comb begin
-      payload = '0;
-      if (Mirrors) payload = (DetailBits - 2)'(met8);
-      if (Light && requests) begin
-        payload = (DetailBits - 2)'({mirrored8, request_place_o[2], request_place_o[1], request_place_o[0]});
-      end
-    end
-    assign store_pixel_o = {shade8, payload, pixel8};
-  end else begin : gen_no_detail
-    logic unused_shade;
-    assign unused_shade  = &{shade8, met8, mirrored8};
-    assign store_pixel_o = pixel8;
-  end
+  voxrt_lane_turn #(
+    .MaxDepth(MaxDepth),
+    .TagBits (TagBits),
+    .Slots   (Slots),
+    .Light   (Light),
+    .Mirrors (Mirrors)
+  ) u_turn (
+    .clk_i,
+    .world_i,
+    .light_i,
+    .bounces_i,
+    .before_light_i,
+    .to_light_i,
+    .table_write_i,
+    .table_material_i,
+    .table_row_i,
+    .slot0_i      (slot_q[0]),
+    .slot_i       (slot[1:8]),
+    .sinks0_o     (sinks0),
+    .shadow1_o    (shadow1),
+    .sinks2_o     (sinks2),
+    .shadow2_o    (shadow2),
+    .sinks3_o     (sinks3),
+    .material3_i  (material3_q),
+    .corner7_i    (corner7_q),
+    .key_face7_i  (key_face7_q),
+    .active_i     (active_q[8+Extra]),
+    .finishes_i   (finished8_q || leaves),
+    .material_i   (material8_q),
+    .face_i       (face8_q),
+    .key_face_i   (key_face8_q),
+    .mirrored_i   (mirrored_q[slot[8]]),
+    .corner_i     (corner8_q),
+    .set_i        (set8_q),
+    .smallest_i   (inner_size8_q[0]),
+    .ray_valid_i,
+    .ray_ready_o,
+    .ray_resolved_i,
+    .ray_pixel_i,
+    .ray_shadow_i,
+    .ray_tag_i,
+    .ray_lit_i,
+    .starts_o     (starts),
+    .reflects_o   (reflects),
+    .continues_o  (continues),
+    .shift_o      (shift8),
+    .mirrored_o   (mirrored8),
+    .set_o        (set8),
+    .take_o,
+    .take_ready_i,
+    .take_tag_i,
+    .fill_o,
+    .fill_tag_o,
+    .fill_lit_o,
+    .store_o,
+    .store_pixel_o,
+    .request_o,
+    .request_ready_i,
+    .request_tag_o,
+    .request_face_o,
+    .request_mirrored_o,
+    .request_place_o
+  );
 
   // FaceNone stands for a new ray's time.
   assign key_face = face_e'(exit_face8_q | {2{starts}});
@@ -441,19 +451,13 @@ module voxrt_lane
     corner9_q  <= corner8_q;
     if (renews) corner9_q <= '{default: '0};
     active_q          <= {active_q[Slots-2:0], active_q[Slots-1]};
-    active_q[9+Extra] <= starts || (active_q[8+Extra] && !ends && !requests);
+    active_q[9+Extra] <= starts || continues;
     if (!rst_ni) active_q <= '0;
     if (starts || leaves8_q) begin
       key_time_q[slot[8]] <= keys[key_face];
       key_face_q[slot[8]] <= starts ? ray_entry_face_i : exit_face8_q;
     end
-    if (starts) begin
-      weight_x_q[slot[8]] <= ray_weight_i[0];
-      weight_y_q[slot[8]] <= ray_weight_i[1];
-      weight_z_q[slot[8]] <= ray_weight_i[2];
-      dead_q[slot[8]]     <= ray_dead_i;
-      tag_q[slot[8]]      <= ray_shadow_i ? ray_tag_i : take_tag_i;
-    end
+    if (starts) dead_q[slot[8]] <= ray_dead_i;
     if (renews) mirrored_q[slot[8]] <= starts ? ray_mirrored_i : mirrored8;
   end
 
@@ -492,175 +496,4 @@ module voxrt_lane
     size_q[slot[10]]     <= size10_q;
   end
 
-  // Distances from the ray's own origin, or from the camera.
-  if (OwnOrigin) begin : gen_own_origin
-    logic signed [DistanceBits-1:0] origin_x_q[Slots], origin_y_q[Slots], origin_z_q[Slots];
-    logic signed [DistanceBits-1:0] origin1[3], near2_q[3], step2, shift8;
-    logic                           unused_origin;
-
-    assign unused_origin = &{origin_i[0], origin_i[1], origin_i[2], mirrored_origin_i[0], mirrored_origin_i[1],
-                             mirrored_origin_i[2], mirrored1_q};
-
-    assign origin1[0] = origin_x_q[slot[1]];
-    assign origin1[1] = origin_y_q[slot[1]];
-    assign origin1[2] = origin_z_q[slot[1]];
-    assign step2      = (DistanceBits'(size2_q) << (FractionBits - SubBits)) >> !takes_far;
-
-    // Planes of a dead axis must not meet the origin: a distance one less has the sign that tells where it is.
-    always_ff @(posedge clk_i) begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        near2_q[a] <= (DistanceBits'(corner1_q[a]) << (FractionBits - SubBits) << shadow1) - origin1[a] -
-            DistanceBits'(dead1_q[a]);
-        distance3_q[a] <= near2_q[a] + (step2 << shadow2);
-      end
-      if (starts) origin_x_q[slot[8]] <= DistanceBits'(ray_origin_i[0]);
-      else if (reflects && key_face8_q == FaceX) origin_x_q[slot[8]] <= origin_x_q[slot[8]] + shift8;
-      if (starts) origin_y_q[slot[8]] <= DistanceBits'(ray_origin_i[1]);
-      else if (reflects && key_face8_q == FaceY) origin_y_q[slot[8]] <= origin_y_q[slot[8]] + shift8;
-      if (starts) origin_z_q[slot[8]] <= DistanceBits'(ray_origin_i[2]);
-      else if (reflects && key_face8_q == FaceZ) origin_z_q[slot[8]] <= origin_z_q[slot[8]] + shift8;
-    end
-
-    if (Mirrors) begin : gen_shift
-      assign shift8 = gen_mirrors.shift8_q;
-    end else begin : gen_no_shift
-      assign shift8 = '0;
-    end
-  end else begin : gen_shared_origin
-    localparam int unsigned WholeBits = DistanceBits - FractionBits;
-    logic signed [   WholeBits-1:0] near2_q    [3];
-    logic        [FractionBits-1:0] fraction2_q[3];
-    logic                           unused_origin;
-
-    assign unused_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2], shadow1, shadow2};
-
-    // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
-    // origin's fraction counts as above 0.
-    for (genvar a = 0; a < 3; a++) begin : gen_near
-      logic whole;
-      assign whole = origin_i[a][FractionBits-1:0] == '0 && !dead1_q[a];
-
-      always_ff @(posedge clk_i) begin
-        near2_q[a] <= WholeBits'(corner1_q[a]) + WholeBits'(whole)
-            + ~WholeBits'((mirrored1_q[a] ? mirrored_origin_i[a] : origin_i[a]) >>> FractionBits);
-        fraction2_q[a] <= mirrored1_q[a] ? origin_i[a][FractionBits-1:0] : mirrored_origin_i[a][FractionBits-1:0];
-        distance3_q[a] <= {near2_q[a] + WholeBits'({1'b0, takes_far ? size2_q : size2_q >> 1}), fraction2_q[a]};
-      end
-    end
-  end
-
-  // The mirror image of a ray.
-
-  if (Mirrors) begin : gen_mirrors
-    logic                           reflects_here, outward8_q;
-    logic signed [DistanceBits-1:0] shift8_q;
-    logic        [    MaxDepth-1:0] plane7;
-
-    always_comb begin
-      unique case (key_face7_q)
-        FaceX:   plane7 = corner7_q[0][CellBits-1:SubBits];
-        FaceY:   plane7 = corner7_q[1][CellBits-1:SubBits];
-        default: plane7 = corner7_q[2][CellBits-1:SubBits];
-      endcase
-    end
-
-    always_ff @(posedge clk_i) begin
-      shift8_q   <= (DistanceBits'(world_i) - DistanceBits'({plane7, 1'b0})) <<< FractionBits;
-      outward8_q <= plane7 == '0;  // The world's own side: back where the ray came from there is nothing.
-    end
-
-    voxrt_reflect #(
-      .Slots(Slots)
-    ) u_reflect (
-      .clk_i,
-      .bounces_i,
-      .table_write_i,
-      .table_material_i,
-      .table_row_i,
-      .material_i(material3_q),
-      .slot6_i   (slot[6]),
-      .slot8_i   (slot[8]),
-      .hit_i     (meets_face),
-      .starts_i  (starts),
-      .reflects_o(reflects_here),
-      .ends_o    (shows_mean),
-      .met_o     (met8)
-    );
-
-    assign reflects     = reflects_here && !outward8_q;
-    assign reflects_out = reflects_here && outward8_q;
-
-    // The root's octant in which the ray goes on.
-    always_comb begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        mirrored8[a] = mirrored_q[slot[8]][a] ^ (reflects && key_face8_q == 2'(a));
-        set8[a]      = set8_q[a];
-        if (reflects) set8[a] = key_face8_q == 2'(a) ? !shift8_q[DistanceBits-1] : (corner8_q[a] & top_size) != '0;
-      end
-    end
-  end else begin : gen_no_mirrors
-    logic unused_mirrors;
-    assign unused_mirrors = &{table_write_i, table_material_i, table_row_i, bounces_i, met8, key_face8_q};
-    assign {reflects, reflects_out, shows_mean} = '0;
-    assign met8      = '0;
-    assign mirrored8 = mirrored_q[slot[8]];
-    assign set8      = set8_q;
-  end
-
-  // Down to the sub-cell, and the answers of shadow rays.
-  if (Light) begin : gen_light
-    logic              sinks_q   [Slots];
-    logic              shadow_q  [Slots];
-    material_t         material_q[Slots];  // That a ray has hit.
-    logic              in_shadow;
-
-    assign sinks0  = sinks_q[slot_q[0]];
-    assign sinks2  = sinks_q[slot[2]];
-    assign sinks3  = sinks_q[slot[3]];
-    assign sinks8  = sinks_q[slot[8]];
-    assign shadow1 = shadow_q[slot[1]];
-    assign shadow2 = shadow_q[slot[2]];
-    assign shadow8 = shadow_q[slot[8]];
-
-    always_ff @(posedge clk_i) begin
-      if (starts || sinks) sinks_q[slot[8]] <= !starts;
-      if (starts) shadow_q[slot[8]] <= ray_shadow_i;
-      if (sinks) material_q[slot[8]] <= material8_q;
-    end
-
-    assign sinks_material8 = material_q[slot[8]];
-
-    // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
-    always_comb begin
-      in_shadow   = face8_q == FaceNone;
-      turned_away = 1'b0;
-      for (int unsigned a = 0; a < 3; a++) begin
-        if (face8_q == 2'(a)) begin
-          in_shadow   = {1'b0, corner8_q[a][CellBits-1:SubBits]} < before_light_i[mirrored_q[slot[8]][a]][a];
-          turned_away = {1'b0, corner8_q[a][CellBits-1:SubBits]} < to_light_i[mirrored_q[slot[8]][a]][a];
-        end
-        request_place_o[a] = corner8_q[a] | CellBits'(set8_q[a]);
-      end
-    end
-
-    assign fill_lit_o         = finishes ? shadow8 && (material8_q == '0 || !in_shadow) : ray_lit_i;
-    assign request_o          = requests;
-    assign request_tag_o      = tag_q[slot[8]];
-    assign request_face_o     = key_face8_q;
-    assign request_mirrored_o = mirrored8;
-  end else begin : gen_no_light
-    logic unused_light;
-    assign unused_light = &{request_ready_i, ray_lit_i, light_i, before_light_i[0][0], before_light_i[0][1],
-                            before_light_i[0][2], before_light_i[1][0], before_light_i[1][1], before_light_i[1][2],
-                            to_light_i[0][0], to_light_i[0][1], to_light_i[0][2], to_light_i[1][0], to_light_i[1][1],
-                            to_light_i[1][2]};
-    assign {sinks0, sinks2, sinks3, sinks8, shadow1, shadow2, shadow8, turned_away} = '0;
-    assign sinks_material8 = '0;
-    assign fill_lit_o         = 1'b0;
-    assign request_o          = 1'b0;
-    assign request_tag_o      = '0;
-    assign request_face_o     = FaceNone;
-    assign request_mirrored_o = '0;
-    assign request_place_o    = '{default: '0};
-  end
 endmodule

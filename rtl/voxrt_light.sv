@@ -32,7 +32,11 @@ module voxrt_light
   output logic        [    Lanes-1:0] lane_o,
   output logic        [  TagBits-1:0] tag_o,
   output logic signed [  LitBits-1:0] lit_o      [3],     // 1/32 voxel.
-  output logic signed [ ScanBits-1:0] way_o      [3]
+  output logic signed [ ScanBits-1:0] way_o      [3],
+  // Which planes are before the light, and which are not behind it: those of lower number than these. In the grid's frame,
+  // [0], and mirrored, [1].
+  output logic        [   MaxDepth:0] before_light_o[2][3],
+  output logic        [   MaxDepth:0] to_light_o [2][3]
 );
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
 
@@ -114,6 +118,33 @@ module voxrt_light
     .lit_o,
     .way_o     (way)
   );
+
+  // The light among the planes.
+  localparam int unsigned Voxel = 2 ** FractionBits;
+  logic        [   MaxDepth:0] before_light_q[2][3], to_light_q[2][3];
+  logic signed [LightBits-1:0] mirrored_light[3];
+
+  function automatic logic [MaxDepth:0] plane_at(logic signed [LightBits-1:0] height, logic [MaxDepth:0] world);
+    logic signed [LightBits-1:0] plane = height >>> FractionBits;
+    if (plane < 0) return '0;
+    return plane > LightBits'(world) ? world : plane[MaxDepth:0];
+  endfunction
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) mirrored_light[a] = LightBits'({world_i, FractionBits'(0)}) - light_i[a];
+  end
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      before_light_q[0][a] <= plane_at(light_i[a] + LightBits'(Voxel - 1), world_i);
+      before_light_q[1][a] <= plane_at(mirrored_light[a] + LightBits'(Voxel - 1), world_i);
+      to_light_q[0][a]     <= plane_at(light_i[a] + LightBits'(Voxel), world_i);
+      to_light_q[1][a]     <= plane_at(mirrored_light[a] + LightBits'(Voxel), world_i);
+    end
+  end
+
+  assign before_light_o = before_light_q;
+  assign to_light_o     = to_light_q;
 
   assign valid_o = valid_q[2];
   assign lane_o  = lane_q[2];

@@ -145,6 +145,7 @@ module voxrt_pixel_generator
     .width_i         (control.size.width.value),
     .height_i        (control.size.height.value),
     .depth_i         (control.depth.depth.value[DepthBits-1:0]),
+    .root_i          (control.root.address.value),
     .shading_i       (shading),
     .light_i         (light),
     .access_i        (bram_en_i),

@@ -5,7 +5,7 @@
 //                        +------- light ------+---- octree memory
 //
 // start_i, while busy_o is low, latches the whole frame: camera, shading, size, depth and root; nothing that changes later
-// shows in it. busy_o falls when the last pixel has been accepted. A frame may be started with its first pixel not
+// shows in it, but words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started with its first pixel not
 // wanted yet: out_ready_i may be low at any time.
 //
 // Flat, Light and Mirrors build the shader's features in (docs/shading.md says what they are); what is not built in is off,
@@ -36,6 +36,7 @@ module voxrt_rtu
   input  logic        [    SizeBits-1:0] width_i,
   input  logic        [    SizeBits-1:0] height_i,
   input  logic        [   DepthBits-1:0] depth_i,             // 1 .. MaxDepth
+  input  logic        [            31:0] root_i,              // Word address of the root.
   input  shading_t                       shading_i,
   input  logic signed [   LightBits-1:0] light_i        [3],  // 1/16 voxel
   // Octree memory, see voxrt_octree_memory.
@@ -76,13 +77,13 @@ module voxrt_rtu
   localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
 
   // Frame.
-  logic                           start_q, busy_q;
+  logic                           start_q, busy_q;  // start_q: the root is there too.
   logic signed [DistanceBits-1:0] origin_q[3], mirrored_origin_q[3];
   logic signed [  CameraBits-1:0] look_q  [3], right_q          [3], up_q[3];
   logic        [    SizeBits-1:0] width_q, height_q;
   logic        [   DepthBits-1:0] depth_q;
   logic        [      MaxDepth:0] world_q;  // One-hot: the world's side.
-  logic        [   PayloadBits:0] root, root_q;
+  logic        [   PayloadBits:0] first_word, root;
   shading_t                       shading_q;
   logic signed [   LightBits-1:0] light_q [3];
   logic                           start;
@@ -90,7 +91,6 @@ module voxrt_rtu
   assign start = start_i && !busy_q;
 
   always_ff @(posedge clk_i) begin
-    start_q <= start && rst_ni;
     if (start) begin
       for (int unsigned a = 0; a < 3; a++) begin
         origin_q[a]          <= DistanceBits'(position_i[a]);
@@ -103,7 +103,6 @@ module voxrt_rtu
       height_q  <= height_i;
       depth_q   <= depth_i;
       world_q   <= (MaxDepth + 1)'(1) << depth_i;
-      root_q    <= root;
       shading_q <= '{
           flat: Flat && shading_i.flat,
           light: Light && shading_i.light,
@@ -118,6 +117,41 @@ module voxrt_rtu
   end
 
   assign busy_o = busy_q;
+
+  logic   [    Lanes-1:0] read, memory_read, word_read;
+  logic   [BlockBits-1:0] block[Lanes], memory_block[Lanes], root_block;
+  logic   [          2:0] octant[Lanes], memory_octant[Lanes], root_octant;
+  logic   [PayloadBits:0] word[Lanes];
+  logic                   reads_root;
+
+  voxrt_root #(
+    .BlockBits   (BlockBits),
+    .MemoryClocks(memory_clocks(Banked))
+  ) u_root (
+    .clk_i,
+    .rst_ni,
+    .start_i  (start),
+    .address_i(root_i),
+    .first_i  (first_word),
+    .done_o   (start_q),
+    .root_o   (root),
+    .reads_o  (reads_root),
+    .block_o  (root_block),
+    .octant_o (root_octant),
+    .ack_i    (word_read[0]),
+    .word_i   (word[0])
+  );
+
+  always_comb begin
+    memory_read   = read;
+    memory_block  = block;
+    memory_octant = octant;
+    if (reads_root) begin
+      memory_read[0]   = 1'b1;
+      memory_block[0]  = root_block;
+      memory_octant[0] = root_octant;
+    end
+  end
 
   // Rays of the camera: a ray goes to the lane whose turn it is when its queue has a place. Shadow rays go first, at any
   // clock that they come.
@@ -196,8 +230,8 @@ module voxrt_rtu
     .mirrored_origin_i(mirrored_origin_q),
     .depth_i          (depth_q),
     .world_i          (world_q),
-    .root_leaf_i      (ResolvesRoot && root_q[PayloadBits]),
-    .root_material_i  (!ResolvesRoot || root_q[8] ? '0 : root_q[7:0]),
+    .root_leaf_i      (ResolvesRoot && root[PayloadBits]),
+    .root_material_i  (!ResolvesRoot || root[8] ? '0 : root[7:0]),
     .valid_i          (issues || shadow_valid),
     .lane_i           (shadow_valid ? shadow_lane : turn_q),
     .direction_i      (ray_direction),
@@ -221,36 +255,12 @@ module voxrt_rtu
     .tag_o            (ray_tag)
   );
 
-  // Which planes are before the light, and which are not behind it: those of lower number than these. In the grid's frame,
-  // [0], and mirrored, [1].
-  logic [MaxDepth:0] before_light_q[2][3], to_light_q[2][3];
-
-  function automatic logic [MaxDepth:0] plane_in_world(logic signed [LightBits-1:0] place, logic [MaxDepth:0] world);
-    logic signed [LightBits-1:0] plane = place >>> FractionBits;
-    if (plane < 0) return '0;
-    return plane > LightBits'(world) ? world : plane[MaxDepth:0];
-  endfunction
-
-  logic signed [LightBits-1:0] mirrored_light[3];
-
-  always_comb for (int unsigned a = 0; a < 3; a++) mirrored_light[a] = LightBits'({world_q, FractionBits'(0)}) - light_q[a];
-
-  always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      before_light_q[0][a] <= plane_in_world(light_q[a] + LightBits'(2 ** FractionBits - 1), world_q);
-      before_light_q[1][a] <= plane_in_world(mirrored_light[a] + LightBits'(2 ** FractionBits - 1), world_q);
-      to_light_q[0][a]     <= plane_in_world(light_q[a] + LightBits'(2 ** FractionBits), world_q);
-      to_light_q[1][a]     <= plane_in_world(mirrored_light[a] + LightBits'(2 ** FractionBits), world_q);
-    end
-  end
+  logic [MaxDepth:0] before_light[2][3], to_light[2][3];
 
   // Tracks.
-  logic   [    Lanes-1:0] pixel_valid, pixel_ready, pixel_lit, read, word_read, bad_pointer, step_limit;
+  logic   [    Lanes-1:0] pixel_valid, pixel_ready, pixel_lit, bad_pointer, step_limit;
   logic   [    Lanes-1:0] request, request_ready, shadow_started;
   logic   [    Width-1:0] pixel            [Lanes];
-  logic   [BlockBits-1:0] block            [Lanes];
-  logic   [          2:0] octant           [Lanes];
-  logic   [PayloadBits:0] word             [Lanes];
   logic   [  TagBits-1:0] request_tag      [Lanes];
   face_e                  request_face     [Lanes];
   logic   [          2:0] request_mirrored [Lanes];
@@ -272,11 +282,11 @@ module voxrt_rtu
       .origin_i              (origin_q),
       .mirrored_origin_i     (mirrored_origin_q),
       .world_i               (world_q),
-      .root_i                (root_q),
+      .root_i                (root),
       .light_i               (shading_q.light),
       .bounces_i             (shading_q.bounces),
-      .before_light_i    (before_light_q),
-      .to_light_i        (to_light_q),
+      .before_light_i    (before_light),
+      .to_light_i        (to_light),
       .table_write_i,
       .table_material_i,
       .table_row_i,
@@ -338,7 +348,9 @@ module voxrt_rtu
       .lane_o    (shadow_lane),
       .tag_o     (shadow_tag),
       .lit_o     (lit_point),
-      .way_o     (way)
+      .way_o     (way),
+      .before_light_o(before_light),
+      .to_light_o    (to_light)
     );
   end else begin : gen_no_light
     logic [Lanes-1:0] unused_request;
@@ -352,6 +364,8 @@ module voxrt_rtu
     assign {shadow_valid, shadow_lane, shadow_tag} = '0;
     assign lit_point     = '{default: '0};
     assign way           = '{default: '0};
+    assign before_light  = '{default: '0};
+    assign to_light      = '{default: '0};
   end
 
   voxrt_octree_memory #(
@@ -367,10 +381,10 @@ module voxrt_rtu
     .access_word_i,
     .access_valid_o,
     .access_word_o,
-    .root_o  (root),
-    .read_i  (read),
-    .block_i (block),
-    .octant_i(octant),
+    .root_o  (first_word),
+    .read_i  (memory_read),
+    .block_i (memory_block),
+    .octant_i(memory_octant),
     .ack_o   (word_read),
     .word_o  (word)
   );
@@ -422,16 +436,17 @@ module voxrt_rtu
     if (out_valid_o && !out_ready_i) stalls_q <= stalls_q + 1'b1;
     words_read_q <= words_read_q + 32'($countones(word_read));
     if (ray_valid && overflow) error_q.direction_overflow <= 1'b1;
-    if (bad_pointer != '0 || (start_q && root_q[PayloadBits] && root_q[8])) error_q.bad_pointer <= 1'b1;
+    if (bad_pointer != '0 || (start_q && root[PayloadBits] && root[8])) error_q.bad_pointer <= 1'b1;
     if (step_limit != '0) error_q.step_limit <= 1'b1;
     if (start) begin
       cycles_q     <= '0;
       rays_q       <= '0;
-      words_read_q <= '0;
       hits_q       <= '0;
       stalls_q     <= '0;
       error_q      <= '0;
     end
+    // Not the root, which is read once a frame.
+    if (start_q) words_read_q <= '0;
   end
 
   assign cycles_o     = cycles_q;

@@ -41,5 +41,6 @@ class Tracer:
         ambient: int = 0,
         bounces: int = 0,
         mirrors: NDArray[np.uint8] | None = None,
+        root: int = 0,
         stall_seed: int = 0,
     ) -> RenderResult: ...

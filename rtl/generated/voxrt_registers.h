@@ -144,6 +144,12 @@ extern "C" {
 #define VOXRT_REGISTERS__SHADING__BOUNCES_bw 4
 #define VOXRT_REGISTERS__SHADING__BOUNCES_reset 0x0
 
+// reg - voxrt_registers::root
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bm 0xffffffff
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bp 0
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bw 32
+#define VOXRT_REGISTERS__ROOT__ADDRESS_reset 0x0
+
 // mem - voxrt_registers::materials
 typedef struct __attribute__ ((__packed__)) {
     uint32_t mem[256];
@@ -173,7 +179,8 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t hits;
     uint32_t stalls;
     uint32_t shading;
-    uint8_t RESERVED_78_7f[0x8];
+    uint32_t root;
+    uint8_t RESERVED_7c_7f[0x4];
     uint32_t light[3];
     uint8_t RESERVED_8c_3ff[0x374];
     voxrt_registers__materials_t materials;

@@ -245,6 +245,7 @@ module voxrt_registers (
         logic hits;
         logic stalls;
         logic shading;
+        logic root;
         logic light[3];
         logic materials;
     } decoded_reg_strb_t;
@@ -291,6 +292,7 @@ module voxrt_registers (
         decoded_reg_strb.hits = cpuif_req_masked & (cpuif_addr == 11'h6c) & !cpuif_req_is_wr;
         decoded_reg_strb.stalls = cpuif_req_masked & (cpuif_addr == 11'h70) & !cpuif_req_is_wr;
         decoded_reg_strb.shading = cpuif_req_masked & (cpuif_addr == 11'h74);
+        decoded_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
         end
@@ -425,6 +427,12 @@ module voxrt_registers (
             struct {
                 logic [31:0] next;
                 logic load_next;
+            } address;
+        } root;
+        struct {
+            struct {
+                logic [31:0] next;
+                logic load_next;
             } value;
         } light[3];
     } field_combo_t;
@@ -506,6 +514,11 @@ module voxrt_registers (
                 logic [3:0] value;
             } bounces;
         } shading;
+        struct {
+            struct {
+                logic [31:0] value;
+            } address;
+        } root;
         struct {
             struct {
                 logic [31:0] value;
@@ -977,6 +990,29 @@ module voxrt_registers (
         end
     end
     assign hwif_out.shading.bounces.value = field_storage.shading.bounces.value;
+    // Field: voxrt_registers.root.address
+    always_comb begin
+        automatic logic [31:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.root.address.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.root && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.root.address.value & ~decoded_wr_biten[31:0]) | (decoded_wr_data[31:0] & decoded_wr_biten[31:0]);
+            load_next_c = '1;
+        end
+        field_combo.root.address.next = next_c;
+        field_combo.root.address.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.root.address.value <= 32'h0;
+        end else begin
+            if(field_combo.root.address.load_next) begin
+                field_storage.root.address.value <= field_combo.root.address.next;
+            end
+        end
+    end
+    assign hwif_out.root.address.value = field_storage.root.address.value;
     for(genvar i0=0; i0<3; i0++) begin
         // Field: voxrt_registers.light[].value
         always_comb begin
@@ -1134,6 +1170,9 @@ module voxrt_registers (
             readback_data_var[1] = field_storage.shading.light.value;
             readback_data_var[15:8] = field_storage.shading.ambient.value;
             readback_data_var[19:16] = field_storage.shading.bounces.value;
+        end
+        if(rd_mux_addr == 11'h78) begin
+            readback_data_var[31:0] = field_storage.root.address.value;
         end
         for(int i0=0; i0<3; i0++) begin
             if(rd_mux_addr == 11'h80 + (11)'(i0) * 11'h4) begin

@@ -214,6 +214,14 @@ package voxrt_registers_pkg;
     } voxrt_registers__shading__out_t;
 
     typedef struct {
+        logic [31:0] value;
+    } voxrt_registers__root__address__out_t;
+
+    typedef struct {
+        voxrt_registers__root__address__out_t address;
+    } voxrt_registers__root__out_t;
+
+    typedef struct {
         logic req;
         logic [9:0] addr;
         logic req_is_wr;
@@ -231,6 +239,7 @@ package voxrt_registers_pkg;
         voxrt_registers__direction_reg__out_t right[3];
         voxrt_registers__direction_reg__out_t up[3];
         voxrt_registers__shading__out_t shading;
+        voxrt_registers__root__out_t root;
         voxrt_registers__position_reg__out_t light[3];
         voxrt_registers__materials__external__out_t materials;
     } voxrt_registers__out_t;

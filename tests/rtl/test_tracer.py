@@ -198,3 +198,28 @@ def test_arguments_out_of_range_are_refused(config):
         design.load(np.zeros(0, np.uint32))
     with pytest.raises(ValueError, match="no configuration"):
         rtl.Tracer("imaginary")
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_the_root_may_stand_anywhere(config):
+    rng = np.random.default_rng(12)
+    design = tracer(config)
+    scenes = [words_of(random_voxels(rng, depth, 0.2)) for depth in (4, 3)] + [np.array([0xFFFFFF05], np.uint32)]
+    base, memory, roots = 0, np.zeros(0, np.uint32), []
+    for words in scenes:
+        moved = np.where(words >> 31 == 0, words + base, words).astype(np.uint32)
+        memory = np.concatenate([memory, moved, np.full(-len(moved) % 8, 0xFFFFFF00, np.uint32)])
+        roots.append(base)
+        base = len(memory)
+    camera = np.array([[-100, 300, -80], [100, -60, 100], [4, 0, -4], [0, 4, 1]], np.int32)
+    for words, root, depth in zip(scenes, roots, (4, 3, 3), strict=True):
+        design.load(words)
+        alone = design.render(camera, 30, 20, depth, MATERIALS)
+        design.load(memory)
+        got = design.render(camera, 30, 20, depth, MATERIALS, root=root)
+        for key in ("colour", "material", "face", "words_read", "errors"):
+            np.testing.assert_array_equal(alone[key], got[key])
+    for root in (design.memory_words, 2**32 - 1):
+        got = design.render(camera, 3, 2, 3, MATERIALS, root=root)
+        assert got["errors"] == ["bad pointer"]
+        assert (got["material"] == 0).all()

@@ -33,6 +33,7 @@ struct FrameRequest {
     int16_t look[3], right[3], up[3];
     unsigned width, height;
     unsigned depth;
+    uint32_t root;            // word address
     const uint8_t* materials; // 256 x 3, row 0 is the background
     const uint8_t* mirrors;   // 256 flags
     bool flat, light;

@@ -12,11 +12,12 @@
 //                             straight into the simulated memory: the outcome is the same
 //     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, flat=False, light=None, ambient=0, bounces=0, mirrors=None,
-//             stall_seed=0) -> dict
+//             root=0, stall_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
 //                             materials uint8 (256, 3), sRGB, row 0 is the background; light int32 (3,), 1/16 voxel;
-//                             ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags. With a stall_seed, the
+//                             ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the word address
+//                             of the octree's root. With a stall_seed, the
 //                             picture's consumer stalls in a pattern that depends on it.
 //                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
@@ -136,7 +137,7 @@ public:
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     bool flat, const std::optional<Place>& light, long ambient, long bounces,
-                    const std::optional<Flags>& mirrors, uint32_t stall_seed) {
+                    const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -167,6 +168,7 @@ public:
             check("light position", (*light)(axis), -light_limit(), light_limit() - 1);
             request.light_position[axis] = (*light)(axis);
         }
+        request.root = root;
         request.stall_seed = stall_seed;
 
         FrameImage image{};
@@ -235,5 +237,5 @@ NB_MODULE(_rtl, m) {
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
-             "mirrors"_a.none() = nb::none(), "stall_seed"_a = 0);
+             "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0);
 }

@@ -192,6 +192,7 @@ private:
         // voxrt_pkg::shading_t.
         model_->shading_i =
             static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 | request.bounces);
+        model_->root_i = request.root;
         model_->width_i = static_cast<uint16_t>(request.width);
         model_->height_i = static_cast<uint16_t>(request.height);
         model_->depth_i = static_cast<uint8_t>(request.depth);
