@@ -352,12 +352,12 @@ class _Wardrobe:
 
 
 def collider_around(
-    kind: ColliderKind, positions: NDArray[np.float64], triangles: NDArray[np.int32], *, pow2: bool = True
+    kind: ColliderKind, positions: NDArray[np.floating], triangles: NDArray[np.int32], *, pow2: bool = True
 ) -> Collider:
     """Return the stand-in of `kind` for a surface, in the surface's frame."""
     if kind == "mesh":
         return MeshCollider(positions, triangles)
-    corners = positions[np.unique(triangles)]
+    corners = positions[np.unique(triangles)].astype(np.float64)
     if kind == "hull":
         return HullCollider(corners)
     low, high = corners.min(axis=0), corners.max(axis=0)

@@ -63,7 +63,8 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     dressed = [dress(document, textures, stage.surface(bend), look) for bend, look in worn]
     bare = {seen.material for seen in shown if seen.mesh is None}
     table = MaterialTable()
-    ids = number_materials(document, table, bare.union(*(wears.keys for wears in dressed)))
+    used = {key for wears in dressed for _, _, key in wears.runs}
+    ids = number_materials(document, table, bare | used)
     unfinished = [_unfinished(stage.surface(bend), wears, ids) for (bend, _), wears in zip(worn, dressed, strict=True)]
     meshes = dict(zip(worn, finish(unfinished, table, document.notes), strict=True))
     objects = tuple(
@@ -79,8 +80,10 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
 
 
 def _unfinished(surface: Surface, wears: Dress, ids: Mapping[MaterialKey, int]) -> Unfinished:
-    by_row = np.array([*(ids[key] for key in wears.keys), 0], np.uint8)  # row -1 is the last
-    return Unfinished(surface.positions, surface.triangles, by_row[wears.rows], wears.coat)
+    materials = np.zeros(len(surface.triangles), np.uint8)
+    for start, stop, key in wears.runs:
+        materials[start:stop] = ids[key]
+    return Unfinished(surface.positions, surface.triangles, materials, wears.coat)
 
 
 def _objects(
