@@ -169,12 +169,15 @@ def read_manifest(path: Path) -> Manifest:
     except OSError as error:
         raise RomError(f"{path}: cannot be read: {error.strerror}; name a manifest") from None
     try:
+        str(data, "utf-8")  # the decoder looks only at the strings it needs
         version = msgspec.json.decode(data, type=_Version).schema
         if version != SCHEMA_VERSION:
             raise RomError(f"{path}: schema {version} is not known to this version ({SCHEMA_VERSION}); upgrade voxrt")
         manifest = msgspec.json.decode(data, type=Manifest)
     except msgspec.MsgspecError as error:
         raise RomError(f"{path}: {error}; it is no manifest of a memory, or damaged: build it again") from None
+    except UnicodeDecodeError as error:
+        raise RomError(f"{path}: byte {error.start} is no UTF-8; the manifest is damaged: build it again") from None
     except RecursionError:
         raise RomError(f"{path}: nested too deeply to be a manifest; build it again") from None
     _check(path, manifest)

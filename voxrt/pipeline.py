@@ -114,6 +114,7 @@ def build(
     unit: float | None = None,
     time: float | None = None,
     variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
     budget: int | str | None = None,
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
@@ -149,6 +150,8 @@ def build(
         The second of its animation at which the asset is shown.
     variants
         What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
+    allow_outside
+        Whether files that the asset names may stand outside its folder and the folders in it.
     budget
         Words that the memory may take, or the name of a board that knows (:data:`voxrt.octree.BOARDS`): what is seen
         least is given up until it fits.
@@ -194,7 +197,7 @@ def build(
         picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
         check_folder(picture_file.parent)
     with stage("load"):
-        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants)
+        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants, allow_outside=allow_outside)
     _refuse(asset, scene.warnings if strict else ())
     with stage("fit"):
         if depth is None and voxel_size is None:

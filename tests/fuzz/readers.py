@@ -295,6 +295,13 @@ def _seeds_of_rich() -> tuple[bytes, bytes]:
     return text + _BETWEEN + bytes(made.data), glb(chunks)
 
 
+_COE = b"memory_initialization_radix=16;memory_initialization_vector=" + b",".join(_mem_seeds()[0].split()) + b";"
+_MIF = b"""DEPTH=9; WIDTH=32; ADDRESS_RADIX=HEX; DATA_RADIX=HEX;
+CONTENT BEGIN
+0:00000001;
+[1..8]:FFFFFF01;
+END;
+"""
 _RICH, _RICH_GLB = _seeds_of_rich()
 _OBJ_WORDS = (*b"v vt vn f o g usemtl mtllib newmtl Kd map_Kd map_d d Tr -s -o -clamp on".split(), b"\\\n", b"1/2/3")
 _PLY_WORDS = tuple(b"element property list uchar int float vertex face tristrips vertex_indices ascii 1.0 nan".split())
@@ -314,22 +321,8 @@ READERS = {
     ),
     "mem": Reader(_as("a.mem"), _read_rom, _mem_seeds(), (b"ffffff01", b"00000009", b"@0", b"//"), (".mem",)),
     "manifest": Reader(_mem_with_manifest, _read_rom, (_manifest_seed(),), (b'"materials"', b"null", b"1e999")),
-    "coe": Reader(
-        _as("a.coe"),
-        _read_rom,
-        (
-            b"memory_initialization_radix=16;\nmemory_initialization_vector="
-            + b",".join(_mem_seeds()[0].split())
-            + b";",
-        ),
-    ),
-    "mif": Reader(
-        _as("a.mif"),
-        _read_rom,
-        (
-            b"DEPTH=9;\nWIDTH=32;\nADDRESS_RADIX=HEX;\nDATA_RADIX=HEX;\nCONTENT BEGIN\n0:00000001;\n[1..8]:FFFFFF01;\nEND;\n",
-        ),
-    ),
+    "coe": Reader(_as("a.coe"), _read_rom, (_COE,)),
+    "mif": Reader(_as("a.mif"), _read_rom, (_MIF,)),
     "blob": Reader(_blob, _read_blob, (_blob_seed(),), (b"NAME", b"WRLD", b"MATL", b"WORD", b"VIEW", b"LITE")),
     "vox": Reader(_as("a.vox"), _read_rom, (_vox_seed(),), (b"SIZE", b"XYZI", b"nTRN", b"nGRP", b"nSHP"), (".vox",)),
 }

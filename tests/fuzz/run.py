@@ -62,7 +62,8 @@ def main() -> None:
         try:
             reader.run(Path(folder), data)
         except Exception as error:  # noqa: BLE001 -- whatever it is, it is a finding
-            frame = [frame for frame in traceback.extract_tb(error.__traceback__) if "voxrt" in frame.filename][-1]
+            frames = traceback.extract_tb(error.__traceback__)
+            frame = ([one for one in frames if "voxrt" in one.filename] or frames)[-1]
             name = f"{arguments.reader}-{type(error).__name__}-{Path(frame.filename).stem}-{frame.lineno}"
             if len(data) < found.get(name, sys.maxsize):
                 if name not in found:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import base64
 import binascii
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
 
+from voxrt.voxelize.companions import ALLOW_OUTSIDE, Companions
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.container import read_container
 from voxrt.voxelize.gltf.extensions import MESHOPT, read_extension
@@ -16,6 +16,7 @@ from voxrt.voxelize.notes import Notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from voxrt.voxelize.gltf.schema import BufferView, Gltf
 
@@ -42,8 +43,9 @@ class Document:
         What could not be honoured as it stands.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
         self.path = path
+        self._companions = Companions.of(path, allow_outside=allow_outside)
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
         self._buffers: dict[int, memoryview] = {}
@@ -126,7 +128,7 @@ class Document:
         return self._buffers[index]
 
     def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
-        """Return what `uri` refers to: inline data, or at most `most` bytes of a file in the asset's folder or below.
+        """Return what `uri` refers to: inline data, or at most `most` bytes of a file that may be opened.
 
         A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
         """
@@ -135,28 +137,20 @@ class Document:
         scheme = uri.partition(":")[0]
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
-        folder = self.path.parent.resolve()
         # Some exporters forget to encode names, or write paths as Windows does.
-        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
-            try:
-                target = (folder / Path(name)).resolve()
-                found = target.is_file()
-            except (OSError, ValueError, RuntimeError):  # too long, a NUL, a loop of links
-                continue
-            if not found:
-                continue
-            if not target.is_relative_to(folder):
-                fix = "put the file beside the asset"
-                raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", fix)
-            try:
-                with target.open("rb") as file:
-                    data = file.read(most)
-            except OSError as error:
-                problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
-                raise self.error(place, problem, "check its permissions") from error
-            self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
-            return data
-        return None
+        target = self._companions.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
+        if target is None:
+            return None
+        if not self._companions.allows(target):
+            raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", ALLOW_OUTSIDE)
+        try:
+            with target.open("rb") as file:
+                data = file.read(most)
+        except OSError as error:
+            problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
+            raise self.error(place, problem, "check its permissions") from error
+        self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
+        return data
 
     def _inline(self, uri: str, place: str) -> bytes:
         header, comma, body = uri.partition(",")

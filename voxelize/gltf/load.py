@@ -32,7 +32,9 @@ if TYPE_CHECKING:
 _NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
 
 
-def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...] = ()) -> Scene:
+def load_gltf(
+    path: Path, *, time: float | None = None, variants: tuple[str, ...] = (), allow_outside: bool = False
+) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
 
     Parameters
@@ -43,6 +45,8 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
         The second of the file's first animation at which it is shown; None for the pose in which the file stands.
     variants
         The name of the material variant to show; none for the materials that its primitives name first.
+    allow_outside
+        Whether buffers and images may stand outside the file's folder.
 
     Raises
     ------
@@ -52,7 +56,7 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     DoesNotFitError
         More than 255 materials are used.
     """
-    document = Document(path)
+    document = Document(path, allow_outside=allow_outside)
     check_required(document)
     refuse_misplaced(document)
     document.gltf = posed(document, time)

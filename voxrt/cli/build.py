@@ -27,6 +27,7 @@ def build(
     unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
+    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
@@ -65,6 +66,8 @@ def build(
         The second of its animation at which the asset is shown (glTF, USD).
     variant
         A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
+    allow_outside
+        Open files that the asset names outside its folder and the folders in it, too.
     budget
         Words that the memory may take: what is seen least is given up until it fits.
     board
@@ -104,6 +107,7 @@ def build(
             unit=unit,
             time=time,
             variants=variant,
+            allow_outside=allow_outside,
             budget=board or budget,
             dialect=dialect,
             preview=png(Path(preview)) if preview else preview is not None,

@@ -22,6 +22,7 @@ def compare(
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     size: Pixels = (640, 480),
+    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Compare a memory with the meshes that it was built from, as the default camera sees both.
@@ -36,6 +37,8 @@ def compare(
         A .png of the meshes, the memory and their difference, side by side.
     size
         Width and height, pixels. [default: 640x480]
+    allow_outside
+        Open files that the asset names outside its folder and the folders in it, too.
     reporting
         How to tell it.
     """
@@ -43,7 +46,7 @@ def compare(
         png(output)
     blob, warnings = voxrt.read_any(rom)
     memory = blob.rom
-    scene = voxrt.load(asset)
+    scene = voxrt.load(asset, allow_outside=allow_outside)
     warn((*warnings, *scene.warnings))
     found = voxrt.compare(scene, memory, voxrt.aim_camera(memory, size), size)
     if output is not None:

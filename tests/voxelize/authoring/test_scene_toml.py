@@ -280,3 +280,21 @@ def test_damaged_files_are_read_or_refused(tmp_path_factory, place, insert):
     path = folder / "yard.toml"
     path.write_text(YARD[:place] + insert + YARD[place + 1 :])
     assert_read_or_refused(path)
+
+
+def test_assets_outside_the_folder_are_not_opened(tmp_path):
+    (tmp_path / "cube.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "inner").mkdir()
+    path = tmp_path / "inner" / "yard.toml"
+    path.write_text('[[objects]]\nasset = { file = "../cube.obj" }\n')
+    with pytest.raises(AssetError, match=r"line 2: asset '../cube.obj' lies outside .*--allow-outside"):
+        load(path)
+    assert len(load(path, allow_outside=True).objects) == 1
+
+
+@pytest.mark.parametrize("name", ["a\\u0000b.obj", "n" * 5000 + ".obj"])
+def test_assets_of_names_that_no_file_can_have(tmp_path, name):
+    path = tmp_path / "yard.toml"
+    path.write_text(f'[[objects]]\nasset = {{ file = "{name}" }}\n')
+    with pytest.raises(AssetError, match=r"line 2: asset .*no such file"):
+        load(path)
