@@ -167,16 +167,18 @@ def _strided(
 ) -> NDArray[Any]:
     """Return `count` elements from the buffer view that `source` names, without a copy where they lie packed."""
     assert source.buffer_view is not None
-    data = document.view(source.buffer_view, f"{place}.bufferView")
-    stride = document.gltf.buffer_views[source.buffer_view].byte_stride or layout.element_bytes
+    view = document.item(document.gltf.buffer_views, source.buffer_view, f"{place}.bufferView", "buffer view")
+    stride = view.byte_stride or layout.element_bytes
     if stride < layout.element_bytes:
         raise document.error(place, f"elements of {layout.element_bytes} bytes in a buffer view of stride {stride}")
-    end = source.byte_offset + stride * (count - 1) + layout.element_bytes
+    data = document.view(source.buffer_view, f"{place}.bufferView")
+    offset = source.byte_offset or 0
+    end = offset + stride * (count - 1) + layout.element_bytes
     if end > len(data):
         raise document.error(place, f"{count} elements end at byte {end} of a buffer view of {len(data)}")
     shape = (count, layout.columns, layout.rows)
     strides = (stride, layout.column_bytes, layout.dtype.itemsize)
-    elements: NDArray[Any] = np.ndarray(shape, layout.dtype, data, source.byte_offset, strides)
+    elements: NDArray[Any] = np.ndarray(shape, layout.dtype, data, offset, strides)
     return elements.reshape(count, layout.components)
 
 

@@ -78,7 +78,7 @@ class Document:
             return memoryview(self._unpacked[index])
         compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
         if compressed is None:
-            return self._buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
+            return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
         self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
         return memoryview(self._unpacked[index])
 
@@ -92,7 +92,7 @@ class Document:
             raise self.error(here, f"ends at byte {end} of a buffer of {buffer.byte_length}")
         if size != view.byte_length:
             raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
-        data = self._buffer(compressed.buffer)[compressed.byte_offset : end]
+        data = self.buffer(compressed.buffer)[compressed.byte_offset : end]
         try:
             return decode(compressed, bytes(data))
         except BadStreamError as error:
@@ -107,7 +107,8 @@ class Document:
             if end > buffer.byte_length:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
-    def _buffer(self, index: int) -> memoryview:
+    def buffer(self, index: int) -> memoryview:
+        """Return the bytes of buffer `index`, as many as it says."""
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -156,6 +157,8 @@ class Document:
         header, comma, body = uri.partition(",")
         if not comma:
             raise self.error(place, "a data URI without a comma")
+        if ";;" in header:
+            raise self.error(place, "a data URI with an empty parameter: ';;'")
         if not header.endswith(";base64"):
             return unquote_to_bytes(body)
         text = unquote(body) if "%" in body else body

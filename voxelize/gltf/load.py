@@ -16,6 +16,7 @@ from voxrt.voxelize.gltf.materials import number_materials
 from voxrt.voxelize.gltf.nodes import place_nodes
 from voxrt.voxelize.gltf.shown import Stage
 from voxrt.voxelize.gltf.textures import Textures
+from voxrt.voxelize.gltf.unused import refuse_broken_parts
 from voxrt.voxelize.material_table import MaterialTable
 from voxrt.voxelize.painted import Unfinished, finish
 from voxrt.voxelize.scene import Mesh, Scene, SceneObject
@@ -77,6 +78,7 @@ def load_gltf(
         for thing in _objects(document, name, seen, meshes, ids)
     )
     if not objects:
+        refuse_broken_parts(document)
         said = "; ".join(one.message for one in document.notes.warnings())
         problem = "has no triangles to voxelize" + (f" ({said})" if said else "")
         raise document.error("", problem, "check that the scene shows a mesh")
