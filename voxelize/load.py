@@ -17,8 +17,8 @@ UpAxis: TypeAlias = Literal["x", "y", "z"]
 # Loaders are imported when a file asks for them: USD alone takes longer to import than a small scene to build. Each
 # stands with what it can be told.
 _LOADERS = {
-    ".gltf": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants", "allow_outside"}),
-    ".glb": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants", "allow_outside"}),
+    ".gltf": ("voxrt.voxelize.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
+    ".glb": ("voxrt.voxelize.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
     ".usd": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
     ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
     ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
@@ -36,6 +36,7 @@ _WHY_IGNORED = {
     "up": "the up axis was ignored: {} files say it themselves",
     "unit": "the unit was ignored: {} files say it themselves",
     "time": "the time was ignored: {} files have no animation",
+    "animation": "the animation's name was ignored: {} files have none to choose from",
     "variants": "variants were ignored: {} files have none",
 }
 
@@ -46,6 +47,7 @@ def load(
     up: UpAxis | None = None,
     unit: float | None = None,
     time: float | None = None,
+    animation: str | None = None,
     variants: tuple[str, ...] = (),
     allow_outside: bool = False,
 ) -> Scene:
@@ -62,6 +64,8 @@ def load(
         Metres per unit of the file, for formats that do not say.
     time
         The second of its animation at which the file is shown, for formats that have some (glTF, USD).
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF); the first where this is not given.
     variants
         What to show of what the file has in several ways: the name of one material variant (glTF), or
         ``/prim/path:set=variant`` any number of times (USD).
@@ -91,7 +95,13 @@ def load(
     module, name, understood = _LOADERS[suffix]
     told = {
         option: value
-        for option, value in (("up", up), ("unit", unit), ("time", time), ("variants", variants))
+        for option, value in (
+            ("up", up),
+            ("unit", unit),
+            ("time", time),
+            ("animation", animation),
+            ("variants", variants),
+        )
         if value not in (None, ())
     }
     options: dict[str, object] = {option: value for option, value in told.items() if option in understood}

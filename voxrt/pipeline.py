@@ -118,6 +118,7 @@ def build(
     up: UpAxis | None = None,
     unit: float | None = None,
     time: float | None = None,
+    animation: str | None = None,
     variants: tuple[str, ...] = (),
     allow_outside: bool = False,
     budget: int | str | None = None,
@@ -153,6 +154,8 @@ def build(
         The up axis and the metres per unit, for formats that do not say.
     time
         The second of its animation at which the asset is shown.
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF).
     variants
         What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
     allow_outside
@@ -198,7 +201,15 @@ def build(
     name = _text(asset.stem)
     picture_file = _picture_file(name, output, preview)
     with stage("load"):
-        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants, allow_outside=allow_outside)
+        scene = voxelize.load(
+            asset,
+            up=up,
+            unit=unit,
+            time=time,
+            animation=animation,
+            variants=variants,
+            allow_outside=allow_outside,
+        )
     _refuse(asset, scene.warnings if strict else ())
     with stage("fit"):
         if depth is None and voxel_size is None:
@@ -229,6 +240,7 @@ def build(
             "up": up,
             "unit": unit,
             "time": time,
+            "animation": animation,
             "variants": ", ".join(variants) or None,
         }
         with stage("write"), writing(Path(output)), uninterrupted():

@@ -76,7 +76,7 @@ def main() -> None:
             [
                 sys.argv[0],
                 str(corpus),
-                f"-dict={words}",
+                *([f"-dict={words}"] if reader.tokens else []),
                 f"-artifact_prefix={corpus.parent}/{arguments.reader}-",
                 f"-max_total_time={arguments.seconds}",
                 *("-timeout=10", "-rss_limit_mb=3000", "-max_len=16384", "-print_final_stats=1"),

@@ -34,7 +34,12 @@ _NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, n
 
 
 def load_gltf(
-    path: Path, *, time: float | None = None, variants: tuple[str, ...] = (), allow_outside: bool = False
+    path: Path,
+    *,
+    time: float | None = None,
+    animation: str | None = None,
+    variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
 ) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
 
@@ -43,7 +48,9 @@ def load_gltf(
     path
         The file.
     time
-        The second of the file's first animation at which it is shown; None for the pose in which the file stands.
+        The second of an animation at which the file is shown; None for the pose in which the file stands.
+    animation
+        The name of that animation, or its number counted from 0; None for the first.
     variants
         The name of the material variant to show; none for the materials that its primitives name first.
     allow_outside
@@ -60,7 +67,7 @@ def load_gltf(
     document = Document(path, allow_outside=allow_outside)
     check_required(document)
     refuse_misplaced(document)
-    document.gltf = posed(document, time)
+    document.gltf = posed(document, time, animation)
     stage = Stage(document, place_nodes(document), find_variant(document, variants))
     shown = list(stage.shown())
     textures = Textures(document)

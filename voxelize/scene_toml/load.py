@@ -75,6 +75,9 @@ class _Builder:
                 raise checked.error(("materials", name), str(error), "correct the material") from None
         for index, node in enumerate(values.objects):
             self._add(node, ("objects", index), "", np.eye(4), None)
+        for name in self._author.uncoloured:
+            problem = f"material {name!r} has no colour, and no asset has one of that name"
+            raise checked.error(("materials", name), problem, "give it a colour")
         if values.camera is not None:
             camera = values.camera
             try:
@@ -190,7 +193,7 @@ class _Builder:
         return reduce(Solid.__or__, parts)
 
     def _asset(self, asset: Asset, where: KeyPath) -> Scene:
-        key = (asset.file, asset.up, asset.unit, asset.time, tuple(asset.variants))
+        key = (asset.file, asset.up, asset.unit, asset.time, asset.animation, tuple(asset.variants))
         if key not in self._assets:
             path = self._checked.path.parent / asset.file
             if path.suffix.lower() == ".toml":
@@ -205,6 +208,7 @@ class _Builder:
                     up=asset.up,
                     unit=asset.unit,
                     time=asset.time,
+                    animation=asset.animation,
                     variants=tuple(asset.variants),
                     allow_outside=self._companions.allow_outside,
                 )

@@ -26,6 +26,7 @@ def build(
     up: Literal["x", "y", "z"] | None = None,
     unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
+    animation: Annotated[str | None, Parameter(metavar="NAME")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
     allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
@@ -64,6 +65,8 @@ def build(
         Metres per unit of formats that do not say.
     time
         The second of its animation at which the asset is shown (glTF, USD).
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF). [default: the first]
     variant
         A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
     allow_outside
@@ -107,6 +110,7 @@ def build(
             up=up,
             unit=unit,
             time=time,
+            animation=animation,
             variants=variant,
             allow_outside=allow_outside,
             budget=board or budget,
