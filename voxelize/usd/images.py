@@ -12,7 +12,7 @@ from voxrt.voxelize.colour import LINEAR_OF_SRGB8, srgb_from_linear
 from voxrt.voxelize.companions import ALLOW_OUTSIDE
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.images import decode_image
-from voxrt.voxelize.paint import Texture
+from voxrt.voxelize.texture import Texture
 from voxrt.voxelize.usd.layers import found_at
 
 if TYPE_CHECKING:

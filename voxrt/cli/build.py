@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, words
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.results import build_report, print_json
 
@@ -29,6 +29,7 @@ def build(
     animation: Annotated[str | None, Parameter(metavar="NAME")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
     allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
+    colours: Annotated[int, Parameter(converter=shades, metavar="K")] = 32,
     budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
@@ -71,6 +72,8 @@ def build(
         A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
     allow_outside
         Open files that the asset names outside its folder and the folders in it, too.
+    colours
+        Materials that textures and vertex colours are reduced to, 1 to 254; uniform materials keep their colour.
     budget
         Words that the memory may take: what is seen least is given up until it fits.
     board
@@ -98,7 +101,7 @@ def build(
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
         raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
-    with stage_bar(5 + (preview is not None) + (budget is not None or board is not None)) as progress:
+    with stage_bar(6 + (preview is not None) + (budget is not None or board is not None)) as progress:
         result = voxrt.build(
             asset,
             output,
@@ -113,6 +116,7 @@ def build(
             animation=animation,
             variants=variant,
             allow_outside=allow_outside,
+            colours=colours,
             budget=board or budget,
             dialect=dialect,
             preview=png(Path(preview)) if preview else preview is not None,
