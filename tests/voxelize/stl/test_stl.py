@@ -7,7 +7,6 @@ from assets import asset
 from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
-from voxrt.voxelize.colour import srgb_from_linear
 from voxrt.voxelize.load import load
 from voxrt.voxelize.stl import load_stl
 
@@ -72,7 +71,7 @@ def test_attributes_and_trailing_bytes_are_counted(stl):
 def test_colours_of_both_kinds(stl, header, attribute, colour):
     scene = stl(binary(ONE, header=header, attribute=attribute))
     (mesh,) = [one.mesh for one in scene.objects]
-    assert srgb_from_linear(mesh.coat.colours[:, 0, :3]).tolist() == [list(colour)]
+    assert scene.materials[mesh.materials[0]].colour == colour
     assert "default-material" not in [one.kind for one in scene.warnings]
 
 
@@ -80,8 +79,7 @@ def test_some_facets_with_colours(stl):
     plain, red = (binary(ONE, attribute=attribute)[84:] for attribute in (0, 0x8000 | 31 << 10))
     scene = stl(bytes(80) + (2).to_bytes(4, "little") + plain + red)
     (mesh,) = [one.mesh for one in scene.objects]
-    assert mesh.coat.rows.tolist() == [-1, 0]
-    assert srgb_from_linear(mesh.coat.colours[1:, 0, :3]).tolist() == [[255, 0, 0]]
+    assert [scene.materials[number].colour for number in mesh.materials] == [(200, 200, 200), (255, 0, 0)]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\n\n \t"])
