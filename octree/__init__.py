@@ -11,6 +11,7 @@ from voxrt.octree.decode import decode
 from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
 from voxrt.octree.diff import Difference, diff
 from voxrt.octree.errors import RomError, ViewerError
+from voxrt.octree.hidden import fill_hidden, hidden_voxels, share_hidden
 from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
 from voxrt.octree.octants import octants
@@ -45,9 +46,11 @@ __all__ = [
     "detect_dialect",
     "diff",
     "encode",
+    "fill_hidden",
     "fit",
     "from_dense",
     "from_points",
+    "hidden_voxels",
     "leaves",
     "material_at",
     "octant_at",
@@ -56,6 +59,7 @@ __all__ = [
     "plot",
     "read_vox",
     "share",
+    "share_hidden",
     "show",
     "solid_bounds",
     "surface_change",

@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
+    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
@@ -40,6 +41,7 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "InteriorFit",
     "Material",
     "Octree",
     "OutputError",
@@ -71,7 +73,8 @@ _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.fitting": ("BudgetFit", "InteriorFit"),
+    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (

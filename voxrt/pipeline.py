@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from voxrt import export, octree, sim, voxelize
+from voxrt.fitting import BudgetFit, InteriorFit, find_material, fit_budget, fit_interior
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.viewpoint import aim_camera, authored_camera
 from voxrt.voxelize import AssetError
@@ -19,6 +18,7 @@ from voxrt.voxelize import AssetError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
@@ -44,27 +44,6 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class BudgetFit:
-    """What fitting a memory to a budget took.
-
-    Attributes
-    ----------
-    words
-        The budget.
-    fit
-        What was shared and what was given up, in words and voxels.
-    psnr, ssim
-        How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
-        1 for equal pictures.
-    """
-
-    words: int
-    fit: octree.Fit
-    psnr: float
-    ssim: float
-
-
-@dataclass(frozen=True, eq=False, slots=True)
 class BuildResult:
     """What a build made.
 
@@ -80,11 +59,13 @@ class BuildResult:
         The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
     preview
         The rendered picture, None when none was asked for.
+    interior
+        What became of hidden voxels, None when they keep their materials.
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"budget"``, ``"write"``,
-        ``"preview"``.
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
+        ``"budget"``, ``"write"``, ``"preview"``.
     """
 
     rom: Rom
@@ -92,6 +73,7 @@ class BuildResult:
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
     preview: Picture | None = None
+    interior: InteriorFit | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
 
@@ -108,6 +90,7 @@ def build(
     depth: int | None = None,
     voxel_size: float | None = None,
     fill: Literal["solid", "surface"] = "solid",
+    interior: int | str = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     up: UpAxis | None = None,
@@ -138,6 +121,9 @@ def build(
         Metres a voxel.
     fill
         ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps the shell.
+    interior
+        What becomes of voxels that no ray from outside can reach: ``"keep"`` leaves them their object's material, a
+        material's id or name gives them that one, ``"any"`` gives each whatever lets most blocks be shared.
     geometry
         ``"auto"`` takes an object's colliders where it has some, else its triangles; ``"render"`` always the
         triangles; ``"collider"`` always colliders, the bounding box where an object has none.
@@ -189,13 +175,11 @@ def build(
     if output is not None:
         check_folder(Path(output))
     name = _text(asset.stem)
-    picture_file = None
-    if preview:
-        picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
-        check_folder(picture_file.parent)
+    picture_file = _picture_file(preview, Path(output or "."), name)
     with stage("load"):
         scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants)
     _refuse(asset, scene.warnings if strict else ())
+    material = None if interior in ("keep", "any") else find_material(asset, scene, interior)
     with stage("fit"):
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
@@ -204,17 +188,22 @@ def build(
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels, threads=threads), scene.materials, grid)
+    interior_fit = None
+    if interior != "keep":
+        with stage("interior"):
+            rom, interior_fit = fit_interior(rom, material)
     budget_fit = None
     if budget is not None:
         with stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = _fit_to(rom, words, size, threads)
+            rom, budget_fit = fit_budget(rom, words, size, threads)
     warnings = scene.warnings + voxelization.warnings
     _refuse(asset, warnings if strict else ())
     outputs: dict[str, Path] = {}
     if output is not None:
         settings: dict[str, str | int | float | bool | None] = {
             "fill": fill,
+            "interior": interior,
             "geometry": geometry,
             "pow2": pow2,
             "up": up,
@@ -240,17 +229,15 @@ def build(
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, interior_fit, budget_fit, seconds)
 
 
-def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
-    colours = np.array([material.colour for material in rom.materials], np.uint8)
-    fit = octree.fit(rom.octree, words, colours=colours)
-    fitted = replace(rom, octree=fit.octree)
-    camera = aim_camera(rom, size)
-    before, after = (render(r, camera, size=size, engine="model", threads=threads).colour for r in (rom, fitted))
-    psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
-    return fitted, BudgetFit(words, fit, psnr, ssim)
+def _picture_file(preview: str | os.PathLike[str] | bool, folder: Path, name: str) -> Path | None:
+    if not preview:
+        return None
+    file = folder / f"{name}.preview.png" if preview is True else Path(preview)
+    check_folder(file.parent)
+    return file
 
 
 def _refuse(asset: Path, warnings: tuple[SceneWarning, ...]) -> None:
