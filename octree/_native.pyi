@@ -28,6 +28,9 @@ def fill_region(words: NDArray[np.uint32], depth: int, low: _Corner, region: NDA
 def diff(
     first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int
 ) -> tuple[int, int, int, tuple[list[int], list[int]] | None]: ...
+def differing_regions(
+    first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int
+) -> tuple[NDArray[np.int64], NDArray[np.uint64]]: ...
 def coarsen(words: NDArray[np.uint32], depth: int, level: int) -> NDArray[np.uint32]: ...
 def merge_blocks(
     words: NDArray[np.uint32],

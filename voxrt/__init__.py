@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
@@ -46,6 +46,7 @@ __all__ = [
     "Octree",
     "OutputError",
     "Picture",
+    "Region",
     "Rom",
     "RomError",
     "Scene",
@@ -60,6 +61,7 @@ __all__ = [
     "comparison_sheet",
     "convert",
     "diff",
+    "differing_regions",
     "fit_grid",
     "load",
     "read_any",
@@ -71,7 +73,7 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
+    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),

@@ -22,6 +22,7 @@
 #include "interrupt.h"
 #include "leaves.h"
 #include "query.h"
+#include "regions.h"
 #include "surface.h"
 #include "validate.h"
 
@@ -223,6 +224,24 @@ bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth)
     return {found.appeared, found.vanished, found.recoloured, bounds};
 }
 
+// Bounds (x, y, z of the lowest voxel, then of the end) and counts (appeared, vanished, recoloured), a row a region.
+auto bind_differing_regions(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
+    const Memory a = memory_of(first, depth);
+    const Memory b = memory_of(second, depth);
+    std::vector<std::int64_t> bounds;
+    std::vector<std::uint64_t> counts;
+    {
+        nb::gil_scoped_release release;
+        for (const Region& region : differing_regions(a, b)) {
+            bounds.insert(bounds.end(), region.bounds.low.begin(), region.bounds.low.end());
+            bounds.insert(bounds.end(), region.bounds.high.begin(), region.bounds.high.end());
+            counts.insert(counts.end(), {region.appeared, region.vanished, region.recoloured});
+        }
+    }
+    const std::size_t regions = counts.size() / 3;
+    return nb::make_tuple(to_numpy(std::move(bounds), regions, 6), to_numpy(std::move(counts), regions, 3));
+}
+
 auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
     std::vector<Word> coarse;
@@ -360,6 +379,7 @@ NB_MODULE(_native, m) {
     m.def("solid_bounds", &bind_solid_bounds, "words"_a.noconvert(), "depth"_a);
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
     m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
           "costs"_a.noconvert(), "fine_price"_a, "coarse_price"_a);
