@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
@@ -42,6 +43,7 @@ __all__ = [
     "Frame",
     "Grid",
     "InteriorFit",
+    "LikenessAtDepth",
     "Material",
     "Octree",
     "OutputError",
@@ -62,7 +64,9 @@ __all__ = [
     "convert",
     "diff",
     "differing_regions",
+    "draw_likeness_curve",
     "fit_grid",
+    "likeness_curve",
     "load",
     "read_any",
     "read_rom",
@@ -73,6 +77,7 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
     "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
