@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
+    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
     from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
@@ -41,11 +42,13 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "InteriorFit",
     "LikenessAtDepth",
     "Material",
     "Octree",
     "OutputError",
     "Picture",
+    "Region",
     "Rom",
     "RomError",
     "Scene",
@@ -60,6 +63,7 @@ __all__ = [
     "comparison_sheet",
     "convert",
     "diff",
+    "differing_regions",
     "draw_likeness_curve",
     "fit_grid",
     "likeness_curve",
@@ -74,9 +78,10 @@ __all__ = [
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
+    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.fitting": ("BudgetFit", "InteriorFit"),
+    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
     "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (

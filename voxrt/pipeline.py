@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from voxrt import export, octree, sim, voxelize
+from voxrt.fitting import BudgetFit, InteriorFit, find_material, fit_budget, fit_interior
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.sim import Light, Shading
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
@@ -20,6 +19,7 @@ from voxrt.voxelize import AssetError, SceneWarning
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
@@ -45,27 +45,6 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class BudgetFit:
-    """What fitting a memory to a budget took.
-
-    Attributes
-    ----------
-    words
-        The budget.
-    fit
-        What was shared and what was given up, in words and voxels.
-    psnr, ssim
-        How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
-        1 for equal pictures.
-    """
-
-    words: int
-    fit: octree.Fit
-    psnr: float
-    ssim: float
-
-
-@dataclass(frozen=True, eq=False, slots=True)
 class BuildResult:
     """What a build made.
 
@@ -81,11 +60,13 @@ class BuildResult:
         The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
     preview
         The rendered picture, None when none was asked for.
+    interior
+        What became of hidden voxels, None when they keep their materials.
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"budget"``,
-        ``"write"``, ``"preview"``.
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
+        ``"budget"``, ``"write"``, ``"preview"``.
     view, lighting
         The author's camera and light; None where the author gave none.
     """
@@ -95,6 +76,7 @@ class BuildResult:
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
     preview: Picture | None = None
+    interior: InteriorFit | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     view: export.View | None = None
@@ -113,6 +95,7 @@ def build(
     depth: int | None = None,
     voxel_size: float | None = None,
     fill: Literal["solid", "surface"] = "solid",
+    interior: int | str = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     up: UpAxis | None = None,
@@ -146,6 +129,9 @@ def build(
         Metres a voxel.
     fill
         ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps the shell.
+    interior
+        What becomes of voxels that no ray from outside can reach: ``"keep"`` leaves them their object's material, a
+        material's id or name gives them that one, ``"any"`` gives each whatever lets most blocks be shared.
     geometry
         ``"auto"`` takes an object's colliders where it has some, else its triangles; ``"render"`` always the
         triangles; ``"collider"`` always colliders, the bounding box where an object has none.
@@ -224,11 +210,15 @@ def build(
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels, threads=threads), scene.materials, grid)
+    interior_fit = None
+    if interior != "keep":
+        with stage("interior"):
+            rom, interior_fit = fit_interior(rom, None if interior == "any" else find_material(asset, scene, interior))
     budget_fit = None
     if budget is not None:
         with stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = _fit_to(rom, words, size, threads)
+            rom, budget_fit = fit_budget(rom, words, size, threads)
     view, lighting, unseen = _authored(scene, grid)
     warnings = scene.warnings + voxelization.warnings + unseen
     if lighting is not None and picture_file is not None and engine == "rtl":
@@ -240,6 +230,7 @@ def build(
     if output is not None:
         settings: dict[str, str | int | float | bool | None] = {
             "fill": fill,
+            "interior": interior,
             "geometry": geometry,
             "pow2": pow2,
             "up": up,
@@ -266,13 +257,12 @@ def build(
     if picture_file is not None:
         with stage("preview"):
             camera = authored_camera(scene.viewpoint, grid, size) if scene.viewpoint else aim_camera(rom, size)
-            chosen: Engine = engine or ("rtl" if lighting is None else "model")
-            cast = lighting if chosen == "model" else None
-            frame = render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads)
-            picture = Picture(frame, camera, chosen)
+            picture = _picture(rom, camera, size, engine, lighting, threads)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds, view, lighting)
+    return BuildResult(
+        rom, voxelization.objects, warnings, outputs, picture, interior_fit, budget_fit, seconds, view, lighting
+    )
 
 
 def _picture_file(
@@ -286,6 +276,20 @@ def _picture_file(
     file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
     check_folder(file.parent)
     return file
+
+
+def _picture(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    engine: Engine | None,
+    lighting: export.Lighting | None,
+    threads: int,
+) -> Picture:
+    chosen: Engine = engine or ("rtl" if lighting is None else "model")
+    cast = lighting if chosen == "model" else None
+    frame = render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads)
+    return Picture(frame, camera, chosen)
 
 
 def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
@@ -303,16 +307,6 @@ def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Ligh
         except ViewpointError as error:
             unseen.append(SceneWarning("light", str(error)))
     return view, lighting, tuple(unseen)
-
-
-def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
-    colours = np.array([material.colour for material in rom.materials], np.uint8)
-    fit = octree.fit(rom.octree, words, colours=colours)
-    fitted = replace(rom, octree=fit.octree)
-    camera = aim_camera(rom, size)
-    before, after = (render(r, camera, size=size, engine="model", threads=threads).colour for r in (rom, fitted))
-    psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
-    return fitted, BudgetFit(words, fit, psnr, ssim)
 
 
 def _refuse(asset: Path, warnings: tuple[SceneWarning, ...]) -> None:

@@ -138,6 +138,46 @@ def test_options_reach_their_stage(voxrt, folder):
     assert rounded["words"] < exact["words"]
 
 
+def test_interiors_are_made_what_is_asked(voxrt, folder):
+    """A cube of 16 voxels: its shell is brick, which none of its inside need be."""
+
+    def built(*options: str) -> dict:
+        finished = voxrt("build", "cube.obj", "--depth", "4", "--json", *options)
+        assert finished.code == 0, finished.err
+        return json.loads(finished.out)
+
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+    text += "".join(
+        f"usemtl {name}\nf {' '.join(map(str, face))}\n"
+        for name, face in zip(["brick", "slate", *["brick"] * 4], faces, strict=True)
+    )
+    (folder / "cube.obj").write_text(text)
+    kept = built()
+    assert kept["interior"] is None
+    for option, number in (("slate", 2), ("2", 2), ("brick", 1)):
+        made = built("--interior", option, "--profile")
+        assert made["interior"] == {"material": number, "hidden": 14**3, "words_before": kept["words"]}
+        assert made["seconds"]["interior"] > 0
+        manifest = json.loads((folder / "cube.json").read_bytes())
+        assert manifest["source"]["settings"]["interior"] == option
+        assert manifest["materials"][number]["voxels"] >= 14**3
+    shared = built("--interior", "any")
+    assert shared["interior"]["material"] is None
+    assert shared["words"] <= kept["words"]
+    assert shared["voxels"] == kept["voxels"] == 16**3
+    assert built("--interior", "any", "--budget", str(shared["words"]))["budget"]["recoloured"] == 0
+    assert "interior" in voxrt("build", "cube.obj", "--interior", "any", "--depth", "4", "--profile").err
+
+
+@pytest.mark.parametrize("material", ["marble", "0", "9", "-1"])
+def test_interiors_of_no_material(voxrt, material):
+    finished = voxrt("build", "house.obj", f"--interior={material}")
+    assert finished.code == 3
+    assert f"has no material {material!r} for its interior; name one of: 1 timber, 2 glass" in finished.error
+
+
 def test_warnings_go_to_people_and_to_programs(voxrt):
     finished = voxrt("build", "dog.usda", "--depth", "5", "--unit", "2", "--json")
     assert finished.code == 0

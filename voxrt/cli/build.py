@@ -21,6 +21,7 @@ def build(
     depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     voxel_size: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     fill: Literal["solid", "surface"] = "solid",
+    interior: Annotated[str, Parameter(metavar="keep|any|MATERIAL")] = "keep",
     geometry: Literal["auto", "render", "collider"] = "auto",
     pow2: Literal["box", "none"] = "box",
     up: Literal["x", "y", "z"] | None = None,
@@ -55,6 +56,9 @@ def build(
         Size of a voxel instead of --depth.
     fill
         Fill what closed surfaces enclose, or keep the shell only.
+    interior
+        What becomes of voxels that no ray from outside can reach: keep their object's material; any: each takes
+        whatever makes the memory smallest; MATERIAL: all take that material, an id or a name.
     geometry
         auto: an object's colliders where it has some, else its triangles; render: always the triangles; collider:
         always colliders, the bounding box where an object has none.
@@ -101,13 +105,16 @@ def build(
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
         raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
-    with stage_bar(6 + (preview is not None) + (budget is not None or board is not None)) as progress:
+    with stage_bar(
+        6 + (preview is not None) + (interior != "keep") + (budget is not None or board is not None)
+    ) as progress:
         result = voxrt.build(
             asset,
             output,
             depth=depth,
             voxel_size=voxel_size,
             fill=fill,
+            interior=interior,
             geometry=geometry,
             pow2=pow2,
             up=up,
@@ -146,12 +153,18 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
+        *([("interior", _interior(result.interior, rom))] if result.interior else []),
         *([("budget", _budget(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
         ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
         *(("wrote", str(path)) for path in result.outputs.values()),
     ]
+
+
+def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
+    made = "what shares most" if interior.material is None else rom.materials[interior.material].name
+    return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
 
 
 def _budget(budget: voxrt.BudgetFit) -> str:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture
+    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.pipeline import BuildResult, Picture
     from voxrt.voxelize import SceneWarning
 
 
@@ -89,6 +90,17 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     ssim: float
 
 
+class InteriorEntry(msgspec.Struct, frozen=True):
+    """What became of voxels that no ray from outside can reach."""
+
+    material: int | None
+    """What they are made of now; null where each took whatever lets most blocks be shared."""
+    hidden: int
+    """How many they are."""
+    words_before: int
+    """What the memory takes when they keep their materials."""
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -106,6 +118,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """The preview; null when none was asked for."""
     budget: BudgetEntry | None = None
     """Null when there was none."""
+    interior: InteriorEntry | None = None
+    """Null when they keep their materials."""
 
 
 def build_report(result: BuildResult) -> BuildReport:
@@ -125,7 +139,12 @@ def build_report(result: BuildResult) -> BuildReport:
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
+        interior=None if result.interior is None else _interior_entry(result.interior),
     )
+
+
+def _interior_entry(interior: InteriorFit) -> InteriorEntry:
+    return InteriorEntry(interior.material, interior.hidden, interior.words_before)
 
 
 def _budget_entry(budget: BudgetFit) -> BudgetEntry:
