@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
+    from voxrt.sim import Camera, Frame, NoSuchConfigurationError, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -41,6 +41,7 @@ __all__ = [
     "Frame",
     "Grid",
     "Material",
+    "NoSuchConfigurationError",
     "Octree",
     "OutputError",
     "Picture",
@@ -72,7 +73,15 @@ _HOMES = {
     "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
+    "voxrt.sim": (
+        "Camera",
+        "Frame",
+        "NoSuchConfigurationError",
+        "SimulatorError",
+        "check",
+        "compare",
+        "comparison_sheet",
+    ),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

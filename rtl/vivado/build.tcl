@@ -34,7 +34,8 @@ create_bd_cell -type ip -vlnv xilinx.com:ip:axi_vdma vdma
 set_property -dict [list \
   CONFIG.c_include_mm2s 0 \
   CONFIG.c_include_s2mm 1 \
-  CONFIG.c_m_axis_s2mm_tdata_width 32 \
+  CONFIG.c_s_axis_s2mm_tdata_width 32 \
+  CONFIG.c_m_axi_s2mm_data_width 64 \
   CONFIG.c_use_s2mm_fsync 2 \
   CONFIG.c_num_fstores 3] [get_bd_cells vdma]
 
