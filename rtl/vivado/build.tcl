@@ -5,7 +5,8 @@
 # NOT RUN: written without Vivado at hand, from its documentation. The core that it instantiates is proven by simulation;
 # this script is not. Pictures go by VDMA into the processor's memory, as in the original; HDMI is not part of it.
 #
-# Addresses: 0x43C0_0000 registers (2 KiB), 0x4200_0000 octree memory (128 KiB), 0x4300_0000 VDMA.
+# Addresses: 0x43C0_0000 registers (2 KiB), 0x4200_0000 octree memory (256 KiB: ranges are powers of
+# two, and the root makes it a word more than 128 KiB), 0x4300_0000 VDMA.
 
 set here [file dirname [file normalize [info script]]]
 set rtl [file dirname $here]
@@ -49,7 +50,7 @@ connect_bd_net [get_bd_pins ps/FCLK_CLK0] [get_bd_pins vdma/s_axis_s2mm_aclk]
 
 foreach {segment offset range} {
   core/s_axil 0x43C00000 4K
-  memory/S_AXI 0x42000000 128K
+  memory/S_AXI 0x42000000 256K
   vdma/S_AXI_LITE 0x43000000 64K
 } {
   set mapped [get_bd_addr_segs -of_objects [get_bd_addr_spaces ps/Data] -filter "NAME =~ *[lindex [split $segment /] 0]*"]

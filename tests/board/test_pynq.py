@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import runpy
 from dataclasses import replace
@@ -26,7 +27,8 @@ from voxrt.board.viewpoint import face_world
 from voxrt.sim.device import ModelDevice
 
 SIZE = (64, 48)
-GENERATED = Path(__file__).parents[2] / "rtl" / "generated" / "voxrt_registers.py"
+RTL = Path(__file__).parents[2] / "rtl"
+GENERATED = RTL / "generated" / "voxrt_registers.py"
 
 
 def scene_of(seed, depth=3):
@@ -131,11 +133,14 @@ def test_other_hardware(monkeypatch, core):
 
 
 def test_the_block_design_has_these_names():
-    design = (Path(__file__).parents[2] / "rtl" / "vivado" / "build.tcl").read_text()
+    design = (RTL / "vivado" / "build.tcl").read_text()
     cells = re.findall(r"create_bd_cell .* (\w+)$", design, re.MULTILINE)
     assert set(PARTS) < set(cells)
     for name, base in BASE.items():
         assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
+    mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
+    blocks = json.loads((RTL / "configurations.json").read_text())["z1"]["BlockBits"]
+    assert mapped >= 4 * (1 + (8 << blocks))
 
 
 def test_the_map_is_the_generated_one():
