@@ -14,7 +14,7 @@ from voxrt.sim.camera import (
     pixel_directions,
 )
 from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
-from voxrt.sim.errors import SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.render import Engine, EngineCheck, check, render
@@ -30,6 +30,7 @@ __all__ = [
     "Frame",
     "Light",
     "Likeness",
+    "NoSuchConfigurationError",
     "RenderCost",
     "Shading",
     "SimulatorError",

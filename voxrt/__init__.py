@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
+    from voxrt.sim import Camera, Frame, NoSuchConfigurationError, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -45,6 +45,7 @@ __all__ = [
     "InteriorFit",
     "LikenessAtDepth",
     "Material",
+    "NoSuchConfigurationError",
     "Octree",
     "OutputError",
     "Picture",
@@ -82,7 +83,15 @@ _HOMES = {
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
+    "voxrt.sim": (
+        "Camera",
+        "Frame",
+        "NoSuchConfigurationError",
+        "SimulatorError",
+        "check",
+        "compare",
+        "comparison_sheet",
+    ),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

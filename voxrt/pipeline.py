@@ -210,11 +210,10 @@ def build(
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels, threads=threads), scene.materials, grid)
-    interior_fit = None
+    interior_fit, budget_fit = None, None
     if interior != "keep":
         with stage("interior"):
             rom, interior_fit = fit_interior(rom, None if interior == "any" else find_material(asset, scene, interior))
-    budget_fit = None
     if budget is not None:
         with stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
@@ -256,8 +255,7 @@ def build(
     picture = None
     if picture_file is not None:
         with stage("preview"):
-            camera = authored_camera(scene.viewpoint, grid, size) if scene.viewpoint else aim_camera(rom, size)
-            picture = _picture(rom, camera, size, engine, lighting, threads)
+            picture = _picture(rom, scene, lighting, size, engine=engine, threads=threads)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
     return BuildResult(
@@ -280,16 +278,20 @@ def _picture_file(
 
 def _picture(
     rom: Rom,
-    camera: Camera,
-    size: tuple[int, int],
-    engine: Engine | None,
+    scene: Scene,
     lighting: export.Lighting | None,
+    size: tuple[int, int],
+    *,
+    engine: Engine | None,
     threads: int,
 ) -> Picture:
+    if scene.viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(scene.viewpoint, rom.grid, size)
+    else:
+        camera = aim_camera(rom, size)
     chosen: Engine = engine or ("rtl" if lighting is None else "model")
     cast = lighting if chosen == "model" else None
-    frame = render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads)
-    return Picture(frame, camera, chosen)
+    return Picture(render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads), camera, chosen)
 
 
 def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:

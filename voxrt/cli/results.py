@@ -61,9 +61,10 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     rays: int
     cycles: int | None
     """Clocks of the ray tracer; null from the model, which has no clock."""
-    words_read: int
+    words_read: int | None
+    """Octree words; null from the model, which reads one word for many rays."""
     cycles_per_pixel: float | None
-    words_per_ray: float
+    words_per_ray: float | None
     seconds: float
     camera: CameraEntry
     outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
@@ -177,7 +178,7 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         cycles=cost.cycles,
         words_read=cost.words_read,
         cycles_per_pixel=None if cost.cycles is None else cost.cycles / cost.rays,
-        words_per_ray=cost.words_read / cost.rays,
+        words_per_ray=None if cost.words_read is None else cost.words_read / cost.rays,
         seconds=cost.seconds,
         camera=CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
