@@ -105,7 +105,7 @@ private:
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
-            if (open != nullptr && open->is_sheet(t))
+            if (open != nullptr && open->is_shell_only(t))
                 cover_triangle<false>(a, b, c, window, false, layer);
             else
                 cover_triangle<Cross>(a, b, c, window, surveyed.inverted, layer);
