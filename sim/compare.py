@@ -110,11 +110,26 @@ def compare(scene: Scene, rom: Rom, camera: Camera, size: tuple[int, int]) -> Co
     return Comparison(meshes, voxels, _likeness(meshes, voxels))
 
 
-def comparison_sheet(comparison: Comparison) -> NDArray[np.uint8]:
-    """Lay out meshes, voxels and their difference side by side: uint8, shape (H, 3 W, 3); black where they agree."""
+def comparison_sheet(comparison: Comparison, hardware: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
+    """Lay out pictures side by side.
+
+    Parameters
+    ----------
+    comparison
+        The meshes and the exact model's picture of the voxels.
+    hardware
+        uint8, shape (H, W, 3): the simulated hardware's picture of them.
+
+    Returns
+    -------
+    NDArray[np.uint8]
+        Shape (H, 3 W or 4 W, 3): meshes, hardware if there is one, model, and the difference of meshes and model,
+        black where they agree.
+    """
     meshes, voxels = comparison.meshes.colour, comparison.voxels.colour
     difference = np.abs(meshes.astype(np.int16) - voxels.astype(np.int16)).astype(np.uint8)
-    return np.concatenate([meshes, voxels, difference], axis=1)
+    traced = [voxels] if hardware is None else [hardware, voxels]
+    return np.concatenate([meshes, *traced, difference], axis=1)
 
 
 def _view_meshes(
