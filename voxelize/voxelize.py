@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Collider, Scene, SceneObject
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding")
+_MODES = ("surface", "exact", "winding", "open")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 
@@ -59,7 +59,8 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps shells alone.
+        ``"solid"`` fills what surfaces enclose, holes or not, but not what stands open: a piece of an object of which
+        one opening is larger than 15 % of its area, unless other such pieces close it. ``"surface"`` keeps shells alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
@@ -88,7 +89,14 @@ def voxelize(
         ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
         for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
     )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()))
+    standing_open = sum(report.mode == "open" for report in objects)
+    if standing_open:
+        parts.warn(
+            "open-surface",
+            "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
+            standing_open,
+        )
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[10])
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -124,8 +132,8 @@ class _Parts:
     def start_object(self) -> None:
         self._objects += 1
 
-    def warn(self, kind: str, message: str) -> None:
-        self._counts[kind, message] = self._counts.get((kind, message), 0) + 1
+    def warn(self, kind: str, message: str, count: int = 1) -> None:
+        self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def warnings(self) -> list[SceneWarning]:
         return [SceneWarning(kind, message, count) for (kind, message), count in self._counts.items()]

@@ -85,6 +85,8 @@ class BuildResult:
     seconds
         Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"budget"``, ``"write"``,
         ``"preview"``.
+    parts
+        Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     """
 
     rom: Rom
@@ -94,6 +96,7 @@ class BuildResult:
     preview: Picture | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+    parts: dict[str, dict[str, float]] = field(default_factory=dict)
 
     @property
     def solid_voxels(self) -> int:
@@ -240,7 +243,8 @@ def build(
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+    parts = {"voxelize": voxelization.seconds}
+    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds, parts)
 
 
 def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
