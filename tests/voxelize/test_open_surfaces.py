@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.meshes import box_mesh, icosphere, one_object, scene_of
-from oracles.voxels import dense, shell, snap, winding_at
+from oracles.voxels import dense, snap, winding_at
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
 

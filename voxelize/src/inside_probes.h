@@ -37,7 +37,7 @@ public:
                 int number = 0;
                 for (int k = 0; k < kSide; ++k) {
                     number += changes_[j][i][k];
-                    const double share = std::abs(number - caps.at(at(i, j, k), kTolerance));
+                    const double share = std::min(1.0, std::abs(number - caps.at(at(i, j, k), kTolerance)));
                     if (share < 0.5 + kTolerance)
                         continue;
                     found.mean += share;

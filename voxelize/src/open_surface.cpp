@@ -15,6 +15,8 @@ constexpr double kOpening = 0.15; // a piece stands open where a loop closes wit
 constexpr double kClosed = 0.87;  // pieces close one another where this share of all directions does not lead out
 constexpr double kRoom = 0.75; // what stands open encloses something where this share does not; a plain sheet does not
 
+constexpr double kLeastOpening = 1e-300; // of a piece that does not close
+
 class Groups {
 public:
     explicit Groups(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -113,7 +115,7 @@ public:
                 sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
             }
             double& opening = opening_[groups_.of(loop[0])];
-            opening = std::max(opening, length(sum));
+            opening = std::max({opening, length(sum), kLeastOpening});
         }
     }
 
@@ -129,29 +131,24 @@ public:
         return opening_[piece] > kOpening * own_[piece];
     }
 
-    /// How well the pieces with large openings enclose together.
+    /// How well all pieces that do not close enclose together, where those with large openings are.
     InsideProbes::Enclosure measure_open() {
-        std::vector<uint32_t> open;
         Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
         for (size_t t = 0; t < mesh_.triangle_count(); ++t)
-            if (is_open(corners(t)[0])) {
-                open.push_back(uint32_t(t));
-                for (uint32_t v : corners(t)) {
+            for (uint32_t v : corners(t))
+                if (is_open(v)) {
                     const Point& p = points_[v];
                     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
                     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
                 }
-            }
-        if (open.empty())
-            return {};
         InsideProbes probes(low, high);
         auto add = [&](const std::array<uint32_t, 3>& t) { probes.add(points_[t[0]], points_[t[1]], points_[t[2]]); };
-        for (uint32_t t : open)
-            add(corners(t));
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            if (opening_[groups_.of(corners(t)[0])] > 0)
+                add(corners(t));
         std::vector<std::array<uint32_t, 3>> caps;
         for (const auto& loop : loops_)
-            if (is_open(loop[0]))
-                close_loop(loop, caps);
+            close_loop(loop, caps);
         std::vector<HoleWinding::Cap> seen;
         for (const auto& cap : caps) {
             add(cap);
