@@ -87,16 +87,17 @@ private:
         else
             cover<false>(part, surveyed, *vertices, items, window, s.layer);
         s.seconds.coverage += lap();
-        if (s.layer.empty() && !surveyed.open)
+        const bool has_holes = surveyed.open && !surveyed.open->holes.empty();
+        if (s.layer.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = !fill_          ? s.fill.claim_shell(s.tile, s.layer)
-                            : surveyed.open ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes,
-                                                                      surveyed.box, window)
-                                            : s.fill.claim_solid(s.tile, s.layer, interior);
+        const Claim claim =
+            !fill_      ? s.fill.claim_shell(s.tile, s.layer)
+            : has_holes ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes, surveyed.box, window)
+                        : s.fill.claim_solid(s.tile, s.layer, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.complex[index] |= !claim.simple;
-        (surveyed.open ? s.seconds.holes : s.seconds.fill) += lap();
+        (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
     template <bool Cross>
