@@ -117,6 +117,14 @@ def test_a_room_of_loose_walls_stays_a_room():
     assert not dense(voxelize(one_object(loose), GRID).voxels)[4:12, 4:12, 4:12].any()
 
 
+def test_a_side_wound_against_the_others_is_no_opening():
+    mesh, side = room()
+    turned = Mesh(side.positions, side.triangles[:, ::-1].copy(), side.materials)
+    result = voxelize(one_object(joined(mesh, turned)), GRID)
+    assert result.objects[0].mode == "winding"
+    assert dense(result.voxels)[7:14, 2:14, 2:14].all()
+
+
 def test_a_lid_closes_a_box():
     mesh, lid = room()
     lid = Mesh(lid.positions - [0.1, 0, 0], lid.triangles, lid.materials)

@@ -18,14 +18,16 @@ void close_between(const std::vector<uint32_t>& loop, size_t from, size_t to,
 
 } // namespace
 
-std::vector<std::vector<uint32_t>> cut_into_loops(std::vector<BoundaryEdge> edges, size_t vertices) {
+std::vector<BoundaryLoop> cut_into_loops(std::vector<BoundaryEdge> edges, size_t vertices) {
     std::vector<uint32_t> next(vertices, kNowhere), place(vertices, kNowhere);
     for (size_t i = edges.size(); i-- > 0;)
         next[edges[i].from] = uint32_t(i);
-    std::vector<std::vector<uint32_t>> loops;
+    std::vector<BoundaryLoop> loops;
     std::vector<uint32_t> path;
+    std::vector<size_t> turned; // edges of the path up to each vertex
     for (const BoundaryEdge& start : std::vector<BoundaryEdge>(edges)) {
         path = {start.from};
+        turned = {0};
         place[start.from] = 0;
         while (true) {
             uint32_t& edge = next[path.back()];
@@ -35,15 +37,18 @@ std::vector<std::vector<uint32_t>> cut_into_loops(std::vector<BoundaryEdge> edge
                 break; // at the start again, and all its edges are walked
             --edges[edge].times;
             const uint32_t to = edges[edge].to;
+            const size_t so_far = turned.back() + (edges[edge].turned ? 1 : 0);
             if (place[to] == kNowhere) {
                 place[to] = uint32_t(path.size());
                 path.push_back(to);
+                turned.push_back(so_far);
                 continue;
             }
-            loops.emplace_back(path.begin() + place[to], path.end());
+            loops.push_back({{path.begin() + place[to], path.end()}, so_far - turned[place[to]]});
             while (path.back() != to) {
                 place[path.back()] = kNowhere;
                 path.pop_back();
+                turned.pop_back();
             }
         }
         place[start.from] = kNowhere;

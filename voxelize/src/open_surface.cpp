@@ -81,9 +81,9 @@ std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<ui
         for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
             sum += edges[j].way;
         if (sum > 0)
-            boundary.push_back({edges[i].low, edges[i].high, sum});
+            boundary.push_back({edges[i].low, edges[i].high, sum, (j - i) % 2 == 0});
         else if (sum < 0)
-            boundary.push_back({edges[i].high, edges[i].low, -sum});
+            boundary.push_back({edges[i].high, edges[i].low, -sum, (j - i) % 2 == 0});
         i = j;
     }
     std::sort(boundary.begin(), boundary.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
@@ -108,14 +108,14 @@ public:
             const auto [a, b, c] = corners(t);
             own_[groups_.of(a)] += length(area(points[a], points[b], points[c]));
         }
-        for (const auto& loop : loops_) {
+        for (const auto& [loop, turned] : loops_) {
             Point sum{0, 0, 0};
             for (size_t i = 2; i < loop.size(); ++i) {
                 const Point n = area(points[loop[0]], points[loop[i - 1]], points[loop[i]]);
                 sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
             }
             double& opening = opening_[groups_.of(loop[0])];
-            opening = std::max({opening, length(sum), kLeastOpening});
+            opening = std::max({opening, 2 * turned > loop.size() ? 0 : length(sum), kLeastOpening});
         }
     }
 
@@ -123,7 +123,7 @@ public:
         const int32_t* corner = mesh_.triangles.data() + 3 * t;
         return {welded_[corner[0]], welded_[corner[1]], welded_[corner[2]]};
     }
-    const std::vector<std::vector<uint32_t>>& loops() const { return loops_; }
+    const std::vector<BoundaryLoop>& loops() const { return loops_; }
 
     /// Whether the piece of a vertex has a large opening.
     bool is_open(uint32_t vertex) {
@@ -148,7 +148,7 @@ public:
                 add(corners(t));
         std::vector<std::array<uint32_t, 3>> caps;
         for (const auto& loop : loops_)
-            close_loop(loop, caps);
+            close_loop(loop.vertices, caps);
         std::vector<HoleWinding::Cap> seen;
         for (const auto& cap : caps) {
             add(cap);
@@ -162,7 +162,7 @@ private:
     const std::vector<Point>& points_;
     std::vector<uint32_t> welded_;
     Groups groups_;
-    std::vector<std::vector<uint32_t>> loops_;
+    std::vector<BoundaryLoop> loops_;
     std::vector<double> own_, opening_; // by piece: area of the surface, of its largest loop closed
 };
 
@@ -173,7 +173,7 @@ Boundary find_boundary(const MeshView& mesh, const std::vector<Point>& points) {
     Boundary boundary;
     bool any_open = false;
     for (const auto& loop : pieces.loops())
-        any_open = any_open || pieces.is_open(loop[0]);
+        any_open = any_open || pieces.is_open(loop.vertices[0]);
     if (any_open) {
         const InsideProbes::Enclosure enclosure = pieces.measure_open();
         if (enclosure.mean < kClosed) {
@@ -184,8 +184,8 @@ Boundary find_boundary(const MeshView& mesh, const std::vector<Point>& points) {
         }
     }
     for (const auto& loop : pieces.loops())
-        if (boundary.shell_only.empty() || !pieces.is_open(loop[0]))
-            close_loop(loop, boundary.caps);
+        if (boundary.shell_only.empty() || !pieces.is_open(loop.vertices[0]))
+            close_loop(loop.vertices, boundary.caps);
     return boundary;
 }
 

@@ -3,9 +3,9 @@
 // A hole in a scan is a flaw: what it opens is filled all the same. Rooms without a front, bowls and sheets are open as
 // they were made, and have a shell alone. They are told so: a connected piece of the surface stands open where one of
 // its loops of boundary, closed, is large beside the piece itself (by its vector area, so that it does not matter how
-// it is closed). Pieces that stand open may close one another, as a box and its lid or the panels around a room do.
-// Then hardly any direction leads out from what they enclose; their generalized winding number is the share of those
-// that do not.
+// it is closed; a face wound against its neighbours opens nothing). Pieces that stand open may close one another, as a
+// box and its lid or the panels around a room do. Then hardly any direction leads out from what they enclose; their
+// generalized winding number is the share of those that do not.
 #pragma once
 
 #include "hole_winding.h"
