@@ -27,7 +27,7 @@ public:
     /// What the settling of large cubes asks of a brick: the capped surface's winding number at two of its voxels.
     struct Brick {
         int corner = 0, middle = 0; // voxels (0, 0, 0) and (4, 4, 4)
-        bool shell = false;
+        bool surface = false;
     };
 
     /// The inside lies within `box`; every brick is then to be told before settle().
@@ -75,17 +75,17 @@ public:
         return box;
     }
 
-    /// The voxels of a mixed brick that are inside, the shell's left out. `numbers`: the capped surface's winding
+    /// The voxels of a mixed brick that are inside, the surface's left out. `numbers`: the capped surface's winding
     /// numbers there.
-    Slices inside(int column, int k, const Slices& shell, const std::vector<int>& numbers) {
+    Slices inside(int column, int k, const Slices& surface, const std::vector<int>& numbers) {
         x_ = x0_ + column % kTileBricks * kBrickSide;
         y_ = y0_ + column / kTileBricks * kBrickSide;
         z_ = k * kBrickSide;
         numbers_ = numbers.data();
-        shell_ = &shell;
+        surface_ = &surface;
         Slices open = box_of(column, k), within{};
         for (int z = 0; z < kBrickSide; ++z)
-            open[z] &= ~shell[z];
+            open[z] &= ~surface[z];
         decide({0, 0, 0, std::min(side_, kBrickSide)}, views_[mixed_[size_t(column) * height_ + k]], 0, open, within);
         return within;
     }
@@ -130,7 +130,7 @@ private:
         if (beyond_box(x, y, z, side))
             return;
         const bool within = x + side <= side_ && y + side <= side_ && z + side <= side_;
-        const bool clear = within && !has_shell(bx, by, k, bricks);
+        const bool clear = within && !has_surface(bx, by, k, bricks);
         HoleView& view = levels_[level];
         const double reach = look(from, x, y, z, side, clear, view);
         const Verdict verdict = verdict_of(view, reach, bx, by, k, bricks, clear);
@@ -151,11 +151,11 @@ private:
 
     ptrdiff_t place(int bx, int by, int k) const { return ptrdiff_t(by * kTileBricks + bx) * height_ + k; }
 
-    bool has_shell(int bx, int by, int k, int bricks) const {
+    bool has_surface(int bx, int by, int k, int bricks) const {
         for (int v = by; v < by + bricks; ++v)
             for (int u = bx; u < bx + bricks; ++u)
                 for (int w = k; w < k + bricks; ++w)
-                    if (bricks_[place(u, v, w)].shell)
+                    if (bricks_[place(u, v, w)].surface)
                         return true;
         return false;
     }
@@ -181,7 +181,7 @@ private:
     bool is_clear(const Cell& cell) const {
         uint64_t any = 0;
         for (int z = cell.z; z < cell.z + cell.side; ++z)
-            any |= (*shell_)[z] & square_of(cell);
+            any |= (*surface_)[z] & square_of(cell);
         return any == 0;
     }
 
@@ -255,7 +255,7 @@ private:
     // The brick looked into.
     int x_ = 0, y_ = 0, z_ = 0;
     const int* numbers_ = nullptr;
-    const Slices* shell_ = nullptr;
+    const Slices* surface_ = nullptr;
 };
 
 } // namespace voxrt
