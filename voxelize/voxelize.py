@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     ]
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding")
+_MODES = ("surface", "exact", "winding", "open")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 _NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -71,7 +71,9 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps shells alone.
+        ``"solid"`` fills what surfaces enclose, holes or not, but not what stands open: a connected piece of an object
+        of which one opening is larger than 15 % of its area, unless other pieces close it. ``"surface"`` keeps shells
+        alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
@@ -100,7 +102,14 @@ def voxelize(
         ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
         for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
     )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()))
+    standing_open = sum(report.mode == "open" for report in objects)
+    if standing_open:
+        parts.warn(
+            "open-surface",
+            "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
+            standing_open,
+        )
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[10])
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -136,8 +145,8 @@ class _Parts:
     def start_object(self) -> None:
         self._objects += 1
 
-    def warn(self, kind: str, message: str) -> None:
-        self._counts[kind, message] = self._counts.get((kind, message), 0) + 1
+    def warn(self, kind: str, message: str, count: int = 1) -> None:
+        self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def warnings(self) -> list[SceneWarning]:
         return [SceneWarning(kind, message, count) for (kind, message), count in self._counts.items()]

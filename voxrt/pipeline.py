@@ -67,6 +67,8 @@ class BuildResult:
     seconds
         Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
         ``"budget"``, ``"write"``, ``"preview"``.
+    parts
+        Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
         The author's camera and light; None where the author gave none.
     """
@@ -79,6 +81,7 @@ class BuildResult:
     interior: InteriorFit | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+    parts: dict[str, dict[str, float]] = field(default_factory=dict)
     view: export.View | None = None
     lighting: export.Lighting | None = None
 
@@ -259,7 +262,17 @@ def build(
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
     return BuildResult(
-        rom, voxelization.objects, warnings, outputs, picture, interior_fit, budget_fit, seconds, view, lighting
+        rom,
+        voxelization.objects,
+        warnings,
+        outputs,
+        picture,
+        interior_fit,
+        budget_fit,
+        seconds,
+        {"voxelize": voxelization.seconds},
+        view,
+        lighting,
     )
 
 

@@ -95,7 +95,7 @@ def build(
     strict
         Refuse an asset of which something would not be honoured as it stands, instead of warning.
     profile
-        Show where the time goes, a stage a row.
+        Show where the time goes, a stage a row, what a stage consists of indented below it.
     reporting
         How to tell what was done.
     """
@@ -139,7 +139,12 @@ def build(
         summarize(f"{asset.name}:", _rows(result))
     if profile:
         total = sum(result.seconds.values())
-        stages = [(stage, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for stage, took in result.seconds.items()]
+        rows = [
+            row
+            for stage, took in result.seconds.items()
+            for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
+        ]
+        stages = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
         tabulate(("stage", "ms", "%"), [*stages, ("all", f"{1e3 * total:.1f}", "100")])
 
 
