@@ -9,8 +9,9 @@ from voxrt.octree.build import build, from_dense, from_points
 from voxrt.octree.census import Census, census
 from voxrt.octree.decode import decode
 from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
-from voxrt.octree.diff import Difference, diff
+from voxrt.octree.diff import Difference, Region, diff, differing_regions
 from voxrt.octree.errors import RomError, ViewerError
+from voxrt.octree.hidden import fill_hidden, hidden_voxels, share_hidden
 from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
 from voxrt.octree.octants import octants
@@ -32,6 +33,7 @@ __all__ = [
     "Leaves",
     "Octant",
     "Octree",
+    "Region",
     "Rom",
     "RomError",
     "SurfaceChange",
@@ -44,10 +46,13 @@ __all__ = [
     "describe",
     "detect_dialect",
     "diff",
+    "differing_regions",
     "encode",
+    "fill_hidden",
     "fit",
     "from_dense",
     "from_points",
+    "hidden_voxels",
     "leaves",
     "material_at",
     "octant_at",
@@ -56,6 +61,7 @@ __all__ = [
     "plot",
     "read_vox",
     "share",
+    "share_hidden",
     "show",
     "solid_bounds",
     "surface_change",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree.errors import ViewerError
-from voxrt.octree.hidden import hidden
+from voxrt.octree.hidden import hidden_leaves
 from voxrt.octree.leaves import Leaves, leaves
 from voxrt.voxelize import DoesNotFitError
 
@@ -37,7 +37,7 @@ def octants(
     low, high
         Only octants that overlap the voxels from `low` up to and without `high` (default: the world's end), whole.
     surface
-        Leave out octants that the others cover on all six sides.
+        Leave out octants that the others enclose, edges and corners included.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def octants(
     """
     pv = import_pyvista()
     solid = _collect(rom, low, high)
-    shown = ~hidden(solid) if surface else np.ones(len(solid.levels), np.bool_)
+    shown = ~hidden_leaves(solid) if surface else np.ones(len(solid.levels), np.bool_)
     materials, levels = solid.materials[shown], solid.levels[shown]
     points, cells = _corners(solid.corners[shown], levels)
     grid = pv.UnstructuredGrid(

@@ -14,10 +14,10 @@ from voxrt.sim.camera import (
     pixel_directions,
 )
 from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
-from voxrt.sim.errors import SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
-from voxrt.sim.render import Engine, EngineCheck, check, render
+from voxrt.sim.render import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
@@ -30,6 +30,7 @@ __all__ = [
     "Frame",
     "Light",
     "Likeness",
+    "NoSuchConfigurationError",
     "RenderCost",
     "Shading",
     "SimulatorError",
@@ -45,6 +46,7 @@ __all__ = [
     "peak_signal_to_noise",
     "pixel_directions",
     "render",
+    "shader_features",
     "structural_similarity",
     "write_png",
 ]

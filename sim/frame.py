@@ -22,7 +22,7 @@ class RenderCost:
     rays
         Rays traced, one a pixel.
     words_read
-        Octree words read.
+        Octree words read; None from the model, which reads one word for many rays.
     cycles
         Clocks from the frame's start to its last pixel accepted; None from the model, which has no clock.
     seconds
@@ -30,7 +30,7 @@ class RenderCost:
     """
 
     rays: int
-    words_read: int
+    words_read: int | None
     cycles: int | None
     seconds: float
 

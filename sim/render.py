@@ -11,11 +11,13 @@ import numpy as np
 
 from voxrt.sim import _model
 from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
-from voxrt.sim.errors import SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
@@ -81,6 +83,8 @@ def render(
 
     Raises
     ------
+    NoSuchConfigurationError
+        The ray tracer has no configuration of that name here.
     SimulatorError
         The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading; a
         size, a direction or the light is out of range.
@@ -125,12 +129,24 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
         colour=pixels["colour"],
         material=pixels["material"],
         face=pixels["face"],
-        cost=RenderCost(size[0] * size[1], pixels["words_read"], None, time.perf_counter() - started),
+        cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, config: str) -> Frame:
-    started = time.perf_counter()
+def shader_features(config: str) -> frozenset[str]:
+    """Give what a configuration of the ray tracer has built in: of ``"flat"``, ``"light"`` and ``"mirrors"``.
+
+    Raises
+    ------
+    NoSuchConfigurationError
+        The ray tracer has no configuration of that name here.
+    SimulatorError
+        The ray tracer is not in this installation.
+    """
+    return frozenset(_ray_tracer(config).FEATURES[config])
+
+
+def _ray_tracer(config: str) -> ModuleType:
     try:
         _rtl = import_module("voxrt.sim._rtl")
     except ImportError as error:
@@ -139,9 +155,19 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
             "render with --engine model"
         ) from error
     if config not in _rtl.CONFIGS:
-        raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
+        raise NoSuchConfigurationError(config, _rtl.CONFIGS)
+    return _rtl
+
+
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, config: str) -> Frame:
+    started = time.perf_counter()
+    _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
-    _check_features(tracer.features, shading, config)
+    if absent := shading.features - shader_features(config):
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
+            "take configuration 'lit' or render with --engine model"
+        )
     place = tuple(value / POSITION_UNITS for value in camera.position)
     for misfit, problem in (
         (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
@@ -178,16 +204,6 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
         face=pixels["face"],
         cost=RenderCost(size[0] * size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started),
     )
-
-
-def _check_features(features: list[str], shading: Shading, config: str) -> None:
-    wanted = {"flat": shading.flat, "light": shading.light is not None, "mirrors": shading.bounces > 0}
-    absent = [name for name, is_wanted in wanted.items() if is_wanted and name not in features]
-    if absent:
-        raise SimulatorError(
-            f"ray tracer configuration {config!r} is built without {' and '.join(absent)}; "
-            "take configuration 'lit' or render with --engine model"
-        )
 
 
 def _shading(rom: Rom, shading: Shading) -> dict[str, Any]:

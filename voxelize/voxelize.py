@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     ]
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding")
+_MODES = ("surface", "exact", "winding", "open")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 _NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -71,7 +71,9 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps shells alone.
+        ``"solid"`` fills what surfaces enclose, holes or not, but not what stands open: a connected piece of an object
+        of which one opening is larger than 15 % of its area, unless other pieces close it. ``"surface"`` keeps shells
+        alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
@@ -100,7 +102,14 @@ def voxelize(
         ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
         for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
     )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()))
+    standing_open = sum(report.mode == "open" for report in objects)
+    if standing_open:
+        parts.warn(
+            "open-surface",
+            "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
+            standing_open,
+        )
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[10])
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -136,8 +145,8 @@ class _Parts:
     def start_object(self) -> None:
         self._objects += 1
 
-    def warn(self, kind: str, message: str) -> None:
-        self._counts[kind, message] = self._counts.get((kind, message), 0) + 1
+    def warn(self, kind: str, message: str, count: int = 1) -> None:
+        self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def warnings(self) -> list[SceneWarning]:
         return [SceneWarning(kind, message, count) for (kind, message), count in self._counts.items()]
@@ -158,7 +167,7 @@ class _Parts:
     def add_mesh(
         self,
         key: object,
-        mesh: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]],
+        mesh: tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
         material: int,
         tints: Tints = _NO_TINTS,
@@ -171,7 +180,7 @@ class _Parts:
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
                 (
-                    np.ascontiguousarray(mesh[0], dtype=np.float64),
+                    _vertices(mesh[0], mesh[1]),
                     np.ascontiguousarray(mesh[1], dtype=np.int32),
                     np.ascontiguousarray(mesh[2], dtype=np.uint8),
                     np.ascontiguousarray(tints.sizes, dtype=np.int32),
@@ -195,6 +204,18 @@ class _Parts:
             fill,
             threads,
         )
+
+
+def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return vertices as the native voxelizer takes them: those that no triangle uses brought in from wherever."""
+    exact = np.ascontiguousarray(positions, dtype=np.float64)
+    if triangles.min() < 0 or triangles.max() >= len(exact):
+        return exact  # which the native voxelizer refuses
+    unused = np.ones(len(exact), np.bool_)
+    unused[triangles.reshape(-1).astype(np.intp)] = False  # twice as fast as indices of 32 bits
+    if unused.any():
+        exact = np.where(unused[:, None], exact[triangles[0, 0]], exact)
+    return exact
 
 
 _Report = tuple[str, tuple[float, float, float], tuple[float, float, float]]
@@ -268,7 +289,7 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
 
 def _unreachable(scene: Scene, index: int) -> Exception:
     item = scene.objects[index]
-    points = [item.mesh.positions, item.transform]
+    points = [item.mesh.positions[item.mesh.triangles], item.transform]
     if not all(np.isfinite(values).all() for values in points):
         return AssetError(
             scene.name, "a coordinate is not a number", place=item.name, fix="repair the mesh or its transform"

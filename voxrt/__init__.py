@@ -17,12 +17,24 @@ from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.export import WRITABLE_SUFFIXES, Lighting, convert, read_any, read_rom, rom_info
+    from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, Light, Shading, SimulatorError, check, compare, comparison_sheet
+    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.sim import (
+        Camera,
+        Frame,
+        Light,
+        NoSuchConfigurationError,
+        Shading,
+        SimulatorError,
+        check,
+        compare,
+        comparison_sheet,
+        shader_features,
+    )
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -41,12 +53,16 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "InteriorFit",
     "Light",
+    "Lighting",
     "LikenessAtDepth",
     "Material",
+    "NoSuchConfigurationError",
     "Octree",
     "OutputError",
     "Picture",
+    "Region",
     "Rom",
     "RomError",
     "Scene",
@@ -62,6 +78,7 @@ __all__ = [
     "comparison_sheet",
     "convert",
     "diff",
+    "differing_regions",
     "draw_likeness_curve",
     "fit_grid",
     "likeness_curve",
@@ -71,15 +88,28 @@ __all__ = [
     "render",
     "rom_info",
     "save_picture",
+    "shader_features",
 ]
 
 _HOMES = {
-    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.export": ("WRITABLE_SUFFIXES", "Lighting", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
+    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "Light", "Shading", "SimulatorError", "check", "compare", "comparison_sheet"),
+    "voxrt.fitting": ("BudgetFit", "InteriorFit"),
+    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.sim": (
+        "Camera",
+        "Frame",
+        "Light",
+        "NoSuchConfigurationError",
+        "Shading",
+        "SimulatorError",
+        "check",
+        "compare",
+        "comparison_sheet",
+        "shader_features",
+    ),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

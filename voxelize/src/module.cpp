@@ -130,9 +130,16 @@ nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Input
         });
         out = voxelize(depth, parts, size_t(objects), fill, workers);
     }
+    nb::dict seconds;
+    const StageSeconds& took = out.seconds;
+    for (const auto& [stage, value] :
+         {std::pair{"survey", took.survey}, std::pair{"bin", took.bin}, std::pair{"coverage", took.coverage},
+          std::pair{"fill", took.fill}, std::pair{"holes", took.holes}, std::pair{"order", took.order},
+          std::pair{"gather", took.gather}})
+        seconds[stage] = value;
     return nb::make_tuple(give(out.brick_codes), give(out.brick_masks), give(out.brick_materials), give(out.brick_rows),
                           give(out.cells), give(out.octant_codes), give(out.octant_levels), give(out.octant_materials),
-                          give(out.object_voxels), give(out.object_modes));
+                          give(out.object_voxels), give(out.object_modes), seconds);
 }
 
 nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<double> frame) {
@@ -183,7 +190,7 @@ threads
 Returns
 -------
 The arrays of :class:`voxrt.voxelize.Voxels` in the order of its attributes, then int64 voxels and uint8 modes
-(0 surface, 1 exact, 2 winding) by object.
+(0 surface, 1 exact, 2 winding, 3 open) by object, then wall seconds by stage.
 
 Raises
 ------

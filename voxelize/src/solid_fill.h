@@ -164,24 +164,38 @@ private:
             const ShellBrick* found = layer.find(column, k);
             const ShellBrick& brick = found != nullptr ? *found : nothing;
             const OpenInside::Verdict verdict = inside_.verdict(column, k);
-            if (found == nullptr && verdict == OpenInside::Verdict::outside)
+            if (found == nullptr && (verdict == OpenInside::Verdict::outside ||
+                                     (verdict == OpenInside::Verdict::capped && winding.inside() == 0)))
                 continue;
             const Slices surface = layer.surface(brick, slices_of(brick.shell));
             const Crossings crossings(brick);
-            if (verdict == OpenInside::Verdict::mixed)
+            const bool mixed = verdict == OpenInside::Verdict::mixed;
+            Slices within{};
+            if (mixed)
                 numbers_.resize(kBrickVoxels);
             for (int z = 0; z < kBrickSide; ++z) {
                 if (found != nullptr)
                     advance(winding, crossings, layer.index_of(brick), brick.has_spill, z);
-                for (int bit = 0; verdict == OpenInside::Verdict::mixed && bit < 64; ++bit)
+                within[z] = verdict == OpenInside::Verdict::inside   ? ~uint64_t{0}
+                            : verdict == OpenInside::Verdict::capped ? winding.inside()
+                                                                     : 0;
+                for (int bit = 0; mixed && bit < 64; ++bit)
                     numbers_[z * 64 + bit] = winding.at(bit);
             }
-            const Slices within = inside_.inside(column, k, surface, numbers_);
+            if (mixed)
+                within = inside_.inside(column, k, surface, numbers_);
+            else if (!is_empty(within))
+                keep(within, inside_.box_of(column, k));
             if (is_full(within) && is_empty(surface))
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
             else
                 claim_brick(tile, layer, column, k, brick, within, interior, result);
         }
+    }
+
+    static void keep(Slices& within, const Slices& box) {
+        for (int z = 0; z < kBrickSide; ++z)
+            within[z] &= box[z];
     }
 
     void claim_brick(TileVoxels& tile, ObjectLayer& layer, int column, int k, const ShellBrick& brick,

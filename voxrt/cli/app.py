@@ -134,7 +134,7 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
         case cyclopts.CycloptsError() | UsageError():
             command = [name for name in arguments[:1] if name in app]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE
-        case voxrt.OutputError() | voxrt.ViewpointError():
+        case voxrt.OutputError() | voxrt.ViewpointError() | voxrt.NoSuchConfigurationError():
             code = ExitCode.USAGE
         case voxrt.AssetError() | voxrt.RomError():
             code = ExitCode.ASSET

@@ -59,6 +59,16 @@ class InfoResult(msgspec.Struct, frozen=True):
     """Null for a memory that does not say."""
 
 
+class RegionEntry(msgspec.Struct, frozen=True):
+    """Voxels that differ and hang together."""
+
+    bounds: tuple[tuple[int, int, int], tuple[int, int, int]]
+    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+    appeared: int
+    vanished: int
+    recoloured: int
+
+
 class DiffResult(msgspec.Struct, frozen=True):
     """``voxrt diff --json``: voxels that differ."""
 
@@ -71,6 +81,8 @@ class DiffResult(msgspec.Struct, frozen=True):
     """Solid in both, of different materials."""
     bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+    regions: list[RegionEntry]
+    """The pieces that hang together, those with most voxels first."""
 
 
 class CurveEntry(msgspec.Struct, frozen=True):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -11,6 +12,9 @@ import voxrt
 from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
+
+if TYPE_CHECKING:
+    from voxrt import Lighting
 
 Triple = tuple[int, int, int]
 _register = Parameter(converter=register, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
@@ -22,7 +26,7 @@ def render(
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     engine: Literal["rtl", "model"] = "rtl",
-    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     size: Pixels = (640, 480),
     position: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
@@ -35,8 +39,8 @@ def render(
     light: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
     ] = None,
-    ambient: Annotated[int, Parameter(converter=whole, metavar="N")] = 32,
-    bounces: Annotated[int, Parameter(converter=whole, metavar="N")] = 0,
+    ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     flat: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
@@ -53,7 +57,8 @@ def render(
     engine
         The verilated hardware, or the exact model of it. Both give the same pixels.
     config
-        The configuration of the hardware: how many lanes, which memory, which features of the shader.
+        The configuration of the hardware: how many lanes, which memory, which features of the shader. Not given: tiny,
+        or lit where light, mirrors or flat colours are wanted.
     size
         Width and height, pixels. [default: 640x480]
     position
@@ -71,11 +76,13 @@ def render(
     dialect
         How the memory spells a material, where no manifest says.
     light
-        Where a light stands that casts shadows, voxels, in steps of 1/16. Without it the camera is the light.
+        Where a light stands that casts shadows, voxels, in steps of 1/16. Not given: the memory's, or none: then the
+        camera is the light.
     ambient
-        The brightness of shadows, 0 to 255.
+        The brightness of that light's shadows, 0 to 255. [default: 32]
     bounces
-        How often mirrors reflect a ray, 0 to 15; with 0 they are like all other materials.
+        How often mirrors reflect a ray, 0 to 15; with 0 they are like all other materials. Not given: as the memory
+        says, or 0.
     flat
         Show materials in their own colour, whatever the angle.
     check
@@ -91,13 +98,19 @@ def render(
         camera = voxrt.Camera(view.position, view.look, view.right, view.up)
     else:
         camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
-    shading = voxrt.Shading(flat, None if light is None else voxrt.Light(light, ambient), bounces)
+    lighting = _lighting(blob.lighting, light, ambient, bounces, flat=flat)
+    shading = voxrt.Shading.of(lighting)
+    if config is None:
+        config = "tiny" if lighting is None else "lit"
+    elif engine == "rtl" and lighting == blob.lighting and shading.features - voxrt.shader_features(config):
+        warn((voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),))
+        lighting = None
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, shading=shading, config=config)
+        checked = voxrt.check(memory, camera, size, shading=voxrt.Shading.of(lighting), config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, shading=shading, config=config)
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
@@ -110,3 +123,19 @@ def render(
         raise voxrt.SimulatorError(
             f"{rom}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+def _lighting(
+    authored: Lighting | None, light: Triple | None, ambient: int | None, bounces: int | None, *, flat: bool
+) -> Lighting | None:
+    """Give the memory's lighting with what the command line says in its place; None where nothing is wanted."""
+    lighting = authored or voxrt.Lighting()
+    if light is not None:
+        lighting = replace(lighting, position=light, on=True, ambient=32)
+    if ambient is not None:
+        lighting = replace(lighting, ambient=ambient)
+    if bounces is not None:
+        lighting = replace(lighting, bounces=bounces)
+    if flat:
+        lighting = replace(lighting, flat=True)
+    return lighting if lighting.on or lighting.bounces or lighting.flat else None

@@ -1,11 +1,11 @@
 // voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
 //
 //   CONFIGS: list[str]        names of the configurations that were built
+//   FEATURES: dict[str, list[str]]  which of "flat", "light" and "mirrors" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
-//     .features               which of "flat", "light", "mirrors" are built in
 //     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, through_port=False)
 //                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
@@ -23,8 +23,12 @@
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
 //                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
 //
+//   CORES, PixelGenerator     the whole core: core_module.cpp
+//
 // ValueError: a name, size or register out of range, or a feature that is not built in.
+#include "core_module.h"
 #include "design.h"
+#include "one_call.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -41,7 +45,7 @@ using namespace nb::literals;
 
 namespace voxrt::rtl {
 
-#define VOXRT_CONFIGURATION(name) std::unique_ptr<Design> make_##name();
+#define VOXRT_CONFIGURATION(name, flat, light, mirrors) std::unique_ptr<Design> make_##name();
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 
@@ -50,10 +54,11 @@ namespace {
 struct Configuration {
     const char* name;
     std::unique_ptr<Design> (*make)();
+    bool flat, light, mirrors;
 };
 
 constexpr Configuration configurations[] = {
-#define VOXRT_CONFIGURATION(name) {#name, make_##name},
+#define VOXRT_CONFIGURATION(name, flat, light, mirrors) {#name, make_##name, flat, light, mirrors},
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 };
@@ -85,6 +90,17 @@ nb::object array(std::vector<std::size_t> shape, uint8_t*& data) {
     return nb::cast(nb::ndarray<nb::numpy, uint8_t>(data, shape.size(), shape.data(), owner));
 }
 
+std::vector<std::string> features_of(const Configuration& configuration) {
+    std::vector<std::string> names;
+    if (configuration.flat)
+        names.emplace_back("flat");
+    if (configuration.light)
+        names.emplace_back("light");
+    if (configuration.mirrors)
+        names.emplace_back("mirrors");
+    return names;
+}
+
 class Tracer {
 public:
     explicit Tracer(const std::string& name) {
@@ -100,23 +116,11 @@ public:
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
     int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
 
-    std::vector<std::string> features() const {
-        const Limits& limits = design_->limits();
-        std::vector<std::string> names;
-        if (limits.flat)
-            names.emplace_back("flat");
-        if (limits.light)
-            names.emplace_back("light");
-        if (limits.mirrors)
-            names.emplace_back("mirrors");
-        return names;
-    }
-
     void load(const Words& words, bool through_port) {
         if (words.size() < 1 || words.size() > memory_words())
             throw std::invalid_argument(std::to_string(words.size()) + " words do not fit this memory of " +
                                         range(1, static_cast<long>(memory_words())));
-        Busy busy(*this);
+        OneCall call(busy_);
         nb::gil_scoped_release released;
         design_->load({words.data(), words.size()}, through_port);
     }
@@ -128,7 +132,7 @@ public:
         auto* words = new std::vector<uint32_t>;
         nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
         {
-            Busy busy(*this);
+            OneCall call(busy_);
             nb::gil_scoped_release released;
             *words = design_->read_back(count);
         }
@@ -157,7 +161,7 @@ public:
         static constexpr uint8_t no_mirrors[256] = {};
         request.mirrors = mirrors ? mirrors->data() : no_mirrors;
         if ((flat && !limits.flat) || (light && !limits.light) || (bounces != 0 && !limits.mirrors))
-            throw std::invalid_argument("this configuration has not been built with that feature: see features");
+            throw std::invalid_argument("this configuration has not been built with that feature: see FEATURES");
         check("ambient", ambient, 0, 255);
         check("bounces", bounces, 0, bounce_limit);
         request.flat = flat;
@@ -180,7 +184,7 @@ public:
 
         FrameCost cost;
         {
-            Busy busy(*this);
+            OneCall call(busy_);
             nb::gil_scoped_release released;
             cost = design_->render(request, image, [] {
                 nb::gil_scoped_acquire acquired;
@@ -202,17 +206,6 @@ public:
     }
 
 private:
-    // One call at a time: the GIL, held here, guards the flag.
-    struct Busy {
-        explicit Busy(Tracer& tracer) : tracer(tracer) {
-            if (tracer.busy_)
-                throw std::runtime_error("this Tracer is at work in another thread: make one Tracer a thread");
-            tracer.busy_ = true;
-        }
-        ~Busy() { tracer.busy_ = false; }
-        Tracer& tracer;
-    };
-
     std::unique_ptr<Design> design_;
     bool busy_ = false;
 };
@@ -226,16 +219,20 @@ NB_MODULE(_rtl, m) {
     for (const auto& configuration : voxrt::rtl::configurations)
         names.emplace_back(configuration.name);
     m.attr("CONFIGS") = names;
+    nb::dict features;
+    for (const auto& configuration : voxrt::rtl::configurations)
+        features[configuration.name] = voxrt::rtl::features_of(configuration);
+    m.attr("FEATURES") = features;
     nb::class_<Tracer>(m, "Tracer")
         .def(nb::init<const std::string&>(), "config"_a)
         .def_prop_ro("memory_words", &Tracer::memory_words)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def_prop_ro("light_limit", &Tracer::light_limit)
-        .def_prop_ro("features", &Tracer::features)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
              "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0);
+    voxrt::rtl::bind_pixel_generator(m);
 }
