@@ -36,6 +36,8 @@ class Core:
     def __init__(self, dut):
         self.dut = dut
         self.axi = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk_i, dut.rst_ni, reset_active_level=False)
+        for channels in (self.axi.write_if, self.axi.read_if):
+            channels.log.setLevel("WARNING")
         self.ready = itertools.repeat(1)
 
     async def start(self):

