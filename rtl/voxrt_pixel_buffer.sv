@@ -6,7 +6,7 @@
 module voxrt_pixel_buffer
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned Depth   = 512,  // A power of two.
+  parameter  int unsigned Depth   = 256,  // A power of two.
   localparam int unsigned TagBits = $clog2(Depth) + 1  // A place and its lap.
 ) (
   input  logic               clk_i,

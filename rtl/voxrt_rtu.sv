@@ -59,7 +59,7 @@ module voxrt_rtu
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned RayFifoDepth = 32;
-  localparam int unsigned BufferDepth = 512;
+  localparam int unsigned BufferDepth = 256;
   localparam int unsigned TagBits = $clog2(BufferDepth) + 1;
 
   // Frame.
