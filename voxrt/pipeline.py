@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
-    from voxrt.voxelize import ObjectReport, SceneWarning
+    from voxrt.voxelize import ObjectReport, Scene, SceneWarning
     from voxrt.voxelize.colliders import Geometry, Pow2
     from voxrt.voxelize.load import UpAxis
 
@@ -72,6 +72,8 @@ class BuildResult:
     ----------
     rom
         The octree memory with its materials and its place in the scene.
+    scene
+        What the asset's file said.
     objects
         How each object was voxelized, in authored order.
     warnings
@@ -88,6 +90,7 @@ class BuildResult:
     """
 
     rom: Rom
+    scene: Scene
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
@@ -240,7 +243,7 @@ def build(
             picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+    return BuildResult(rom, scene, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
 
 
 def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:

@@ -81,6 +81,11 @@ _add_command(
     "voxrt view courtyard.mem --by level --screenshot octants.png",
 )
 _add_command(
+    "trace",
+    "Tell the way of one pixel's ray through the octree, word by word.",
+    "voxrt trace courtyard.mem --pixel 320,240",
+)
+_add_command(
     "serve",
     "Show scenes live in the browser, until interrupted.",
     "voxrt serve courtyard.mem dog.usda",
