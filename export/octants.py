@@ -1,16 +1,23 @@
-"""Octants by file: PyVista's reader of memories (``pv.read("courtyard.mem")``) and what ParaView opens."""
+"""Octants by file: PyVista's reader of memories (``pv.read("courtyard.mem")``), and files for other programs."""
 
 from __future__ import annotations
 
 import tempfile
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from voxrt.export.atomic import write_atomically
 from voxrt.export.convert import read_any
 from voxrt.octree import octants
 
 if TYPE_CHECKING:
     import pyvista
+    from numpy.typing import NDArray
+
+    from voxrt.octree import Rom
 
 
 def read_octants(path: str, **_options: object) -> pyvista.UnstructuredGrid:
@@ -28,8 +35,8 @@ def read_octants(path: str, **_options: object) -> pyvista.UnstructuredGrid:
     return octants(read_any(path)[0].rom)
 
 
-def write_octants(grid: pyvista.UnstructuredGrid, path: Path) -> None:
-    """Write octants as a ``.vtu`` file, all of it or nothing.
+def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
+    """Write octants as a ``.vtu`` file for ParaView, all of it or nothing.
 
     Raises
     ------
@@ -40,3 +47,67 @@ def write_octants(grid: pyvista.UnstructuredGrid, path: Path) -> None:
         whole = Path(folder, "octants.vtu")
         grid.save(whole)
         whole.replace(path)
+
+
+def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
+    """Write octants as a binary glTF file: a mesh a material, of the sides that no two octants share.
+
+    Parameters
+    ----------
+    path
+        The file.
+    rom
+        The memory. Where it says how it stands in the scene the file is in the scene's metres, else in voxels.
+    grid
+        Some of its octants, by :func:`voxrt.octree.octants`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    trimesh: Any = import_module("trimesh")  # slow to import
+
+    scene = trimesh.Scene()
+    origin, size = ((0.0, 0.0, 0.0), 1.0) if rom.grid is None else (rom.grid.origin, rom.grid.voxel_size)
+    points, quads, cells = _sides(grid)
+    points = points * size + origin
+    materials = np.asarray(grid.cell_data["material"])[cells]
+    for number in np.unique(materials):
+        used, corners = np.unique(quads[materials == number], return_inverse=True)
+        corners = corners.reshape(-1, 4)
+        triangles = np.concatenate([corners[:, (0, 1, 2)], corners[:, (0, 2, 3)]])
+        material = rom.materials[number]
+        look = trimesh.visual.material.PBRMaterial(
+            name=material.name,
+            baseColorFactor=[*_linear(material.colour), 1.0],
+            metallicFactor=1.0 if material.mirror else 0.0,
+            roughnessFactor=0.0 if material.mirror else 1.0,
+        )
+        mesh = trimesh.Trimesh(
+            points[used], triangles, process=False, visual=trimesh.visual.TextureVisuals(material=look)
+        )
+        scene.add_geometry(mesh, node_name=material.name, geom_name=material.name)
+    write_atomically(path, scene.export(file_type="glb"))
+
+
+def _sides(
+    grid: pyvista.UnstructuredGrid,
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Give points, the sides that one octant alone has (rows of points, counter-clockwise), and whose they are."""
+    corners = np.asarray(grid.cells, np.int64).reshape(-1, 9)[:, 1:]
+    # Corners count x, then y, then z; seen from outside a side's go counter-clockwise.
+    sides = corners[:, [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]]
+    sides = sides.reshape(-1, 4)
+    # Two octants that share a side share its lowest and its highest corner.
+    ends = np.sort(sides, axis=1)
+    _, back, count = np.unique(ends @ np.array([1 << 32, 0, 0, 1]), return_inverse=True, return_counts=True)
+    alone = count[back] == 1
+    return np.asarray(grid.points, np.float64), sides[alone], np.repeat(np.arange(len(corners)), 6)[alone]
+
+
+def _linear(colour: tuple[int, int, int]) -> list[float]:
+    """Give an sRGB colour as glTF wants it, linear (IEC 61966-2-1)."""
+    share = np.array(colour) / 255
+    linear: list[float] = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4).tolist()
+    return linear

@@ -15,11 +15,14 @@ from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
 from voxrt.octree.octants import octants
 from voxrt.octree.octree import MAX_DEPTH, Octree
+from voxrt.octree.owners import Owners
+from voxrt.octree.pane import DrawnRay, Pane, Preview
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 from voxrt.octree.surface import SurfaceChange, surface_change
-from voxrt.octree.view import describe, picture, plot, show
+from voxrt.octree.view import picture, plot, turntable
 from voxrt.octree.vox import read_vox
+from voxrt.octree.window import Window
 
 __all__ = [
     "BOARDS",
@@ -28,20 +31,24 @@ __all__ = [
     "Census",
     "Dialect",
     "Difference",
+    "DrawnRay",
     "Fit",
     "Leaves",
     "Octant",
     "Octree",
+    "Owners",
+    "Pane",
+    "Preview",
     "Rom",
     "RomError",
     "SurfaceChange",
     "ViewerError",
+    "Window",
     "build",
     "census",
     "coarsen",
     "count_in_box",
     "decode",
-    "describe",
     "detect_dialect",
     "diff",
     "encode",
@@ -56,8 +63,8 @@ __all__ = [
     "plot",
     "read_vox",
     "share",
-    "show",
     "solid_bounds",
     "surface_change",
     "to_dense",
+    "turntable",
 ]

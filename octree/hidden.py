@@ -6,17 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree.morton import morton
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree.leaves import Leaves
-
-_SPREADS = (
-    (16, 0x0000FF0000FF),
-    (8, 0x00F00F00F00F),
-    (4, 0x0C30C30C30C3),
-    (2, 0x249249249249),
-)
 
 
 def hidden(solid: Leaves) -> NDArray[np.bool_]:
@@ -36,7 +31,7 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
         Shape (N,).
     """
     corners, levels = solid.corners.astype(np.int64), solid.levels.astype(np.int64)
-    codes = _morton(corners)
+    codes = morton(corners)
     areas = np.int64(1) << 2 * levels
     covered = np.zeros_like(areas)
     for axis in range(3):
@@ -44,7 +39,7 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
             beside = corners.copy()
             beside[:, axis] += step
             rows = np.flatnonzero((beside[:, axis] >= 0) & (beside[:, axis] < 1 << 16))
-            sought = _morton(beside[rows])
+            sought = morton(beside[rows])
             found = np.searchsorted(codes, sought, side="right") - 1
             touches = (
                 (found >= 0) & (levels[found] >= levels[rows]) & (sought - codes[found] < areas[found] << levels[found])
@@ -55,14 +50,3 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
             np.add.at(covered, found[larger], areas[rows[larger]])
     wholly: NDArray[np.bool_] = covered == 6 * areas
     return wholly
-
-
-def _morton(voxels: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Interleave 16 bits of each of x, y, z (shape (N, 3)), x lowest, as octant indices do."""
-    code = np.zeros(len(voxels), np.int64)
-    for axis in range(3):
-        spread = voxels[:, axis].copy()
-        for shift, mask in _SPREADS:
-            spread = (spread | spread << shift) & mask
-        code |= spread << axis
-    return code
