@@ -22,7 +22,7 @@ _PREVIEW_WIDTH, _PREVIEW_HEIGHT = 0.42, 0.4  # of a preview, as parts of the pic
 _COLUMN, _LINE = 0.61, 1.1  # of the table, as parts of the letters' size
 _LEGEND_LIMIT = 16
 _MESH = (255, 214, 90)
-_GLASS = 0.55  # how much of the octants is seen through which a mesh is
+_BEFORE = -66000  # to the very front, in steps of the depth buffer
 _GHOST = 0.15  # how much of the octants is seen where a ray is shown
 
 
@@ -124,7 +124,7 @@ def draw_octants(
         "ambient": 0.25,
         "culling": "back",
         "reset_camera": False,
-        "opacity": _GHOST if ghost else 1.0 if pane.triangles is None else _GLASS,
+        "opacity": _GHOST if ghost else 1.0,
     }
     plotter.remove_actor(name)
     if not grid.n_cells:
@@ -227,10 +227,12 @@ def _draw_triangles(plotter: pyvista.Plotter, triangles: NDArray[np.float64]) ->
     pv = import_pyvista()
     faces = np.insert(np.arange(3 * len(triangles)).reshape(-1, 3), 0, 3, axis=1)
     mesh = pv.PolyData(triangles.reshape(-1, 3), faces.ravel())
-    plotter.add_mesh(mesh, color=_MESH, opacity=0.1, lighting=False, name="mesh", reset_camera=False)
-    plotter.add_mesh(
-        mesh, color=_MESH, style="wireframe", line_width=2, lighting=False, name="mesh edges", reset_camera=False
+    actor = plotter.add_mesh(
+        mesh, color=_MESH, style="wireframe", line_width=1, lighting=False, culling="back", reset_camera=False
     )
+    # The octants hold the mesh within them: its lines are drawn as if they stood before.
+    actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, _BEFORE)
 
 
 def _draw_preview(plotter: pyvista.Plotter, colour: NDArray[np.uint8]) -> None:

@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree.draw import draw, draw_octants, draw_ray, enter, level_range
+from voxrt.octree.octant import octant_at
+from voxrt.octree.octants import import_pyvista
 from voxrt.octree.stage import TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import pyvista
+    from numpy.typing import NDArray
 
     from voxrt.octree.pane import Pane, Plane, Preview
 
+_BEHIND = 0.02  # voxels: from where a side is seen to what is behind it
 _HELP = "click: octant   slider: smallest octant   c: cut   w/s: edges   q: quit"
 
 
@@ -60,21 +64,18 @@ class Window:
             (0, depth),
             value=0,
             title="smallest octant: 2^n voxels a side",
-            pointa=(0.05, 0.1),
-            pointb=(0.4, 0.1),
+            pointa=(0.6, 0.12),
+            pointb=(0.95, 0.12),
             style="modern",
             fmt="%.0f",
             color=TEXT,
             title_height=0.02,
+            tube_width=0.004,
+            slider_width=0.012,
         )
         plotter.add_text(_HELP, position="lower_right", font_size=7, color=TEXT, name="help")
         plotter.add_key_event("c", self.toggle_plane)
-        if preview is None:
-            plotter.enable_element_picking(
-                self.pick, left_clicking=True, show_message=False, color=TEXT, line_width=3, picker="hardware"
-            )
-        else:
-            plotter.iren.add_observer("LeftButtonPressEvent", lambda *_: self.click(*plotter.iren.get_event_position()))
+        plotter.iren.add_observer("LeftButtonPressEvent", lambda *_: self.click(*plotter.iren.get_event_position()))
 
     def show(self) -> None:
         """Wait until the window is closed."""
@@ -104,28 +105,46 @@ class Window:
             self._plane = None
             self._redraw()
 
-    def pick(self, cell: pyvista.UnstructuredGrid) -> None:
-        """Tell about an octant, given as its cell."""
-        x, y, z = np.floor(cell.center).astype(np.int64).tolist()
-        for number, pane in enumerate(self._shown):
-            enter(self.plotter, number, self._preview is not None)
-            if max(x, y, z) < pane.rom.octree.size:
-                text = pane.describe((x, y, z))
-                self.plotter.add_text(text, position="left_edge", font_size=9, color=TEXT, name="picked")
-
     def click(self, x: int, y: int) -> None:
-        """Show the ray of the preview's pixel that stands at a place in the window (pixels from its lower left)."""
-        if self._preview is None:
+        """Tell about the octant, or show the ray of the preview's pixel, at a place (pixels from the lower left)."""
+        if self._preview is not None and self.plotter.renderers[0].IsInViewport(x, y):
+            self._choose(self._preview, x, y)
+        for number in range(len(self._shown)):
+            enter(self.plotter, number, self._preview is not None)
+            renderer = self.plotter.renderer
+            if renderer.IsInViewport(x, y) and renderer.GetZ(x, y) < 1:
+                look = np.array(self.plotter.camera.direction)
+                self.pick(number, _world_point(renderer, x, y, renderer.GetZ(x, y)) + _BEHIND * look)
+
+    def pick(self, number: int, point: NDArray[np.float64]) -> None:
+        """Tell about the octant that holds a point (shape (3,), voxels) of a pane, and mark it."""
+        pane = self._shown[number]
+        if point.min() < 0 or point.max() >= pane.rom.octree.size:
             return
-        renderer = self.plotter.renderers[0]
-        if not renderer.IsInViewport(x, y):
-            return
-        renderer.SetDisplayPoint(x, y, 0)
-        renderer.DisplayToWorld()
-        height, width = self._preview.colour.shape[:2]
-        column, up = np.floor(np.array(renderer.GetWorldPoint()[:2])).astype(np.int64).tolist()
+        x, y, z = np.floor(point).astype(np.int64).tolist()
+        enter(self.plotter, number, self._preview is not None)
+        self.plotter.add_text(
+            pane.describe((x, y, z)), position="lower_left", font_size=9, color=TEXT, name=f"picked {number}"
+        )
+        octant = octant_at(pane.rom.octree, (x, y, z))
+        box = import_pyvista().Box(np.stack([octant.corner, octant.end], axis=1).ravel().tolist())
+        self.plotter.add_mesh(
+            box,
+            color="white",
+            style="wireframe",
+            line_width=4,
+            lighting=False,
+            name=f"mark {number}",
+            reset_camera=False,
+        )
+        self.plotter.render()
+
+    def _choose(self, preview: Preview, x: int, y: int) -> None:
+        height, width = preview.colour.shape[:2]
+        place = _world_point(self.plotter.renderers[0], x, y, 0)
+        column, up, _ = np.floor(place).astype(np.int64).tolist()
         if 0 <= column < width and 0 <= up < height:
-            draw_ray(self.plotter, self._shown[0], self._preview, (column, height - 1 - up))
+            draw_ray(self.plotter, self._shown[0], preview, (column, height - 1 - up))
             self.plotter.render()
 
     def _redraw(self) -> None:
@@ -134,3 +153,11 @@ class Window:
             enter(self.plotter, number, self._preview is not None)
             draw_octants(self.plotter, number, pane, grid, level_range(self.grids), ghost=self._preview is not None)
         self.plotter.render()
+
+
+def _world_point(renderer: pyvista.Renderer, x: int, y: int, depth: float) -> NDArray[np.float64]:
+    renderer.SetDisplayPoint(x, y, depth)
+    renderer.DisplayToWorld()
+    place = np.array(renderer.GetWorldPoint())
+    point: NDArray[np.float64] = place[:3] / place[3]
+    return point

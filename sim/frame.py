@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from voxrt.octree.notebook import card, encode_png
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -55,3 +57,17 @@ class Frame:
     material: NDArray[np.uint8]
     face: NDArray[np.uint8]
     cost: RenderCost
+
+    def _repr_png_(self) -> bytes:
+        return encode_png(self.colour)
+
+    def _repr_html_(self) -> str:
+        height, width = self.material.shape
+        rows = [
+            ("picture", f"{width}x{height} pixels"),
+            ("words", f"{self.cost.words_read:,}, {self.cost.words_read / self.cost.rays:.2f} a ray"),
+            ("seconds", f"{self.cost.seconds:.3f}"),
+        ]
+        if self.cost.cycles is not None:
+            rows.insert(1, ("cycles", f"{self.cost.cycles:,}, {self.cost.cycles / self.cost.rays:.2f} a pixel"))
+        return card(rows, self._repr_png_())

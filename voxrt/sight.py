@@ -24,10 +24,12 @@ _MEANING_WIDTH = 26
 
 
 def scene_triangles(scene: Scene, grid: Grid) -> NDArray[np.float64]:
-    """Give a scene's triangles in grid space: float64, shape (T, 3, 3), voxels."""
+    """Give a scene's triangles in grid space: float64, shape (T, 3, 3), voxels; counter-clockwise from outside."""
     triangles = [np.zeros((0, 3, 3))]
     for item in scene.objects:
-        corners = item.mesh.positions[item.mesh.triangles] @ item.transform[:3, :3].T + item.transform[:3, 3]
+        frame = item.transform[:3, :3]
+        corners = item.mesh.positions[item.mesh.triangles] @ frame.T + item.transform[:3, 3]
+        corners = corners[:, ::-1] if np.linalg.det(frame) < 0 else corners  # a mirror turns their order around
         triangles.append((corners - grid.origin) / grid.voxel_size)
     return np.concatenate(triangles)
 
