@@ -11,11 +11,10 @@ import numpy as np
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.convert import read_any
-from voxrt.octree import octants
+from voxrt.octree import octants, open_sides
 
 if TYPE_CHECKING:
     import pyvista
-    from numpy.typing import NDArray
 
     from voxrt.octree import Rom
 
@@ -50,7 +49,7 @@ def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
 
 
 def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
-    """Write octants as a binary glTF file: a mesh a material, of the sides that no two octants share.
+    """Write octants as a binary glTF file: a mesh a material, of the sides that can be seen.
 
     Parameters
     ----------
@@ -70,8 +69,8 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
 
     scene = trimesh.Scene()
     origin, size = ((0.0, 0.0, 0.0), 1.0) if rom.grid is None else (rom.grid.origin, rom.grid.voxel_size)
-    points, quads, cells = _sides(grid)
-    points = points * size + origin
+    points = np.asarray(grid.points, np.float64).reshape(-1, 3) * size + origin
+    quads, cells = open_sides(grid)
     materials = np.asarray(grid.cell_data["material"])[cells]
     for number in np.unique(materials):
         used, corners = np.unique(quads[materials == number], return_inverse=True)
@@ -89,21 +88,6 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
         )
         scene.add_geometry(mesh, node_name=material.name, geom_name=material.name)
     write_atomically(path, scene.export(file_type="glb"))
-
-
-def _sides(
-    grid: pyvista.UnstructuredGrid,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Give points, the sides that one octant alone has (rows of points, counter-clockwise), and whose they are."""
-    corners = np.asarray(grid.cells, np.int64).reshape(-1, 9)[:, 1:]
-    # Corners count x, then y, then z; seen from outside a side's go counter-clockwise.
-    sides = corners[:, [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]]
-    sides = sides.reshape(-1, 4)
-    # Two octants that share a side share its lowest and its highest corner.
-    ends = np.sort(sides, axis=1)
-    _, back, count = np.unique(ends @ np.array([1 << 32, 0, 0, 1]), return_inverse=True, return_counts=True)
-    alone = count[back] == 1
-    return np.asarray(grid.points, np.float64), sides[alone], np.repeat(np.arange(len(corners)), 6)[alone]
 
 
 def _linear(colour: tuple[int, int, int]) -> list[float]:

@@ -13,7 +13,7 @@ from voxrt.octree.diff import Difference, diff
 from voxrt.octree.errors import RomError, ViewerError
 from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
-from voxrt.octree.octants import octants
+from voxrt.octree.octants import octants, open_sides
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.owners import Owners
 from voxrt.octree.pane import DrawnRay, Pane, Preview
@@ -59,6 +59,7 @@ __all__ = [
     "material_at",
     "octant_at",
     "octants",
+    "open_sides",
     "picture",
     "plot",
     "read_vox",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.octree.octants import import_pyvista
+from voxrt.octree.octants import import_pyvista, open_sides
 from voxrt.octree.owners import SEVERAL
 from voxrt.octree.stage import TEXT, check_screen, light_up, place_eye
 
@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     import pyvista
     from numpy.typing import NDArray
 
+    from voxrt.octree.owners import Owners
     from voxrt.octree.pane import DrawnRay, Pane, Preview
 
 _PREVIEW_WIDTH, _PREVIEW_HEIGHT = 0.42, 0.4  # of a preview, as parts of the picture's
 _COLUMN, _LINE = 0.61, 1.1  # of the table, as parts of the letters' size
 _LEGEND_LIMIT = 16
+_GOLDEN_TURN = 0.6180339887498949  # sets the hues of neighbours far apart
 _MESH = (255, 214, 90)
 _BEFORE = -66000  # to the very front, in steps of the depth buffer
 _GHOST = 0.15  # how much of the octants is seen where a ray is shown
@@ -110,11 +112,27 @@ def draw_octants(
     *,
     ghost: bool = False,
 ) -> None:
-    """Draw the octants of a pane in the current subplot, in place of those that were there.
+    """Draw the octants of a pane in the current subplot, in place of those that were there, and say how many.
 
     `levels` are those that colours tell apart; a ghost lets the ray be seen through it.
     """
-    name = f"octants {number}"
+    add_octants(plotter, f"octants {number}", pane, grid, levels, ghost=ghost)
+    if grid.n_cells and pane.by == "owner":
+        _name_owners(plotter, pane, grid)
+    told = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
+    plotter.add_text(told, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
+
+
+def add_octants(
+    plotter: pyvista.Plotter,
+    name: str,
+    pane: Pane,
+    grid: pyvista.UnstructuredGrid,
+    levels: tuple[int, int],
+    *,
+    ghost: bool = False,
+) -> pyvista.Actor | None:
+    """Draw octants in the current subplot, in place of those of that name; None where there are none."""
     look: dict[str, Any] = {
         "name": name,
         "show_edges": not ghost,
@@ -128,15 +146,11 @@ def draw_octants(
     }
     plotter.remove_actor(name)
     if not grid.n_cells:
-        pass
-    elif pane.by == "material":
-        plotter.add_mesh(grid, scalars="colour", rgb=True, **look)
-    elif pane.by == "level":
-        _colour_levels(plotter, grid, levels, look)
-    else:
-        _colour_owners(plotter, pane, grid, look)
-    told = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
-    plotter.add_text(told, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
+        return None
+    sides = _sides(pane, grid)
+    if pane.by == "level":
+        return _colour_levels(plotter, sides, levels, look)
+    return plotter.add_mesh(sides, scalars="colour", rgb=True, **look)
 
 
 def draw_ray(plotter: pyvista.Plotter, pane: Pane, preview: Preview, pixel: tuple[int, int]) -> None:
@@ -250,11 +264,11 @@ def _draw_preview(plotter: pyvista.Plotter, colour: NDArray[np.uint8]) -> None:
 
 
 def _colour_levels(
-    plotter: pyvista.Plotter, grid: pyvista.UnstructuredGrid, levels: tuple[int, int], look: dict[str, Any]
-) -> None:
+    plotter: pyvista.Plotter, sides: pyvista.PolyData, levels: tuple[int, int], look: dict[str, Any]
+) -> pyvista.Actor:
     low, high = levels
-    plotter.add_mesh(
-        grid,
+    return plotter.add_mesh(
+        sides,
         scalars="level",
         cmap="viridis_r",
         clim=(low - 0.5, high + 0.5),
@@ -274,20 +288,25 @@ def _colour_levels(
     )
 
 
-def _colour_owners(plotter: pyvista.Plotter, pane: Pane, grid: pyvista.UnstructuredGrid, look: dict[str, Any]) -> None:
+def _sides(pane: Pane, grid: pyvista.UnstructuredGrid) -> pyvista.PolyData:
+    """Give the sides of octants that can be seen, with the data that colours them."""
+    pv = import_pyvista()
+    quads, cells = open_sides(grid)
+    sides = pv.PolyData(np.asarray(grid.points), np.insert(quads, 0, 4, axis=1).ravel())
+    sides.cell_data["level"] = np.asarray(grid.cell_data["level"])[cells]
+    if pane.by == "owner":
+        assert pane.owners is not None
+        sides.cell_data["colour"] = _owner_colours(pane.owners)[np.asarray(grid.cell_data["owner"])[cells]]
+    else:
+        sides.cell_data["colour"] = np.asarray(grid.cell_data["colour"])[cells]
+    return sides
+
+
+def _name_owners(plotter: pyvista.Plotter, pane: Pane, grid: pyvista.UnstructuredGrid) -> None:
     assert pane.owners is not None
-    names = (*pane.owners.names, "several objects")  # the last row is that of SEVERAL, -1
-    assert SEVERAL == -1
-    hues = (
-        np.arange(len(names), dtype=np.float64) * 0.6180339887498949 % 1
-    )  # the golden section sets neighbours far apart
-    colours = _colours_of_hues(hues)
-    colours[SEVERAL] = (150, 150, 150)
     owner = np.asarray(grid.cell_data["owner"])
-    grid.cell_data["owner colour"] = colours[owner]
-    plotter.add_mesh(grid, scalars="owner colour", rgb=True, **look)
-    present = [int(number) for number in np.unique(owner[owner != SEVERAL])]
-    present += [SEVERAL] * bool((owner == SEVERAL).any())
+    names, colours = (*pane.owners.names, "several objects"), _owner_colours(pane.owners)
+    present = np.unique(owner[owner != SEVERAL]).tolist() + [SEVERAL] * bool((owner == SEVERAL).any())
     entries = [[names[number], colours[number].tolist()] for number in present[:_LEGEND_LIMIT]]
     legend = plotter.add_legend(entries, background_opacity=0.9, bcolor=pane.rom.materials[0].colour, face="rectangle")
     height = min(0.9, 0.022 * len(entries))
@@ -295,8 +314,8 @@ def _colour_owners(plotter: pyvista.Plotter, pane: Pane, grid: pyvista.Unstructu
     legend.SetPosition2(0.16, height)
 
 
-def _colours_of_hues(hues: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Give bright colours: uint8, shape (N, 3), sRGB."""
+def _owner_colours(owners: Owners) -> NDArray[np.uint8]:
+    """Give each owner's colour, and last that of :data:`SEVERAL`, which is -1: uint8, shape (N + 1, 3), sRGB."""
+    hues = np.arange(len(owners.names), dtype=np.float64) * _GOLDEN_TURN % 1
     wheel = np.clip(np.abs((hues[:, None] + np.array([0, 2 / 3, 1 / 3])) % 1 * 6 - 3) - 1, 0, 1)
-    colours: NDArray[np.uint8] = np.rint(255 * (0.3 + 0.65 * wheel)).astype(np.uint8)
-    return colours
+    return np.vstack([np.rint(255 * (0.3 + 0.65 * wheel)), (150, 150, 150)]).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""Which octants cannot be seen from anywhere: all of their six sides touch solid ones."""
+"""Which sides of octants cannot be seen from anywhere: those that touch solid ones."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from voxrt.octree.leaves import Leaves
 
 
-def hidden(solid: Leaves) -> NDArray[np.bool_]:
-    """Tell which of some solid leaves are covered on all six sides by the others.
+def covered_sides(solid: Leaves) -> NDArray[np.bool_]:
+    """Tell which sides of some solid leaves are covered by the others.
 
-    A leaf is as covered as the area in which others touch it is large. Two leaves that touch do so with the whole side
+    A side is as covered as the area in which others touch it is large. Two leaves that touch do so with the whole side
     of the smaller one, so that looking for the leaf behind one voxel of each side finds all pairs: N log N.
 
     Parameters
@@ -28,14 +28,14 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
     Returns
     -------
     NDArray[np.bool_]
-        Shape (N,).
+        Shape (N, 6): low and high side on x, on y, on z.
     """
     corners, levels = solid.corners.astype(np.int64), solid.levels.astype(np.int64)
     codes = morton(corners)
     areas = np.int64(1) << 2 * levels
-    covered = np.zeros_like(areas)
+    covered = np.zeros((len(levels), 6), np.int64)
     for axis in range(3):
-        for step in (-np.ones_like(levels), np.int64(1) << levels):
+        for end, step in enumerate((-np.ones_like(levels), np.int64(1) << levels)):
             beside = corners.copy()
             beside[:, axis] += step
             rows = np.flatnonzero((beside[:, axis] >= 0) & (beside[:, axis] < 1 << 16))
@@ -45,8 +45,8 @@ def hidden(solid: Leaves) -> NDArray[np.bool_]:
                 (found >= 0) & (levels[found] >= levels[rows]) & (sought - codes[found] < areas[found] << levels[found])
             )
             rows, found = rows[touches], found[touches]
-            covered[rows] += areas[rows]
+            covered[rows, 2 * axis + end] += areas[rows]
             larger = levels[found] > levels[rows]
-            np.add.at(covered, found[larger], areas[rows[larger]])
-    wholly: NDArray[np.bool_] = covered == 6 * areas
+            np.add.at(covered[:, 2 * axis + 1 - end], found[larger], areas[rows[larger]])
+    wholly: NDArray[np.bool_] = covered == areas[:, None]
     return wholly

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree.errors import ViewerError
-from voxrt.octree.hidden import hidden
+from voxrt.octree.hidden import covered_sides
 from voxrt.octree.leaves import Leaves, solid_leaves
 from voxrt.octree.octant import addresses
 
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from voxrt.octree.owners import Owners
     from voxrt.octree.query import Corner
     from voxrt.octree.rom import Rom
+
+
+_SIDES = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
+"""The corners of each side, counter-clockwise from outside; corners count as octants do."""
 
 
 def octants(
@@ -51,9 +55,10 @@ def octants(
     -------
     pyvista.UnstructuredGrid
         Cells of type ``VTK_VOXEL`` in Morton order, in voxels, grid frame. Cell data: ``material`` (uint8, id),
-        ``level`` (uint8, log2 of the side in voxels), ``address`` (uint32, of the octant's word), ``colour`` (uint8,
-        shape (N, 3), sRGB); with `owners` also ``owner`` (int16, as :meth:`Owners.of` tells it). Field data:
-        ``hidden`` (int64, shape (1,)), how many octants were left out.
+        ``level`` (uint8, log2 of the side in voxels), ``address`` (uint32, of the octant's word), ``open`` (uint8, bit
+        i: side i, low and high on x, y, z, is not covered by others), ``colour`` (uint8, shape (N, 3), sRGB); with
+        `owners` also ``owner`` (int16, as :meth:`Owners.of` tells it). Field data: ``hidden`` (int64, shape (1,)), how
+        many octants were left out.
 
     Raises
     ------
@@ -77,7 +82,8 @@ def octant_cells(
 ) -> pyvista.UnstructuredGrid:
     """Give some solid leaves of a memory as cells, cut at a box, as :func:`octants` does."""
     pv = import_pyvista()
-    shown = ~hidden(solid) if surface else np.ones(len(solid.levels), np.bool_)
+    covered = covered_sides(solid)
+    shown = ~covered.all(axis=1) if surface else np.ones(len(solid.levels), np.bool_)
     some = Leaves(solid.corners[shown], solid.levels[shown], solid.materials[shown])
     points, cells = _corners(some, box)
     grid = pv.UnstructuredGrid(
@@ -86,12 +92,26 @@ def octant_cells(
     grid.cell_data["material"] = some.materials
     grid.cell_data["level"] = some.levels
     grid.cell_data["address"] = addresses(rom.octree, some)
+    grid.cell_data["open"] = ~covered[shown] @ (np.uint8(1) << np.arange(6, dtype=np.uint8))
     if len(cells):  # PyVista takes no empty table
         grid.cell_data["colour"] = np.array([material.colour for material in rom.materials], np.uint8)[some.materials]
     if owners is not None:
         grid.cell_data["owner"] = owners.of(some)
     grid.field_data["hidden"] = np.array([np.count_nonzero(~shown)], np.int64)
     return grid
+
+
+def open_sides(grid: pyvista.UnstructuredGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Give the sides of octants that are not covered: what can be seen of them.
+
+    Returns
+    -------
+    tuple
+        The sides (shape (S, 4), rows of the grid's points, counter-clockwise from outside), and each one's cell.
+    """
+    corners = np.asarray(grid.cells, np.int64).reshape(-1, 9)[:, 1:]
+    cells, sides = np.nonzero(np.asarray(grid.cell_data["open"])[:, None] >> np.arange(6) & 1)
+    return corners[cells[:, None], _SIDES[sides]], cells
 
 
 def import_pyvista() -> ModuleType:

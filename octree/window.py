@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree.draw import draw, draw_octants, draw_ray, enter, level_range
+from voxrt.octree.draw import add_octants, draw, draw_octants, draw_ray, enter, level_range
 from voxrt.octree.octant import octant_at
 from voxrt.octree.octants import import_pyvista
 from voxrt.octree.stage import TEXT
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
     from voxrt.octree.pane import Pane, Plane, Preview
 
+_MANY = 100_000  # octants: more are slow to draw without a graphics card
+_PATIENCE = 0.1  # seconds that a picture may take while the octants are turned
 _BEHIND = 0.02  # voxels: from where a side is seen to what is behind it
 _HELP = "click: octant   slider: smallest octant   c: cut   w/s: edges   q: quit"
 
@@ -56,6 +59,12 @@ class Window:
         self._solids = [pane.solid() for pane in panes]
         self._preview = preview
         self._plane: Plane | None = None
+        self._light: list[tuple[pyvista.Actor, pyvista.Actor]] = []  # octants and what stands in for them
+        self._slow = False
+        self._begun: float | None = None
+        self._lighten()
+        self.plotter.render_window.AddObserver("StartEvent", self._begin_picture)
+        self.plotter.render_window.AddObserver("EndEvent", self._end_picture)
         depth = max(pane.rom.octree.depth for pane in panes)
         plotter = self.plotter
         enter(plotter, 0, preview is not None)
@@ -152,7 +161,36 @@ class Window:
         for number, (pane, grid) in enumerate(zip(self._shown, self.grids, strict=True)):
             enter(self.plotter, number, self._preview is not None)
             draw_octants(self.plotter, number, pane, grid, level_range(self.grids), ghost=self._preview is not None)
+        self._lighten()
         self.plotter.render()
+
+    def _lighten(self) -> None:
+        """Make coarser octants that stand in for many while these are turned, where the machine cannot keep up."""
+        self._light = []
+        for number, (pane, grid) in enumerate(zip(self._shown, self.grids, strict=True)):
+            enter(self.plotter, number, self._preview is not None)
+            self.plotter.remove_actor(f"light {number}")
+            if grid.n_cells <= _MANY:
+                continue
+            coarse, light, level = pane, grid, 1
+            while light.n_cells > _MANY:
+                coarse = pane.coarsened(level)
+                light, level = coarse.grid(plane=self._plane), level + 1
+            actor = add_octants(self.plotter, f"light {number}", coarse, light, level_range(self.grids))
+            if actor is not None:
+                self._light.append((self.plotter.renderer.actors[f"octants {number}"], actor))
+
+    def _begin_picture(self, *_event: object) -> None:
+        """Choose what a picture shows: VTK wants several a second while something is turned, else one in its time."""
+        turned = self._slow and self.plotter.render_window.GetDesiredUpdateRate() > 1
+        for full, light in self._light:
+            full.SetVisibility(not turned)
+            light.SetVisibility(turned)
+        self._begun = None if turned else perf_counter()
+
+    def _end_picture(self, *_event: object) -> None:
+        if self._begun is not None:
+            self._slow = perf_counter() - self._begun > _PATIENCE
 
 
 def _world_point(renderer: pyvista.Renderer, x: int, y: int, depth: float) -> NDArray[np.float64]:
