@@ -79,7 +79,6 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
         material = rom.materials[number]
         look = trimesh.visual.material.PBRMaterial(
             name=material.name,
-            baseColorFactor=[*_linear(material.colour), 1.0],
             metallicFactor=1.0 if material.mirror else 0.0,
             roughnessFactor=0.0 if material.mirror else 1.0,
         )
@@ -87,7 +86,14 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
             points[used], triangles, process=False, visual=trimesh.visual.TextureVisuals(material=look)
         )
         scene.add_geometry(mesh, node_name=material.name, geom_name=material.name)
-    write_atomically(path, scene.export(file_type="glb"))
+
+    colours = {material.name: [*_linear(material.colour), 1.0] for material in rom.materials}
+
+    def paint(tree: dict[str, Any]) -> None:
+        for entry in tree.get("materials", ()):  # trimesh keeps 8 bits a channel, too few for dark linear colours
+            entry["pbrMetallicRoughness"]["baseColorFactor"] = colours[entry["name"]]
+
+    write_atomically(path, scene.export(file_type="glb", tree_postprocessor=paint))
 
 
 def _linear(colour: tuple[int, int, int]) -> list[float]:
