@@ -61,7 +61,7 @@ def test_pictures_of_everything(voxrt, built):
         "mesh": ("house.obj", "--depth", "5", "--overlay"),
         "owners": ("house.obj", "--depth", "5", "--by", "owner"),
         "ray": ("house.mem", "--ray", "320,240"),
-        "pair": ("house.mem", "house.obj", "--depth", "4"),
+        "pair": ("house.mem", "dog.usda"),
     }.items():
         finished = voxrt("view", *arguments, "--screenshot", f"{name}.png", *SMALL)
         assert finished.code == 0, finished.err

@@ -61,7 +61,7 @@ def test_magicavoxel_scenes_come_back(file, cube, data):
 
 def test_magicavoxel_scenes_of_several_models(file):
     points = np.array([[0, 0, 0], [300, 10, 700], [255, 255, 255], [256, 256, 256]])
-    rom = octree.Rom("far", octree.from_points(points, [1, 2, 3, 4], 10), MATERIALS)
+    rom = octree.Rom("far", octree.from_points(points, np.arange(1, 5), 10), MATERIALS)
     write_vox(file / "far.vox", rom)
     again = octree.read_vox(file / "far.vox")[0]
     for point, material in zip(points, (1, 2, 3, 4), strict=True):
@@ -70,7 +70,7 @@ def test_magicavoxel_scenes_of_several_models(file):
 
 
 def test_worlds_too_large_for_magicavoxel(file):
-    rom = octree.Rom("wide", octree.from_points([[0, 0, 0], [2048, 0, 0]], [1, 1], 12), MATERIALS)
+    rom = octree.Rom("wide", octree.from_points(np.array([[0, 0, 0], [2048, 0, 0]]), np.ones(2, int), 12), MATERIALS)
     with pytest.raises(DoesNotFitError, match="wide: 2049 voxels from end to end"):
         write_vox(file / "wide.vox", rom)
 
