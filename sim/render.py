@@ -203,5 +203,6 @@ def _check_shading(shading: Shading) -> None:
 def palette_of(rom: Rom) -> NDArray[np.uint8]:
     """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
     palette = np.zeros((256, 3), dtype=np.uint8)
-    palette[: len(rom.materials)] = [material.colour for material in rom.materials]
+    for number, material in enumerate(rom.materials):
+        palette[number] = material.colour
     return palette

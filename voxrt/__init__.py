@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
@@ -40,6 +41,7 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "LikenessAtDepth",
     "Material",
     "Octree",
     "OutputError",
@@ -58,7 +60,9 @@ __all__ = [
     "comparison_sheet",
     "convert",
     "diff",
+    "draw_likeness_curve",
     "fit_grid",
+    "likeness_curve",
     "load",
     "read_any",
     "read_rom",
@@ -69,6 +73,7 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
     "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),

@@ -20,6 +20,7 @@ PROOFS = {
     "voxrt_fifo": ("prove", 4),
     "voxrt_pixel_buffer": ("bmc", 11),
     "voxrt_pixel_packer": ("bmc", 9),
+    "voxrt_registers": ("bmc", 8),
 }
 
 JOB = """
@@ -38,7 +39,10 @@ prep -top {name}_properties -flatten
 
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
-    files = [RTL / "voxrt_pkg.sv", RTL / f"{name}.sv", FORMAL / f"{name}_properties.sv"]
+    generated = RTL / "generated"
+    own = [RTL / "voxrt_pkg.sv", RTL / f"{name}.sv"]
+    files = [path for path in (*own, generated / f"{name}_pkg.sv", generated / f"{name}.sv") if path.exists()]
+    files.append(FORMAL / f"{name}_properties.sv")
     sources = " ".join(path.name for path in files)
     job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
     with tempfile.TemporaryDirectory() as folder:

@@ -20,6 +20,7 @@ from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from voxrt.likeness_curve import LikenessAtDepth
     from voxrt.octree import Rom
     from voxrt.sim import Camera, Likeness, RayPath
 
@@ -79,6 +80,18 @@ class DiffResult(msgspec.Struct, frozen=True):
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
 
 
+class CurveEntry(msgspec.Struct, frozen=True):
+    """A point of the curve; figures as in :class:`CompareResult`."""
+
+    depth: int
+    words: int
+    silhouette_iou: float | None
+    depth_mean: float | None
+    normal_agreement: float | None
+    psnr: float | None
+    ssim: float | None
+
+
 class CompareResult(msgspec.Struct, frozen=True):
     """``voxrt compare --json``; null where nothing is seen that could be compared."""
 
@@ -91,6 +104,9 @@ class CompareResult(msgspec.Struct, frozen=True):
     normal_agreement: float | None
     psnr: float | None
     ssim: float | None
+    wrong_pixels: int | None
+    """On which hardware and model differ; null where the hardware could not be run."""
+    curve: list[CurveEntry]
     outputs: dict[str, str]
 
 
@@ -181,7 +197,18 @@ def info_result(rom: Rom) -> InfoResult:
     )
 
 
-def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
+def compare_result(
+    likeness: Likeness, wrong_pixels: int | None, curve: tuple[LikenessAtDepth, ...], files: dict[str, Path]
+) -> CompareResult:
     """Tell programs how like two pictures are."""
-    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
-    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})
+    points = []
+    for point in curve:
+        told = _figures(point.likeness)
+        shown = {name: told[name] for name in CurveEntry.__struct_fields__ if name in told}
+        points.append(CurveEntry(depth=point.depth, words=point.words, **shown))
+    outputs = {kind: name_file(path) for kind, path in files.items()}
+    return CompareResult(**_figures(likeness), wrong_pixels=wrong_pixels, curve=points, outputs=outputs)
+
+
+def _figures(likeness: Likeness) -> dict[str, float | None]:
+    return {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
