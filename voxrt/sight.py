@@ -51,7 +51,9 @@ def find_owners(scene: Scene, grid: Grid) -> Owners:
     owned = [
         replace(
             item,
-            mesh=replace(item.mesh, materials=np.full(len(item.mesh.triangles), number, np.uint8), coat=None, tints=None),
+            mesh=replace(
+                item.mesh, materials=np.full(len(item.mesh.triangles), number, np.uint8), coat=None, tints=None
+            ),
             collider_material=number,
         )
         for number, item in enumerate(scene.objects, 1)
