@@ -43,7 +43,7 @@ class Unfinished:
         The paint; None where there is none.
     """
 
-    positions: NDArray[np.float64]
+    positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
     coat: Coat | None = None
@@ -186,7 +186,7 @@ def _mesh(one: Unfinished, materials: NDArray[np.uint8], rows: NDArray[np.int32]
 def _areas(one: Unfinished, faces: NDArray[np.intp]) -> NDArray[np.float64]:
     """Return the areas of some triangles, scaled to the mesh so that nothing leaves the range of numbers."""
     scale = float(np.abs(one.positions).max(initial=0.0)) or 1.0
-    corners = one.positions[one.triangles[faces]] / scale
+    corners = one.positions[one.triangles[faces]].astype(np.float64) / scale
     along, across = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     dots = [np.einsum("ti,ti->t", p, q) for p, q in ((along, along), (across, across), (along, across))]
     areas: NDArray[np.float64] = np.sqrt(np.maximum(dots[0] * dots[1] - dots[2] ** 2, 0.0)) * min(scale, 1e100) ** 2

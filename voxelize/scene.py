@@ -80,7 +80,7 @@ class Mesh:
     Attributes
     ----------
     positions
-        float64, shape (V, 3), finite.
+        float32 or float64, as the file has them, shape (V, 3); finite where a triangle uses them.
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
@@ -93,7 +93,7 @@ class Mesh:
         tinted.
     """
 
-    positions: NDArray[np.float64]
+    positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
     coat: Coat | None = None
@@ -129,9 +129,9 @@ class HullCollider:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MeshCollider:
-    """Triangles that stand in for the rendered ones: `positions` (float64, (V, 3)), `triangles` (int32, (T, 3))."""
+    """Triangles that stand in for the rendered ones: `positions` and `triangles` as those of a :class:`Mesh`."""
 
-    positions: NDArray[np.float64]
+    positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
 
 

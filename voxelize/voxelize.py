@@ -158,7 +158,7 @@ class _Parts:
     def add_mesh(
         self,
         key: object,
-        mesh: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]],
+        mesh: tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
         material: int,
         tints: Tints = _NO_TINTS,
@@ -171,7 +171,7 @@ class _Parts:
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
                 (
-                    np.ascontiguousarray(mesh[0], dtype=np.float64),
+                    _vertices(mesh[0], mesh[1]),
                     np.ascontiguousarray(mesh[1], dtype=np.int32),
                     np.ascontiguousarray(mesh[2], dtype=np.uint8),
                     np.ascontiguousarray(tints.sizes, dtype=np.int32),
@@ -195,6 +195,18 @@ class _Parts:
             fill,
             threads,
         )
+
+
+def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return vertices as the native voxelizer takes them: those that no triangle uses brought in from wherever."""
+    exact = np.ascontiguousarray(positions, dtype=np.float64)
+    if triangles.min() < 0 or triangles.max() >= len(exact):
+        return exact  # which the native voxelizer refuses
+    unused = np.ones(len(exact), np.bool_)
+    unused[triangles.reshape(-1).astype(np.intp)] = False  # twice as fast as indices of 32 bits
+    if unused.any():
+        exact = np.where(unused[:, None], exact[triangles[0, 0]], exact)
+    return exact
 
 
 _Report = tuple[str, tuple[float, float, float], tuple[float, float, float]]
@@ -268,7 +280,7 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
 
 def _unreachable(scene: Scene, index: int) -> Exception:
     item = scene.objects[index]
-    points = [item.mesh.positions, item.transform]
+    points = [item.mesh.positions[item.mesh.triangles], item.transform]
     if not all(np.isfinite(values).all() for values in points):
         return AssetError(
             scene.name, "a coordinate is not a number", place=item.name, fix="repair the mesh or its transform"

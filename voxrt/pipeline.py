@@ -13,8 +13,9 @@ import numpy as np
 
 from voxrt import export, octree, sim, voxelize
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
-from voxrt.viewpoint import aim_camera, authored_camera
-from voxrt.voxelize import AssetError
+from voxrt.sim import Light, Shading
+from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.voxelize import AssetError, SceneWarning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
-    from voxrt.voxelize import ObjectReport, Scene, SceneWarning
+    from voxrt.voxelize import Grid, ObjectReport, Scene
     from voxrt.voxelize.colliders import Geometry, Pow2
     from voxrt.voxelize.load import UpAxis
 
@@ -87,6 +88,8 @@ class BuildResult:
     seconds
         Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"budget"``,
         ``"write"``, ``"preview"``.
+    view, lighting
+        The author's camera and light; None where the author gave none.
     """
 
     rom: Rom
@@ -97,6 +100,8 @@ class BuildResult:
     preview: Picture | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+    view: export.View | None = None
+    lighting: export.Lighting | None = None
 
     @property
     def solid_voxels(self) -> int:
@@ -116,13 +121,15 @@ def build(
     up: UpAxis | None = None,
     unit: float | None = None,
     time: float | None = None,
+    animation: str | None = None,
     variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
     colours: int = voxelize.DEFAULT_COLOURS,
     budget: int | str | None = None,
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
-    engine: Engine = "rtl",
+    engine: Engine | None = None,
     strict: bool = False,
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
@@ -151,8 +158,12 @@ def build(
         The up axis and the metres per unit, for formats that do not say.
     time
         The second of its animation at which the asset is shown.
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF).
     variants
         What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
+    allow_outside
+        Whether files that the asset names may stand outside its folder and the folders in it.
     colours
         The most materials that textures and vertex colours are reduced to, 1 … 254; uniform materials keep theirs.
     budget
@@ -162,7 +173,8 @@ def build(
         How the memory's words spell a material.
     preview
         PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
-        ``NAME.preview.png`` in `output`.
+        ``NAME.preview.png`` in `output`. None takes ``"rtl"``, and ``"model"`` where the scene has a light of its own,
+        which the verilated ray tracer does not cast.
     strict
         Refuse an asset of which something is not honoured as it stands, where it would be a warning.
     threads
@@ -192,15 +204,18 @@ def build(
         yield
         seconds[name] = perf_counter() - start
 
-    if output is not None:
-        check_folder(Path(output))
     name = _text(asset.stem)
-    picture_file = None
-    if preview:
-        picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
-        check_folder(picture_file.parent)
+    picture_file = _picture_file(name, output, preview)
     with stage("load"):
-        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants)
+        scene = voxelize.load(
+            asset,
+            up=up,
+            unit=unit,
+            time=time,
+            animation=animation,
+            variants=variants,
+            allow_outside=allow_outside,
+        )
     _refuse(asset, scene.warnings if strict else ())
     with stage("fit"):
         if depth is None and voxel_size is None:
@@ -217,7 +232,12 @@ def build(
         with stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
             rom, budget_fit = _fit_to(rom, words, size, threads)
-    warnings = scene.warnings + voxelization.warnings
+    view, lighting, unseen = _authored(scene, grid)
+    warnings = scene.warnings + voxelization.warnings + unseen
+    if lighting is not None and picture_file is not None and engine == "rtl":
+        warnings += (
+            SceneWarning("light", "the scene's light is left out of the picture: the model's engine casts it"),
+        )
     _refuse(asset, warnings if strict else ())
     outputs: dict[str, Path] = {}
     if output is not None:
@@ -228,6 +248,7 @@ def build(
             "up": up,
             "unit": unit,
             "time": time,
+            "animation": animation,
             "variants": ", ".join(variants) or None,
             "colours": colours,
         }
@@ -240,16 +261,53 @@ def build(
                 warnings=warnings,
                 seconds=seconds,
                 source=export.Source(_text(asset.name), settings),
+                view=view,
+                lighting=lighting,
             )
         outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
     if picture_file is not None:
         with stage("preview"):
             camera = authored_camera(scene.viewpoint, grid, size) if scene.viewpoint else aim_camera(rom, size)
-            picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
+            chosen: Engine = engine or ("rtl" if lighting is None else "model")
+            cast = lighting if chosen == "model" else None
+            frame = render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads)
+            picture = Picture(frame, camera, chosen)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, scene, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+    return BuildResult(
+        rom, scene, voxelization.objects, warnings, outputs, picture, budget_fit, seconds, view, lighting
+    )
+
+
+def _picture_file(
+    name: str, output: str | os.PathLike[str] | None, preview: str | os.PathLike[str] | bool
+) -> Path | None:
+    """Check that the folders can be written to, and return where the preview goes; None for none."""
+    if output is not None:
+        check_folder(Path(output))
+    if not preview:
+        return None
+    file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
+    check_folder(file.parent)
+    return file
+
+
+def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
+    """Return how the scene's author wants it seen, and what of that cannot be."""
+    view, lighting, unseen = None, None, []
+    if scene.viewpoint is not None:
+        try:
+            camera = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
+            view = export.View(camera.position, camera.look, camera.right, camera.up)
+        except ViewpointError as error:
+            unseen.append(SceneWarning("camera", str(error)))
+    if scene.light is not None:
+        try:
+            lighting = authored_lighting(scene.light, grid)
+        except ViewpointError as error:
+            unseen.append(SceneWarning("light", str(error)))
+    return view, lighting, tuple(unseen)
 
 
 def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
@@ -283,6 +341,7 @@ def render(
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
     config: str = "tiny",
+    lighting: export.Lighting | None = None,
     threads: int = 0,
 ) -> Frame:
     """Render a memory.
@@ -300,6 +359,8 @@ def render(
         pixels.
     config
         The configuration of the ray tracer that ``"rtl"`` runs.
+    lighting
+        Light, mirrors and flat colour, which the model alone has; None for a light in the camera.
     threads
         Threads of the model, 0 for one a core.
 
@@ -308,7 +369,13 @@ def render(
     SimulatorError
         The engine is not in this installation, or cannot hold the memory or the camera.
     """
-    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
+    shading = Shading()
+    if lighting is not None:
+        light = Light(lighting.position, lighting.ambient) if lighting.on else None
+        shading = Shading(lighting.flat, light, lighting.bounces)
+    return sim.render(
+        rom, camera or aim_camera(rom, size), size, engine=engine, config=config, shading=shading, threads=threads
+    )
 
 
 def save_picture(colour: NDArray[np.uint8], path: Path) -> None:

@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim import Camera, frame_scene, look_at, outline
+from voxrt.export import Lighting
+from voxrt.sim import Camera, Light, frame_scene, look_at, outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.octree import Rom
     from voxrt.sim.camera import Triple
-    from voxrt.voxelize import Grid, Viewpoint
+    from voxrt.voxelize import Grid, PointLight, Viewpoint
 
     Vector = NDArray[np.float64]
 
@@ -111,6 +112,21 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         return look_at(eye, target, size=size, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
+
+
+def authored_lighting(light: PointLight, grid: Grid) -> Lighting:
+    """Make the light that stands where the scene's author wants it.
+
+    Raises
+    ------
+    ViewpointError
+        It is too far away for the registers.
+    """
+    place = np.floor(16 * (np.array(light.position) - grid.origin) / grid.voxel_size + 0.5)
+    if np.abs(place).max() >= 2**31:
+        raise ViewpointError("the scene's light stands too far away; move it nearer")
+    x, y, z = place.astype(np.int64).tolist()
+    return Lighting((x, y, z), Light((x, y, z)).ambient, on=True)
 
 
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:

@@ -13,6 +13,7 @@ from voxrt.board.errors import DeviceError
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View
 from voxrt.board.viewpoint import refit
+from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
 from voxrt.sim import Camera, Light, Shading, SimulatorError, render
 from voxrt.sim.device import ModelDevice, RtlDevice
@@ -42,7 +43,7 @@ def test_swapped_scenes(engine, opened):
     roots = set()
     for seed in range(3):
         rom = rom_of(f"world {seed}", seed)
-        scene = board_scene(rom)
+        scene = board_scene(Blob(rom))
         memory.swap(scene, ignore)
         seen = refit(scene.camera, (640, 480), SIZE)
         frame = device.frame(View(seen, SIZE, scene.background))
@@ -63,7 +64,7 @@ def test_features_and_background():
     rom = rom_of("world", 1)
     mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
     rom = replace(rom, materials=(replace(mirrors[0], colour=(1, 2, 3)), *mirrors[1:]))
-    scene = board_scene(rom)
+    scene = board_scene(Blob(rom))
     device = ModelDevice()
     SceneMemory(device).swap(scene, ignore)
     camera = Camera(scene.camera.position, scene.camera.look, scene.camera.right, scene.camera.up)
@@ -90,7 +91,7 @@ def test_faults():
     device.write_memory(0, np.array([5], dtype=np.uint32))
     with pytest.raises(DeviceError, match="the model refuses the memory"):
         device.select_scene(0, 3)
-    scene = board_scene(rom_of("world", 1))
+    scene = board_scene(Blob(rom_of("world", 1)))
     device = ModelDevice()
     SceneMemory(device).swap(scene, ignore)
     steep = replace(scene.camera, right=(32767, 0, 0), up=(32767, 0, 0))

@@ -26,13 +26,15 @@ def build(
     up: Literal["x", "y", "z"] | None = None,
     unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
+    animation: Annotated[str | None, Parameter(metavar="NAME")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
+    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     colours: Annotated[int, Parameter(converter=shades, metavar="K")] = 32,
     budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
     size: Pixels = (640, 480),
-    engine: Literal["rtl", "model"] = "rtl",
+    engine: Annotated[Literal["rtl", "model"] | None, Parameter(show_default=False)] = None,
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
     profile: Annotated[bool, Parameter(show_default=False)] = False,
@@ -64,8 +66,12 @@ def build(
         Metres per unit of formats that do not say.
     time
         The second of its animation at which the asset is shown (glTF, USD).
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF). [default: the first]
     variant
         A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
+    allow_outside
+        Open files that the asset names outside its folder and the folders in it, too.
     colours
         Materials that textures and vertex colours are reduced to, 1 to 254; uniform materials keep their colour.
     budget
@@ -77,7 +83,8 @@ def build(
     size
         Width and height of the preview, pixels. [default: 640x480]
     engine
-        What renders the preview: the verilated hardware, or the exact model of it.
+        What renders the preview: the verilated hardware, or the exact model of it. [default: rtl; model for a scene
+        with a light of its own, which rtl does not cast]
     dialect
         How the memory spells a material: report is this project's; seed-rtl is what the published bitstreams read,
         msb what their C++ program reads.
@@ -106,7 +113,9 @@ def build(
             up=up,
             unit=unit,
             time=time,
+            animation=animation,
             variants=variant,
+            allow_outside=allow_outside,
             colours=colours,
             budget=board or budget,
             dialect=dialect,

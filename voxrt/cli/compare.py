@@ -31,6 +31,7 @@ def compare(
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     curve: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     size: Pixels = (640, 480),
+    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Compare a memory with the meshes that it was built from, as the default camera sees both.
@@ -48,6 +49,8 @@ def compare(
         A .png of likeness against depth and against words: the asset is built at each depth up to the memory's.
     size
         Width and height, pixels. [default: 640x480]
+    allow_outside
+        Open files that the asset names outside its folder and the folders in it, too.
     reporting
         How to tell it.
     """
@@ -56,7 +59,7 @@ def compare(
             png(picture)
     blob, warnings = voxrt.read_any(rom)
     memory = blob.rom
-    scene = voxrt.load(asset)
+    scene = voxrt.load(asset, allow_outside=allow_outside)
     warn((*warnings, *scene.warnings))
     camera = voxrt.aim_camera(memory, size)
     found = voxrt.compare(scene, memory, camera, size)

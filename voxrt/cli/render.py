@@ -64,7 +64,11 @@ def render(
         checked = voxrt.check(memory, camera, size, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
+        lighting = blob.lighting
+        if engine == "rtl" and lighting is not None and lighting.on:
+            warn((voxrt.SceneWarning("light", "the memory's light is left out: --engine model casts it"),))
+            lighting = None
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))

@@ -147,3 +147,31 @@ def test_an_image_that_promises_too_much(obj, tmp_path):
     (tmp_path / "map.png").write_bytes(header)
     with pytest.raises(AssetError, match="more than 67,108,864 pixels"):
         load_obj(tmp_path / "model.obj")
+
+
+def test_opacity_maps_cut_away_what_lies_below_a_half(obj, tmp_path):
+    grey = np.array([[0, 255], [0, 255]], np.uint8)
+    Image.fromarray(grey).save(tmp_path / "grey.png")
+    clear = np.dstack([np.full((2, 2, 3), 9, np.uint8), grey])
+    Image.fromarray(clear).save(tmp_path / "clear.png")
+    for name in ("grey.png", "clear.png"):
+        for lines, colour in ((f"map_Kd map.png\nmap_d {name}", GREEN), (f"map_d -s 1 1 {name}", RED)):
+            scene = obj(QUADS, f"newmtl cloth\nKd 1 0 0\n{lines}\n", pixels=[[BLUE, BLUE, GREEN, GREEN]])
+            (mesh,) = [one.mesh for one in scene.objects]
+            assert len(mesh.triangles) == 2, "the left half is air"
+            assert [mesh.positions[row].min(axis=0)[0] for row in mesh.triangles] == [1, 1]
+            assert colours_at(mesh) == [colour] * 2
+
+
+def test_an_opacity_map_of_another_layout_is_counted(obj, tmp_path):
+    Image.fromarray(np.full((2, 2), 255, np.uint8)).save(tmp_path / "white.png")
+    scene = obj(QUADS, "newmtl cloth\nmap_Kd -S 2 2 -O 0.5 map.png\nmap_d white.png\n")
+    assert [one.kind for one in scene.warnings if one.kind != "painted"] == ["texture"]
+
+
+def test_opacity_without_colour_of_other_sizes(obj, tmp_path):
+    Image.fromarray(np.array([[0, 255, 255, 255]], np.uint8)).save(tmp_path / "wide.png")
+    scene = obj(QUADS, "newmtl cloth\nmap_Kd map.png\nmap_d wide.png\n", pixels=[[RED], [BLUE]])
+    (mesh,) = [one.mesh for one in scene.objects]
+    assert mesh.coat.paints[0].texture.pixels[:, :, 3].tolist() == [[0, 255, 255, 255]] * 2
+    assert mesh.coat.paints[0].texture.pixels[:, 3, :3].tolist() == [list(RED), list(BLUE)]

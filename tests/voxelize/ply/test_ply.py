@@ -170,3 +170,25 @@ def test_a_cube_of_triangles_quads_and_edges():
 def test_malformed(name):
     with pytest.raises(AssetError):
         load(asset(f"malformed/{name}"))
+
+
+@pytest.mark.parametrize("kind", ["int", "float"])
+def test_triangle_strips(tmp_path, kind):
+    path = tmp_path / "strips.ply"
+    head = f"""ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z
+element tristrips 2
+property list int {kind} vertex_indices
+end_header
+"""
+    corners = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n"
+    path.write_text(head + corners + "10 0 1 2 3 -1 2 3 4 4 -1\n3 1 3 2\n")
+    (one,) = load_ply(path).objects
+    assert one.mesh.triangles.tolist() == [[0, 1, 2], [2, 1, 3], [2, 3, 4], [1, 3, 2]]
+    path.write_text(head + corners + "2 0 1\n1 -1\n")
+    with pytest.raises(AssetError, match="has no faces"):
+        load_ply(path)
