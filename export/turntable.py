@@ -57,7 +57,7 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
         ffmpeg = import_module("imageio_ffmpeg")
     except ImportError as error:
         raise ViewerError(
-            "MP4 needs imageio-ffmpeg, which is not installed; pip install 'voxrt[view]', or write a .gif"
+            "MP4 needs imageio-ffmpeg, which is not installed; pip install imageio-ffmpeg, or write a .gif"
         ) from error
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         whole = Path(folder, "turntable.mp4")

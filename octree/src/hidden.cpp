@@ -4,7 +4,6 @@
 #include <bit>
 #include <unordered_map>
 
-#include "ascent.h"
 #include "breadth_first.h"
 #include "brick.h"
 #include "interrupt.h"
