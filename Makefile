@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --quiet --disable-pip-version-check
 # What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim board -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
-CXX_FILES = $(shell find voxelize octree sim -name '*.cpp' -o -name '*.h')
+CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
 .PHONY: help demo test lint hardware docs bench sanitize clean
 .DELETE_ON_ERROR:
@@ -17,7 +17,7 @@ help:
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
-	@echo "make sanitize  run the native voxelizer under the address, undefined and thread sanitizers"
+	@echo "make sanitize  run the native voxelizer and octree under the address, undefined and thread sanitizers"
 	@echo "make clean   remove what the others made"
 
 demo: $(VENV)/.installed
@@ -48,14 +48,31 @@ docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
 # Without Python, so that the sanitizers see our own code alone.
-sanitize: $(addprefix build/sanitize/voxelize-,address-undefined thread)
+SANITIZERS := address-undefined thread
+sanitize: $(foreach program,voxelize octree ask_octree,$(SANITIZERS:%=build/sanitize/$(program)-%))
 	for program in $^; do echo $$program && $$program || exit 1; done
+
+comma := ,
+sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*)
 
 build/sanitize/voxelize-%: tests/voxelize/native/exercise.cpp $(wildcard voxelize/src/*)
 	@mkdir -p $(@D)
-	$(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -Ivoxelize/src -o $@ \
-		$< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
-comma := ,
+	$(sanitized) -Ivoxelize/src -o $@ $< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
+
+build/sanitize/octree-%: tests/octree/native/exercise.cpp build/sanitize/liboctree-%.a
+	$(sanitized) -Ioctree/src -o $@ $^ -pthread
+
+build/sanitize/ask_octree-%: examples/cpp/ask_octree.cpp sim/src/model/memory.cpp build/sanitize/liboctree-%.a
+	@mkdir -p build/sanitize/include/voxrt
+	@ln -sfn $(CURDIR)/octree/src build/sanitize/include/voxrt/octree
+	@ln -sfn $(CURDIR)/sim/src/model build/sanitize/include/voxrt/sim
+	$(sanitized) -Ibuild/sanitize/include -o $@ $^ -pthread
+
+build/sanitize/liboctree-%.a: $(wildcard octree/src/*)
+	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
+	cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard octree/src/*.cpp)))
+	$(AR) rcs $@ $(@:.a=)/*.o
+.SECONDARY: $(SANITIZERS:%=build/sanitize/liboctree-%.a)
 
 clean:
 	rm -rf $(VENV) build demo

@@ -2,7 +2,8 @@
 
 Usage: ``python bench/budget.py [--write]``. ``--write`` puts the table into ``bench/results/budget.md`` as well. For
 each scene the budgets are the sizes of the worlds coarser by one and by two levels. Both are measured against the whole
-octree: percent of the surface voxels that changed, voxels that appeared.
+octree: percent of the surface voxels that changed, voxels that appeared, and how like a picture of the whole scene is
+to that of the whole octree (PSNR in dB and SSIM).
 """
 
 from __future__ import annotations
@@ -10,13 +11,14 @@ from __future__ import annotations
 import argparse
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import voxrt
-from voxrt import octree
+from voxrt import octree, sim
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +26,10 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
 RESULTS = ROOT / "bench" / "results" / "budget.md"
-HEAD = ("scene", "words", "budget", "coarser: changed", "appeared", "ours: changed", "appeared", "words", "seconds")
+SIZE = (640, 480)
+FIGURES = ("changed", "appeared", "PSNR", "SSIM")
+HEAD = ("scene", "words", "budget", *(f"{name}: {figure}" for name in ("coarser", "ours") for figure in FIGURES))
+HEAD = (*HEAD, "ours: words", "seconds")
 
 
 def scenes() -> Iterator[octree.Rom]:
@@ -34,7 +39,9 @@ def scenes() -> Iterator[octree.Rom]:
     for path in sorted(ASSETS.glob("vox/*/vox/scene_*.vox")):
         yield octree.read_vox(path)[0]
     for materials in (1, 3):
-        yield octree.Rom(f"rough bodies, {materials} materials", octree.from_dense(bodies(7, materials)), ())
+        colours = ((0, 0, 0), (200, 80, 60), (70, 160, 90), (80, 110, 200))[: materials + 1]
+        table = tuple(voxrt.Material(f"material {number}", colour) for number, colour in enumerate(colours))
+        yield octree.Rom(f"rough bodies, {materials} materials", octree.from_dense(bodies(7, materials)), table)
 
 
 def bodies(depth: int, materials: int) -> np.ndarray:
@@ -52,24 +59,34 @@ def bodies(depth: int, materials: int) -> np.ndarray:
 
 def compare(rom: octree.Rom) -> Iterator[tuple[str, ...]]:
     """Give the rows of one scene."""
-    whole = octree.share(rom.octree)
-    colours = np.array([material.colour for material in rom.materials], np.uint8) if rom.materials else None
+    whole = replace(rom, octree=octree.share(rom.octree))
+    colours = np.array([material.colour for material in rom.materials], np.uint8)
     for level in (1, 2):
-        plain = octree.coarsen(whole, level)
+        plain = octree.coarsen(whole.octree, level)
         start = time.perf_counter()
-        fit = octree.fit(whole, len(plain.words), colours=colours)
+        ours = octree.fit(whole.octree, len(plain.words), colours=colours).octree
         seconds = time.perf_counter() - start
         yield (
             rom.name,
-            f"{len(whole.words):,}",
+            f"{len(whole.octree.words):,}",
             f"{len(plain.words):,}",
-            f"{octree.surface_change(whole, plain).percent:.1f} %",
-            f"{octree.diff(whole, plain).appeared:,}",
-            f"{fit.percent_changed:.1f} %",
-            f"{fit.appeared:,}",
-            f"{len(fit.octree.words):,}",
+            *figures(whole, plain),
+            *figures(whole, ours),
+            f"{len(ours.words):,}",
             f"{seconds:.1f}",
         )
+
+
+def figures(whole: octree.Rom, fitted: octree.Octree) -> tuple[str, ...]:
+    """Hold what fits against the whole."""
+    camera = voxrt.aim_camera(whole, SIZE)
+    pictures = [sim.render(rom, camera, SIZE, engine="model").colour for rom in (whole, replace(whole, octree=fitted))]
+    return (
+        f"{octree.surface_change(whole.octree, fitted).percent:.1f} %",
+        f"{octree.diff(whole.octree, fitted).appeared:,}",
+        f"{sim.peak_signal_to_noise(*pictures):.1f}",
+        f"{sim.structural_similarity(*pictures):.3f}",
+    )
 
 
 def main() -> None:
@@ -82,7 +99,7 @@ def main() -> None:
     print(text, end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(text)
+        RESULTS.write_text("# Fitting a budget\n\n" + text)
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ def main() -> None:
     heads += [f"{scene}, cycles a pixel" for scene in SCENES.values()] + frames
     lines = [
         f"Cycles a pixel at {SIZE}, the original's at 256x256. Area: yosys `synth_xilinx`, an estimate; the original's",
-        f"is from Vivado. Frames a second at {megahertz} MHz, the clock of a core of one lane on an ECP5, placed and routed.",
+        f"is from Vivado. Frames a second at {megahertz} MHz: a core of one lane on an ECP5, placed and routed.",
         "",
         f"| {' | '.join(heads)} |",
         "|---" * len(heads) + "|",

@@ -8,13 +8,16 @@ some of the folder of assets, and balls that are written for the purpose; ``--wr
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import platform
+import struct
 import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import DracoPy
 import numpy as np
 import trimesh
 
@@ -40,6 +43,12 @@ def write_spheres(folder: Path) -> list[Path]:
     paths = [folder / f"ball.{suffix}" for suffix in ("obj", "stl", "ply", "glb")]
     for path in paths:
         ball.export(path)
+    ascii_stl, ascii_ply = folder / "ball_ascii.stl", folder / "ball_ascii.ply"
+    ball.export(ascii_stl, file_type="stl_ascii")
+    ball.export(ascii_ply, encoding="ascii")
+    for name, data in trimesh.Scene(ball).export(file_type="gltf").items():
+        (folder / name).write_bytes(data)
+    paths += [ascii_stl, ascii_ply, folder / "model.gltf", _write_draco(folder / "ball_draco.glb", ball)]
     textured = folder / "ball_with_normals_and_coordinates.obj"
     uv = np.column_stack([np.arctan2(ball.vertices[:, 0], ball.vertices[:, 2]), ball.vertices[:, 1]])
     lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in ball.vertices]
@@ -48,6 +57,33 @@ def write_spheres(folder: Path) -> list[Path]:
     lines += ["f " + " ".join(f"{i}/{i}/{i}" for i in face) for face in (ball.faces + 1).tolist()]
     textured.write_text("\n".join(lines) + "\n")
     return [*paths, textured]
+
+
+def _write_draco(path: Path, ball: trimesh.Trimesh) -> Path:
+    """Write a GLB whose only primitive is compressed with Draco."""
+    data = DracoPy.encode(ball.vertices.astype(np.float32), ball.faces.astype(np.uint32))
+    count, corners = len(ball.vertices), ball.faces.size
+    extension = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    text = json.dumps(
+        {
+            "asset": {"version": "2.0"},
+            "extensionsUsed": list(extension),
+            "extensionsRequired": list(extension),
+            "buffers": [{"byteLength": len(data)}],
+            "bufferViews": [{"buffer": 0, "byteLength": len(data)}],
+            "accessors": [
+                {"componentType": 5126, "type": "VEC3", "count": count, "min": [-1] * 3, "max": [1] * 3},
+                {"componentType": 5125, "type": "SCALAR", "count": corners},
+            ],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "extensions": extension}]}],
+            "nodes": [{"mesh": 0}],
+            "scenes": [{"nodes": [0]}],
+        }
+    ).encode()
+    chunks = [(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", data + bytes(-len(data) % 4))]
+    body = b"".join(struct.pack("<I", len(chunk)) + kind + chunk for kind, chunk in chunks)
+    path.write_bytes(b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body)
+    return path
 
 
 def seconds(action: Callable[[], object]) -> float:
@@ -86,7 +122,7 @@ def main() -> None:
         for path in paths:
             if path.exists():
                 count, ours, theirs, raw = measure(path)
-                table.append(f"| {path.name} | {count:,} | {ours * 1e3:.0f} | {theirs * 1e3:.0f} | {raw * 1e3:.0f} |")
+                table.append(f"| {path.name} | {count:,} | {ours * 1e3:.1f} | {theirs * 1e3:.1f} | {raw * 1e3:.1f} |")
     print("\n".join(table))
     if arguments.write:
         RESULTS.parent.mkdir(exist_ok=True)

@@ -13,17 +13,20 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-import subprocess
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from original import Original, level_camera
 
 import voxrt
-from voxrt.octree import Rom, material_at
-from voxrt.sim import Camera, SimulatorError, _model, render
+from voxrt.sim import SimulatorError, _model, render
+
+if TYPE_CHECKING:
+    from voxrt.octree import Rom
+    from voxrt.sim import Camera
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE.parent / "examples" / "courtyard.glb"
@@ -41,37 +44,13 @@ class Subject:
 
 
 def subject(rom: Rom, size: int) -> Subject:
-    """Put the camera at the front of the world, in the first free voxel from its middle upwards, looking in."""
-    side = rom.octree.size
-    middle, front = side // 2, side - 1
-    free = [y for y in range(middle, side) if material_at(rom.octree, (middle, y, front)) == 0]
-    if not free:
-        raise SystemExit(f"{rom.name}: no free voxel at its front for the camera to stand in")
-    position = tuple(16 * value for value in (middle, free[0], front))
-    return Subject(
-        f"{rom.name}, depth {rom.octree.depth}", rom, Camera(position, (0, 0, -size // 2), (1, 0, 0), (0, 1, 0))
-    )
+    """Give a memory the camera that all contestants can take."""
+    return Subject(f"{rom.name}, depth {rom.octree.depth}", rom, level_camera(rom, size))
 
 
-def compile_original(program: Path, *flags: str) -> Path:
-    """Compile the report's algorithm as its authors did."""
-    command = [os.environ.get("CXX", "c++"), "-O2", "-std=c++20", *flags, HERE / "original.cpp", "-o", program]
-    subprocess.run(command, check=True)
-    return program
-
-
-def original_seconds(program: Path, subject: Subject, size: int) -> float:
+def original_seconds(program: Original, subject: Subject, size: int) -> float:
     """Give the least seconds of a frame by the report's algorithm, on one core."""
-    memory = program.with_suffix(".mem")
-    memory.write_text("".join(f"{word:08X}\n" for word in subject.rom.octree.words))
-    camera = subject.camera
-    position = [value // 16 for value in camera.position]
-    numbers = [subject.rom.octree.depth, size, size, *position, *camera.look, *camera.right, *camera.up]
-    runs = [
-        subprocess.run([program, memory, *map(str, numbers)], check=True, capture_output=True, text=True).stdout
-        for _ in range(REPEATS)
-    ]
-    return min(float(run.split()[0]) for run in runs)
+    return min(program.render(subject.rom, subject.camera, (size, size))[0] for _ in range(REPEATS))
 
 
 def model_seconds(subject: Subject, size: int, threads: int, instructions: str) -> float:
@@ -90,7 +69,7 @@ def model_seconds(subject: Subject, size: int, threads: int, instructions: str) 
     return min(times)
 
 
-def measure(subject: Subject, published: Path, bare: Path, size: int, clock: float) -> list[tuple[str, str]]:
+def measure(subject: Subject, published: Original, bare: Original, size: int, clock: float) -> list[tuple[str, str]]:
     """Give the rows of one subject's table."""
     pixels = size * size
     original = original_seconds(published, subject, size)
@@ -131,9 +110,7 @@ def main() -> None:
     roms = [voxrt.read_rom(path)[0] for path in options.memories]
     roms = roms or [voxrt.build(SCENE, depth=depth).rom for depth in (7, 9)]
     table = [("what", "measured"), ("---", "---"), ("machine", f"{platform.machine()}, {os.cpu_count()} cores")]
-    with tempfile.TemporaryDirectory() as folder:
-        published = compile_original(Path(folder) / "published", "-DAS_PUBLISHED")
-        bare = compile_original(Path(folder) / "bare")
+    with Original(as_published=True) as published, Original(as_published=False) as bare:
         for rom in roms:
             table += measure(subject(rom, options.size), published, bare, options.size, options.clock)
     text = "".join(f"| {name} | {value} |\n" for name, value in table)

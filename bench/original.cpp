@@ -1,10 +1,11 @@
 // The ray tracer that the report compared its hardware with (appendix B.2), re-implemented from its description, to
 // compare the exact model with.
 //
-//     original MEMORY DEPTH WIDTH HEIGHT CAMERA...   ->  "CPU-seconds hits checksum" on stdout
+//     original MEMORY DEPTH WIDTH HEIGHT CAMERA... [PICTURE]   ->  "CPU-seconds hits checksum" on stdout
 //
 // MEMORY holds hexadecimal words in the report dialect; CAMERA is twelve whole numbers: position (voxels), look, right,
-// up. A ray stands on whole voxels. It looks up the octant it stands in, from the root; if that is empty it takes steps
+// up. PICTURE is a file for the picture's bytes: red, green, blue a pixel, (40 m, 80 m, 120 m) mod 256 for material m.
+// A ray stands on whole voxels. It looks up the octant it stands in, from the root; if that is empty it takes steps
 // along its direction, first doubled until they are as long as the octant and then halved, keeping those that end in
 // the octant or one voxel outside, until it stands outside.
 //
@@ -111,8 +112,8 @@ double brightness(Argument position, Argument direction, const Octant& octant) {
 } // namespace
 
 int main(int count, char** arguments) {
-    if (count != 17) {
-        std::fprintf(stderr, "usage: original MEMORY DEPTH WIDTH HEIGHT and twelve numbers of the camera\n");
+    if (count != 17 && count != 18) {
+        std::fprintf(stderr, "usage: original MEMORY DEPTH WIDTH HEIGHT, twelve numbers of the camera [PICTURE]\n");
         return 2;
     }
     std::vector<uint32_t> words;
@@ -157,5 +158,8 @@ int main(int count, char** arguments) {
     unsigned sum = 0; // so that no compiler drops the image
     for (const uint8_t byte : image)
         sum += byte;
+    if (count == 18)
+        std::ofstream(arguments[17], std::ios::binary)
+            .write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
     std::printf("%.9f %d %u\n", taken, hits, sum);
 }

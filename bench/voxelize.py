@@ -54,9 +54,9 @@ def displaced_sphere(rings: int) -> Scene:
             axis = random.normal(size=3)
             wave = frequency * (directions @ axis) / np.linalg.norm(axis)
             radius += height * np.sin(wave + random.uniform(0, 6)) / 3
-    left = np.arange(segments)
+    left = np.arange(segments, dtype=np.int32)
     right = (left + 1) % segments
-    row = 1 + segments * np.arange(rings - 2)[:, None]
+    row = 1 + segments * np.arange(rings - 2, dtype=np.int32)[:, None]
     a, b = (row + left).ravel(), (row + right).ravel()
     c, d = a + segments, b + segments
     last = 1 + (rings - 2) * segments
@@ -68,7 +68,7 @@ def displaced_sphere(rings: int) -> Scene:
             np.stack([b, c, d], axis=1),
             np.stack([south, last + right, last + left], axis=1),
         ]
-    ).astype(np.int32)
+    ).astype(np.int32, copy=False)
     mesh = Mesh(directions * radius[:, None], triangles, np.ones(len(triangles), np.uint8))
     return Scene("sphere", (SceneObject("sphere", mesh),), (EMPTY, Material("stone", (150, 150, 150))))
 

@@ -65,7 +65,9 @@ def _sections(data: bytes) -> dict[bytes, bytes]:
     for name, offset, length, section_crc32 in _ENTRY.iter_unpack(table):
         section = data[offset : offset + length]
         if len(section) != length or zlib.crc32(section) != section_crc32:
-            raise Refused(f"section {name.decode('ascii', 'backslashreplace')} of the blob is damaged (CRC-32)")
+            raise Refused(
+                f"section {name.decode('latin-1').encode('unicode_escape').decode()} of the blob is damaged (CRC-32)"
+            )
         sections[name] = section
     return sections
 

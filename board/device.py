@@ -32,6 +32,8 @@ class Identity:
         Camera positions lie below this on either side of zero, 1/16 voxel.
     features
         Which of :data:`~.view.FEATURES` it has.
+    width_step
+        Frames have a multiple of this many columns.
     movable_root
         Whether an octree may stand anywhere in the memory, so that two can be there at a time; otherwise at word 0.
     clock
@@ -45,16 +47,17 @@ class Identity:
     size: tuple[int, int]
     position_limit: int
     features: frozenset[str] = frozenset()
+    width_step: int = 1
     movable_root: bool = True
     clock: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Counters:
-    """What a frame cost: rays traced, octree words read, clocks (None without a clock), wall seconds."""
+    """What a frame cost: rays traced, octree words read and clocks (both None without hardware), wall seconds."""
 
     rays: int
-    words_read: int
+    words_read: int | None
     cycles: int | None
     seconds: float
 

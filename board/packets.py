@@ -20,7 +20,7 @@ CHUNK_MAGIC: Final = b"VXCH"
 CHUNK_LIMIT: Final = 1 << 18
 """Bytes of a file that one message may carry."""
 
-_NO_CYCLES = (1 << 64) - 1
+_NOT_COUNTED = (1 << 64) - 1
 # magic, header's length, width, height, sequence, pixels' length, scene, viewer, request, rays, microseconds, cycles,
 # words read
 _FRAME = struct.Struct("<4sHHH2xIIIIIIIQQ")
@@ -79,8 +79,8 @@ def pack_frame(packet: FramePacket) -> bytes:
         packet.request,
         counters.rays,
         min(round(counters.seconds * 1e6), 0xFFFFFFFF),
-        _NO_CYCLES if counters.cycles is None else counters.cycles,
-        counters.words_read,
+        _NOT_COUNTED if counters.cycles is None else counters.cycles,
+        _NOT_COUNTED if counters.words_read is None else counters.words_read,
     )
     return header + pixels
 
@@ -101,7 +101,8 @@ def unpack_frame(message: bytes) -> FramePacket:
     if length != width * height * 3 or len(message) != header + length:
         raise Refused(f"a frame of {width}x{height} pixels came with {len(message) - header} bytes")
     colour = np.frombuffer(message, dtype=np.uint8, offset=header).reshape(height, width, 3)
-    counters = Counters(rays, words_read, None if cycles == _NO_CYCLES else cycles, micros / 1e6)
+    words_read, cycles = (None if count == _NOT_COUNTED else count for count in (words_read, cycles))
+    counters = Counters(rays, words_read, cycles, micros / 1e6)
     return FramePacket(sequence, scene, viewer, request, Frame(colour, counters))
 
 

@@ -12,42 +12,70 @@ from .errors import DeviceError
 from .registers import MATERIALS, REGISTERS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
     from .view import View
 
 _IDENTITY = int.from_bytes(b"VXRT", "big")
-_FRAME_SECONDS = 30.0
-_POLL_SECONDS = 0.0005
+_STUCK_SECONDS = 30.0
 _ERRORS = {
     "direction_overflow": "a direction overflow",
     "bad_pointer": "a bad pointer",
     "step_limit": "an octree deeper than its depth",
 }
-_SIZE = (1920, 1080)
 _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
 
 class Registers(Protocol):
     """The register block, byte addresses; :class:`pynq.MMIO` is one."""
 
-    def read(self, offset: int) -> int:
+    def read(self, offset: int, /) -> int:
         """Read a register."""
 
-    def write(self, offset: int, value: int) -> None:
+    def write(self, offset: int, value: int, /) -> None:
         """Write a register."""
 
 
-class Video(Protocol):
-    """What catches the AXI4-Stream video."""
+class Memory(Protocol):
+    """The scene memory's words as the processor sees them; a NumPy array of uint32 is one."""
 
-    def expect(self, size: tuple[int, int]) -> None:
-        """Be ready for one frame of `size`."""
+    def __len__(self) -> int:
+        """Give the number of words."""
+
+    def __getitem__(self, words: slice, /) -> NDArray[np.uint32]:
+        """Read words."""
+
+    def __setitem__(self, words: slice, values: NDArray[np.uint32], /) -> None:
+        """Write words."""
+
+
+class Video(Protocol):
+    """What catches the AXI4-Stream video, a frame at a time."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """The largest frame, columns and rows."""
+
+    @property
+    def width_step(self) -> int:
+        """Frames have a multiple of this many columns."""
+
+    def expect(self, size: tuple[int, int], /) -> None:
+        """Be ready for one frame of `size`, whatever became of the one before."""
 
     def take(self) -> NDArray[np.uint8]:
-        """Give the frame that has come: uint8, shape (H, W, 3), the stream's bytes."""
+        """Give the frame when it is complete: uint8, shape (H, W, 3), the stream's bytes.
+
+        Raises
+        ------
+        DeviceError
+            None came, or one of another form.
+        """
+
+    def close(self) -> None:
+        """Catch no more."""
 
 
 class RegisterDevice:
@@ -60,9 +88,11 @@ class RegisterDevice:
     registers
         The register block.
     memory
-        uint32, shape (N,): a view of the scene memory, for the processor.
+        The scene memory.
     video
         What catches frames.
+    pause
+        Called between two looks at the status: lets time pass for the hardware.
 
     Raises
     ------
@@ -70,10 +100,13 @@ class RegisterDevice:
         No ray tracer answers there, or one of another version.
     """
 
-    def __init__(self, name: str, registers: Registers, memory: NDArray[np.uint32], video: Video) -> None:
+    def __init__(
+        self, name: str, registers: Registers, memory: Memory, video: Video, pause: Callable[[], None]
+    ) -> None:
         self._registers = registers
         self._memory = memory
         self._video = video
+        self._pause = pause
         if self._read("identity") != _IDENTITY:
             raise DeviceError(f"{name}: no voxrt ray tracer answers; load its bitstream")
         version = self._fields("version")
@@ -84,11 +117,12 @@ class RegisterDevice:
         configuration = self._fields("configuration")
         words = min(1 + (8 << configuration["block_bits"]), len(memory))
         self.identity = Identity(
-            name=f"{name}, {configuration['lanes']} lanes",
+            name=f"{name}, {configuration['lanes']} lane{'' if configuration['lanes'] == 1 else 's'}",
             version=f"{version['major']}.{version['minor']}",
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
-            size=_SIZE,
+            size=video.size,
+            width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
             movable_root=False,
         )
@@ -148,18 +182,22 @@ class RegisterDevice:
     def close(self) -> None:
         """Let no frame begin any more."""
         self._hold()
+        self._video.close()
 
     def _hold(self) -> None:
         self._write("control", self._bits("control", "hold"))
         self._wait("busy", 0, "the frame under way does not end")
 
     def _wait(self, field: str, value: int, problem: str) -> None:
-        end = time.monotonic() + _FRAME_SECONDS
+        pixels, end = -1, 0.0
         while self._fields("status")[field] != value:
-            if time.monotonic() > end:
+            before, pixels = pixels, self._read("rays")
+            if pixels != before:
+                end = time.monotonic() + _STUCK_SECONDS
+            elif time.monotonic() > end:
                 self._write("control", self._bits("control", "soft_reset", "hold"))
-                raise DeviceError(f"{problem} within {_FRAME_SECONDS:.0f} s; it was dropped, try again")
-            time.sleep(_POLL_SECONDS)
+                raise DeviceError(f"{problem}: no pixel came for {_STUCK_SECONDS:.0f} s; it was dropped, try again")
+            self._pause()
 
     def _read(self, name: str) -> int:
         return int(self._registers.read(REGISTERS[name][0]))

@@ -81,6 +81,7 @@ class Show:
                 "capacity": identity.capacity,
                 "depth": identity.depth,
                 "size": identity.size,
+                "width_step": identity.width_step,
                 "position_limit": identity.position_limit,
                 "features": sorted(identity.features),
                 "clock": identity.clock,

@@ -159,8 +159,8 @@ class Stage:
         view = replace(self.view, camera=camera, background=scene.background)
         lighting = scene.lighting
         if lighting is None:
-            side = 16 << scene.depth
-            return replace(view, light=(side, 2 * side, side))
+            side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
+            return replace(view, light=(min(side, farthest), min(2 * side, farthest), min(side, farthest)))
         return replace(
             view,
             light=lighting.position,

@@ -20,12 +20,17 @@ def check_view(view: View, identity: Identity) -> None:
     Raises
     ------
     Refused
-        The frame is too large, the camera too far out, a direction too long, or a feature is not there.
+        The frame is too large or its width does not fit, the camera is too far out, a direction too long, or a feature
+        is not there.
     """
     columns, rows = view.size
     if columns > identity.size[0] or rows > identity.size[1]:
         raise Refused(
             f"{columns}x{rows} pixels are more than {identity.name} has: {identity.size[0]}x{identity.size[1]}"
+        )
+    if columns % identity.width_step:
+        raise Refused(
+            f"{columns} columns are no multiple of {identity.width_step}, as {identity.name} wants; change the size"
         )
     missing = view.features - identity.features
     if missing:

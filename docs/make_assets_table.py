@@ -42,7 +42,8 @@ One row for each of the {total} third-party files that voxrt is developed with: 
 refused, each with the one line that `voxrt build` says. `docs/make_assets_table.py` writes this page and a test
 compares all of it. Meshes are built at depth {depth}; MagicaVoxel scenes (`.vox`), which `voxrt convert` reads, bring
 their own depth and have no triangles. *Triangles* counts every instance. *Materials* are those of the loaded scene.
-Warnings are given by kind, with how many times each was met.
+Warnings are given by kind, with how many times each was met. Assets may name files outside their folder here, as
+`--allow-outside` has it, for USD stages often share layers that way.
 
 | asset | triangles | materials | solid voxels | warnings | outcome |
 |---|--:|--:|--:|---|---|
@@ -80,7 +81,7 @@ def examine(root: Path, asset: str) -> Row:
             row = replace(row, materials=_count(len(blob.rom.materials) - 1))
             solid_voxels = octree.census(blob.rom.octree).solid_voxels
         else:
-            scene = voxelize.load(root / asset)
+            scene = voxelize.load(root / asset, allow_outside=True)
             triangles = sum(len(thing.mesh.triangles) for thing in scene.objects)
             row = replace(
                 row,
@@ -88,7 +89,7 @@ def examine(root: Path, asset: str) -> Row:
                 materials=_count(len(scene.materials) - 1),
                 warnings=_by_kind(scene.warnings),
             )
-            result = voxrt.build(root / asset, depth=DEPTH, threads=1)
+            result = voxrt.build(root / asset, depth=DEPTH, threads=1, allow_outside=True)
             solid_voxels, warnings = result.solid_voxels, result.warnings
         return replace(row, solid_voxels=_count(solid_voxels), warnings=_by_kind(warnings), outcome="built")
     except (voxelize.AssetError, voxelize.DoesNotFitError, octree.RomError) as error:

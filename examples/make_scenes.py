@@ -9,6 +9,8 @@ dog.usda
     A dog of boxes with physics colliders, centimetres and z up: voxrt rounds them to powers of two voxels.
 planet.glb
     Curved solids: a banded ball, a tilted ring, moons.
+toadstool.vox
+    Voxel art in MagicaVoxel's format, 16 voxels a side.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from pathlib import Path
 
 from courtyard import COURTYARD, COURTYARD_PALETTE
 from solids import Part, Solid, ball, box, prism, ring, spin
-from writers import write_glb, write_obj, write_usda
+from writers import write_glb, write_obj, write_usda, write_vox
 
 HOUSE_PALETTE = {
     "plaster": (250, 236, 200),
@@ -100,6 +102,25 @@ def planet() -> list[Part]:
     return parts
 
 
+TOADSTOOL_PALETTE = [(206, 44, 52), (250, 244, 236), (236, 214, 178), (96, 168, 72), (64, 124, 56)]
+
+
+def toadstool() -> dict[tuple[int, int, int], int]:
+    """Make a toadstool of voxels on grass: palette entries by x, y, z, z up."""
+    voxels = {(x, y, 0): 4 + (7 * x + 5 * y) % 3 // 2 for x in range(16) for y in range(16)}
+    for x in range(16):
+        for y in range(16):
+            away = (2 * x - 15) ** 2 + (2 * y - 15) ** 2
+            voxels |= {(x, y, z): 3 for z in range(1, 8) if away < 36 - 2 * z}
+            # The cap is half an ellipsoid with white dots.
+            voxels |= {
+                (x, y, z): 2 if (x // 2 + 2 * (y // 2) + 3 * (z // 2)) % 7 == 0 else 1
+                for z in range(8, 16)
+                if away + 4 * (z - 8) ** 2 < 210
+            }
+    return voxels
+
+
 def make_scenes(folder: Path) -> None:
     """Write every example scene to `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -107,6 +128,7 @@ def make_scenes(folder: Path) -> None:
     write_obj(folder / "house.obj", HOUSE, HOUSE_PALETTE)
     write_usda(folder / "dog.usda", DOG, DOG_PALETTE)
     write_glb(folder / "planet.glb", planet(), PLANET_PALETTE)
+    write_vox(folder / "toadstool.vox", toadstool(), TOADSTOOL_PALETTE)
 
 
 if __name__ == "__main__":

@@ -156,3 +156,27 @@ def _linear(channel: int) -> float:
     """Give the linear value of an sRGB channel (IEC 61966-2-1), rounded so that it comes back exactly."""
     value = channel / 255
     return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 5)
+
+
+def write_vox(path: Path, voxels: dict[tuple[int, int, int], int], palette: list[tuple[int, int, int]]) -> None:
+    """Write a MagicaVoxel file of one model.
+
+    Parameters
+    ----------
+    path
+        Where to.
+    voxels
+        The palette's entry, 1 …, by x, y, z, each 0 … 255; z is up.
+    palette
+        sRGB, entry 1 first.
+    """
+    width, depth, height = (1 + max(place[axis] for place in voxels) for axis in range(3))
+    cells = b"".join(struct.pack("<4B", *place, entry) for place, entry in sorted(voxels.items()))
+    colours = b"".join(struct.pack("<4B", *colour, 255) for colour in palette).ljust(1024, b"\0")
+    chunks = [
+        (b"SIZE", struct.pack("<3I", width, depth, height)),
+        (b"XYZI", struct.pack("<I", len(voxels)) + cells),
+        (b"RGBA", colours),
+    ]
+    content = b"".join(name + struct.pack("<2I", len(body), 0) + body for name, body in chunks)
+    path.write_bytes(b"VOX " + struct.pack("<I", 150) + b"MAIN" + struct.pack("<2I", 0, len(content)) + content)

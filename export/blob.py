@@ -160,7 +160,9 @@ def _sections(path: Path, data: bytes) -> dict[bytes, bytes]:
     for name, offset, length, section_crc32 in _ENTRY.iter_unpack(table):
         section = data[offset : offset + length]
         if len(section) != length or zlib.crc32(section) != section_crc32:
-            raise _damaged(path, f"section {name.decode('ascii', 'backslashreplace')}", "is damaged (CRC-32)")
+            raise _damaged(
+                path, f"section {name.decode('latin-1').encode('unicode_escape').decode()}", "is damaged (CRC-32)"
+            )
         sections[name] = section
     return sections
 

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 from voxrt.export.blob import Blob, read_blob, write_blob
 from voxrt.export.listing import read_listing
-from voxrt.export.rom_files import WORD_SUFFIXES, read_rom, write_rom
+from voxrt.export.rom_files import WORD_SUFFIXES, read_words, write_rom
 from voxrt.octree import RomError, read_vox
-from voxrt.voxelize import SceneWarning
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from voxrt.voxelize import SceneWarning
 
 BLOB_SUFFIX = ".blob"
 LISTING_SUFFIX = ".txt"
@@ -61,15 +62,12 @@ def read_any(
         rom, warnings = read_vox(path)
         return Blob(rom), warnings
     if suffix in WORD_SUFFIXES:
-        rom, warnings = read_rom(path, depth, dialect)
-        return Blob(rom), warnings
+        return read_words(path, depth, dialect)
     raise RomError(f"{path}: is no file that holds an octree memory; name one of {', '.join(READABLE_SUFFIXES)}")
 
 
-def convert(
-    blob: Blob, target: Path | str, *, dialect: str = "report"
-) -> tuple[tuple[Path, ...], tuple[SceneWarning, ...]]:
-    """Write `blob` under the name and in the format of `target`.
+def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple[Path, ...]:
+    """Write `blob` under the name and in the format of `target`, and return the files written.
 
     Parameters
     ----------
@@ -79,21 +77,14 @@ def convert(
         The file; its suffix is one of :data:`WRITABLE_SUFFIXES`. A file of words gets a manifest beside it.
     dialect
         How a file of words marks its leaves; a blob is always ``report``.
-
-    Returns
-    -------
-    tuple[tuple[Path, ...], tuple[SceneWarning, ...]]
-        The files written, and what the format could not hold.
     """
     target = Path(target)
     suffix = target.suffix.lower()
     if suffix == BLOB_SUFFIX:
         write_blob(target, blob)
-        return (target,), ()
+        return (target,)
     if suffix not in WORD_SUFFIXES:
         raise RomError(f"{target}: is no format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     rom = replace(blob.rom, name=target.stem)
-    files = write_rom(target.parent, rom, suffix=target.suffix, dialect=dialect)
-    lost = [name for name, value in (("camera", blob.view), ("lighting", blob.lighting)) if value is not None]
-    message = f"{' and '.join(lost)} defaults are kept by {BLOB_SUFFIX} files alone"
-    return (files.mem, files.manifest), (SceneWarning("lost-defaults", message, len(lost)),) if lost else ()
+    files = write_rom(target.parent, rom, suffix=target.suffix, dialect=dialect, view=blob.view, lighting=blob.lighting)
+    return files.mem, files.manifest

@@ -1,6 +1,7 @@
 """The manifest: what a ``.mem`` file cannot say about itself, as JSON beside it.
 
-Every field is required and none other is allowed; a reader refuses a schema version that it does not know.
+Every field is required, but the two on how to see the world, and none other is allowed; a reader refuses a schema
+version that it does not know.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.blob import Lighting, View  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.octree import Dialect, RomError, census
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
 
@@ -85,6 +87,8 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Wall seconds a stage.
     source
         What it was built from; null where that is not known.
+    view, lighting
+        The author's camera and light; null, or absent, where the author gave none.
     """
 
     schema: int
@@ -101,6 +105,8 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     warnings: tuple[SceneWarning, ...]
     seconds: dict[str, float]
     source: Source | None
+    view: View | None = None
+    lighting: Lighting | None = None
 
     @property
     def material_table(self) -> tuple[Material, ...]:
@@ -122,6 +128,8 @@ def make_manifest(
     warnings: tuple[SceneWarning, ...] = (),
     seconds: Mapping[str, float] | None = None,
     source: Source | None = None,
+    view: View | None = None,
+    lighting: Lighting | None = None,
 ) -> Manifest:
     """Describe `rom` and the bytes `mem` of its ``.mem`` file."""
     voxels = census(rom.octree).voxels
@@ -143,6 +151,8 @@ def make_manifest(
         warnings=warnings,
         seconds=dict(seconds or {}),
         source=source,
+        view=view,
+        lighting=lighting,
     )
 
 
@@ -169,12 +179,15 @@ def read_manifest(path: Path) -> Manifest:
     except OSError as error:
         raise RomError(f"{path}: cannot be read: {error.strerror}; name a manifest") from None
     try:
+        str(data, "utf-8")  # the decoder looks only at the strings it needs
         version = msgspec.json.decode(data, type=_Version).schema
         if version != SCHEMA_VERSION:
             raise RomError(f"{path}: schema {version} is not known to this version ({SCHEMA_VERSION}); upgrade voxrt")
         manifest = msgspec.json.decode(data, type=Manifest)
     except msgspec.MsgspecError as error:
         raise RomError(f"{path}: {error}; it is no manifest of a memory, or damaged: build it again") from None
+    except UnicodeDecodeError as error:
+        raise RomError(f"{path}: byte {error.start} is no UTF-8; the manifest is damaged: build it again") from None
     except RecursionError:
         raise RomError(f"{path}: nested too deeply to be a manifest; build it again") from None
     _check(path, manifest)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.export.atomic import sync_folder, write_atomically
+from voxrt.export.blob import Blob
 from voxrt.export.coe import coe_bytes, read_coe
 from voxrt.export.manifest import Source, make_manifest, manifest_bytes, read_manifest
 from voxrt.export.mem import read_mem
@@ -27,6 +28,7 @@ from voxrt.voxelize import SceneWarning
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from voxrt.export.blob import Lighting, View
     from voxrt.export.manifest import Manifest
     from voxrt.export.word_file import WordFile
     from voxrt.voxelize import Material, ObjectReport
@@ -57,6 +59,8 @@ def write_rom(
     warnings: tuple[SceneWarning, ...] = (),
     seconds: Mapping[str, float] | None = None,
     source: Source | None = None,
+    view: View | None = None,
+    lighting: Lighting | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``; an interruption leaves the old pair or the new.
 
@@ -72,6 +76,8 @@ def write_rom(
         How the ``.mem`` marks its leaves, one of :data:`voxrt.octree.DIALECTS`.
     objects, warnings, seconds, source
         What the manifest says of the making.
+    view, lighting
+        What it says of how the world is to be seen.
 
     Raises
     ------
@@ -84,7 +90,15 @@ def write_rom(
         raise ValueError(f"{rom.name!r} cannot name a file")
     words = encode(rom.octree.words, dialect)
     manifest = make_manifest(
-        rom, mem_bytes(words), as_dialect(dialect), objects=objects, warnings=warnings, seconds=seconds, source=source
+        rom,
+        mem_bytes(words),
+        as_dialect(dialect),
+        objects=objects,
+        warnings=warnings,
+        seconds=seconds,
+        source=source,
+        view=view,
+        lighting=lighting,
     )
     folder.mkdir(parents=True, exist_ok=True)
     files = RomFiles(folder / f"{rom.name}{suffix}", folder / f"{rom.name}.json")
@@ -120,13 +134,21 @@ def read_rom(
         Where the memory or the manifest is malformed, they do not belong together, or `depth` or `dialect` contradict
         the manifest.
     """
-    mem_path = Path(path)
+    blob, warnings = read_words(Path(path), depth, dialect)
+    return blob.rom, warnings
+
+
+def read_words(
+    mem_path: Path, depth: int | None = None, dialect: str | None = None
+) -> tuple[Blob, tuple[SceneWarning, ...]]:
+    """As :func:`read_rom`, with what the manifest says of how the world is to be seen."""
     if mem_path.suffix.lower() not in _READERS:
-        raise RomError(f"{path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
+        raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
     mem = _READERS[mem_path.suffix.lower()](mem_path)
     manifest = _manifest_of(mem_path, mem)
     if manifest is None:
-        return _without_manifest(mem_path, mem, depth, dialect)
+        rom, warnings = _without_manifest(mem_path, mem, depth, dialect)
+        return Blob(rom), warnings
     for name, said, wanted in (("depth", manifest.depth, depth), ("dialect", manifest.dialect, dialect)):
         if wanted is not None and wanted != said:
             raise RomError(
@@ -139,7 +161,8 @@ def read_rom(
             f"{mem_path}: material {highest} is missing from the manifest, which ends at "
             f"{len(manifest.materials) - 1}; build it again"
         )
-    return Rom(manifest.name, octree, manifest.material_table, manifest.grid), ()
+    rom = Rom(manifest.name, octree, manifest.material_table, manifest.grid)
+    return Blob(rom, manifest.view, manifest.lighting), ()
 
 
 def _manifest_of(mem_path: Path, mem: WordFile) -> Manifest | None:

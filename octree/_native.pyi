@@ -28,11 +28,25 @@ def fill_region(words: NDArray[np.uint32], depth: int, low: _Corner, region: NDA
 def diff(
     first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int
 ) -> tuple[int, int, int, tuple[list[int], list[int]] | None]: ...
+def differing_regions(
+    first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int
+) -> tuple[NDArray[np.int64], NDArray[np.uint64]]: ...
 def coarsen(words: NDArray[np.uint32], depth: int, level: int) -> NDArray[np.uint32]: ...
 def merge_blocks(
-    words: NDArray[np.uint32], depth: int, finest: int, costs: NDArray[np.uint16], fine_price: int, coarse_price: int
+    words: NDArray[np.uint32],
+    hidden: NDArray[np.uint32],
+    depth: int,
+    finest: int,
+    costs: NDArray[np.uint16],
+    fine_price: int,
+    coarse_price: int,
 ) -> NDArray[np.uint32]: ...
 def surface_change(first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int) -> tuple[int, int]: ...
+def hidden_voxels(words: NDArray[np.uint32], depth: int) -> NDArray[np.uint32]: ...
+def fill_hidden(
+    words: NDArray[np.uint32], hidden: NDArray[np.uint32], depth: int, material: int
+) -> NDArray[np.uint32]: ...
+def share_hidden(words: NDArray[np.uint32], hidden: NDArray[np.uint32], depth: int) -> NDArray[np.uint32]: ...
 
 class LeafWalk:
     def __init__(

@@ -142,12 +142,12 @@ def _merged(world: Octree, finest: int, words: int, costs: NDArray[np.uint16]) -
     First one price for all blocks; then, with blocks three levels above the voxels cheaper than that, the least price
     for those two levels above them, which are shared more and so deserve one of their own.
     """
+    hidden = _native.hidden_voxels(world.words, world.depth)
 
     def merge(fine_exponent: float, coarse_exponent: float) -> Octree:
         fine_price, coarse_price = int(2**fine_exponent), int(2**coarse_exponent)
-        return Octree(
-            world.depth, _native.merge_blocks(world.words, world.depth, finest, costs, fine_price, coarse_price)
-        )
+        words = _native.merge_blocks(world.words, hidden, world.depth, finest, costs, fine_price, coarse_price)
+        return Octree(world.depth, words)
 
     exponent, found = _least_exponent(lambda e: merge(e, e), words, _EXPONENTS, 8)
     if found is None:

@@ -40,6 +40,29 @@ class Difference:
         return self.appeared + self.vanished + self.recoloured
 
 
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Voxels that differ and hang together by faces, edges or corners.
+
+    Attributes
+    ----------
+    bounds
+        The smallest box (lowest voxel, one behind the highest) that holds them.
+    appeared, vanished, recoloured
+        As in :class:`Difference`.
+    """
+
+    bounds: tuple[Corner, Corner]
+    appeared: int
+    vanished: int
+    recoloured: int
+
+    @property
+    def voxels(self) -> int:
+        """How many they are."""
+        return self.appeared + self.vanished + self.recoloured
+
+
 def diff(first: Octree, second: Octree) -> Difference:
     """Compare the voxels of two octrees of one depth, not their words.
 
@@ -48,7 +71,31 @@ def diff(first: Octree, second: Octree) -> Difference:
     ValueError
         Where the depths differ.
     """
-    if first.depth != second.depth:
-        raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")
+    _refuse_other_depth(first, second)
     appeared, vanished, recoloured, corners = _native.diff(first.words, second.words, first.depth)
     return Difference(appeared, vanished, recoloured, as_bounds(corners))
+
+
+def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
+    """Tell where two octrees of one depth differ: the pieces, those with most voxels first, then by lowest voxel.
+
+    Cost grows with the octants that differ; more than 2**21 of them are given as one region.
+
+    Raises
+    ------
+    ValueError
+        Where the depths differ.
+    """
+    _refuse_other_depth(first, second)
+    bounds, counts = _native.differing_regions(first.words, second.words, first.depth)
+    return tuple(
+        Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
+        for (x, y, z, end_x, end_y, end_z), (appeared, vanished, recoloured) in zip(
+            bounds.tolist(), counts.tolist(), strict=True
+        )
+    )
+
+
+def _refuse_other_depth(first: Octree, second: Octree) -> None:
+    if first.depth != second.depth:
+        raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")

@@ -1,68 +1,67 @@
-"""Which octants cannot be seen from anywhere: all of their six sides touch solid ones."""
+"""What no ray from outside can reach: solid voxels with nothing but solid ones around them, all 26, inside the world.
+
+A ray crosses one plane at a time, so its first solid voxel shares a face with an empty one. The voxels at edges and
+corners count too since a camera may stand on an edge or a corner of an empty voxel, and looks into what lies there.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from voxrt.octree.leaves import Leaves
-
-_SPREADS = (
-    (16, 0x0000FF0000FF),
-    (8, 0x00F00F00F00F),
-    (4, 0x0C30C30C30C3),
-    (2, 0x249249249249),
-)
+from voxrt.octree import _native
+from voxrt.octree.octree import Octree
 
 
-def hidden(solid: Leaves) -> NDArray[np.bool_]:
-    """Tell which of some solid leaves are covered on all six sides by the others.
+def hidden_voxels(octree: Octree) -> Octree:
+    """Find the hidden voxels: solid, of material 1, in what is given back. Cost grows with the surface."""
+    return Octree(octree.depth, _native.hidden_voxels(octree.words, octree.depth))
 
-    A leaf is as covered as the area in which others touch it is large. Two leaves that touch do so with the whole side
-    of the smaller one, so that looking for the leaf behind one voxel of each side finds all pairs: N log N.
+
+def fill_hidden(octree: Octree, hidden: Octree, material: int) -> Octree:
+    """Make all hidden voxels one material.
 
     Parameters
     ----------
-    solid
-        N solid leaves that do not overlap, in Morton order. Nothing is solid beside them.
+    octree
+        The memory, canonical or not.
+    hidden
+        What :func:`hidden_voxels` found in it.
+    material
+        Material id, 1 … 255.
 
     Returns
     -------
-    NDArray[np.bool_]
-        Shape (N,).
+    Octree
+        Equal blocks shared. Cameras outside what is solid see what they saw before.
     """
-    corners, levels = solid.corners.astype(np.int64), solid.levels.astype(np.int64)
-    codes = _morton(corners)
-    areas = np.int64(1) << 2 * levels
-    covered = np.zeros_like(areas)
-    for axis in range(3):
-        for step in (-np.ones_like(levels), np.int64(1) << levels):
-            beside = corners.copy()
-            beside[:, axis] += step
-            rows = np.flatnonzero((beside[:, axis] >= 0) & (beside[:, axis] < 1 << 16))
-            sought = _morton(beside[rows])
-            found = np.searchsorted(codes, sought, side="right") - 1
-            touches = (
-                (found >= 0) & (levels[found] >= levels[rows]) & (sought - codes[found] < areas[found] << levels[found])
-            )
-            rows, found = rows[touches], found[touches]
-            covered[rows] += areas[rows]
-            larger = levels[found] > levels[rows]
-            np.add.at(covered, found[larger], areas[rows[larger]])
-    wholly: NDArray[np.bool_] = covered == 6 * areas
-    return wholly
+    if not 1 <= material <= 255:
+        raise ValueError(f"material must be 1 ... 255, not {material}")
+    _refuse_other_depth(octree, hidden)
+    return Octree(octree.depth, _native.fill_hidden(octree.words, hidden.words, octree.depth, material))
 
 
-def _morton(voxels: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Interleave 16 bits of each of x, y, z (shape (N, 3)), x lowest, as octant indices do."""
-    code = np.zeros(len(voxels), np.int64)
-    for axis in range(3):
-        spread = voxels[:, axis].copy()
-        for shift, mask in _SPREADS:
-            spread = (spread | spread << shift) & mask
-        code |= spread << axis
-    return code
+def share_hidden(octree: Octree, hidden: Octree) -> Octree:
+    """Give each hidden voxel whatever material lets most blocks be shared.
+
+    Voxels that may be anything leave blocks incompletely specified; from the leaves up, blocks that contradict each
+    other nowhere become one (after Shiple, Hojati, Sangiovanni-Vincentelli and Brayton, "Heuristic Minimization of BDDs
+    Using Don't Cares", 1994). Which choice is best is not known to be found quickly; this one is greedy, and the same
+    for equal voxels.
+
+    Parameters
+    ----------
+    octree
+        The memory, canonical or not.
+    hidden
+        What :func:`hidden_voxels` found in it.
+
+    Returns
+    -------
+    Octree
+        Equal blocks shared. What is solid is the same, and cameras outside it see what they saw before.
+    """
+    _refuse_other_depth(octree, hidden)
+    return Octree(octree.depth, _native.share_hidden(octree.words, hidden.words, octree.depth))
+
+
+def _refuse_other_depth(octree: Octree, hidden: Octree) -> None:
+    if octree.depth != hidden.depth:
+        raise ValueError(f"the hidden voxels are of depth {hidden.depth} and the octree of depth {octree.depth}")

@@ -168,7 +168,7 @@ class _Reader:
     def chunks(self) -> Iterator[tuple[str, _Reader]]:
         """All chunks, parents before their children."""
         while self._position < self._end:
-            name = self.take(4).decode("ascii", "backslashreplace")
+            name = self.take(4).decode("latin-1").encode("unicode_escape").decode()  # printable, in messages
             start = self._position + 8
             content, children = self.integer(), self.integer()
             if content < 0 or children < 0 or content + children > self._end - start:

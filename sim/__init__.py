@@ -14,9 +14,10 @@ from voxrt.sim.camera import (
     pixel_directions,
 )
 from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
-from voxrt.sim.errors import SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
+from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
 from voxrt.sim.render import Engine, EngineCheck, check, render
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
@@ -30,6 +31,9 @@ __all__ = [
     "Frame",
     "Light",
     "Likeness",
+    "NoSuchConfigurationError",
+    "RayPath",
+    "Reading",
     "RenderCost",
     "Shading",
     "SimulatorError",
@@ -38,6 +42,8 @@ __all__ = [
     "check",
     "compare",
     "comparison_sheet",
+    "follow_pixel",
+    "follow_ray",
     "frame_points",
     "frame_scene",
     "look_at",

@@ -23,9 +23,13 @@ DIRECTION_LIMIT = 1 << 20
 """Every component of a pixel's direction is smaller than this."""
 
 _REGISTER_LIMIT = 1 << 15
-_FIELD_OF_VIEW = 35.0
-_THREE_QUARTER = (0.62, 0.68, 1.0)  # from the scene to the eye: front right, from above
-_MARGIN = 0.04  # of the frame's side, left free on each side by frame_points
+FIELD_OF_VIEW = 35.0
+"""Degrees across a frame's shorter side, where nobody says."""
+
+THREE_QUARTER = (-0.62, -0.68, -1.0)
+"""The look of a camera at a scene's front (+z), from its right and above."""
+
+_MARGIN = 0.04  # of the frame's side, left free on each side by eye_that_sees
 _OUTLINE_LEVELS = 6  # what is framed is known to 1/64 of the world: the frame's margin, at little cost
 
 
@@ -78,7 +82,7 @@ def look_at(
     target: ArrayLike,
     *,
     size: tuple[int, int],
-    field_of_view: float = _FIELD_OF_VIEW,
+    field_of_view: float = FIELD_OF_VIEW,
     up: ArrayLike = (0.0, 1.0, 0.0),
 ) -> Camera:
     """Make the right-handed camera at `eye` that sees `target` in the middle of the frame.
@@ -101,7 +105,7 @@ def look_at(
     """
     from_eye = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
     axes = _axes(from_eye, np.asarray(up, dtype=np.float64))
-    return _scaled(np.asarray(eye, dtype=np.float64), axes, _focal_length(size, field_of_view), size)
+    return _scaled(np.asarray(eye, dtype=np.float64), axes, focal_length(size, field_of_view), size)
 
 
 def frame_scene(rom: Rom, size: tuple[int, int]) -> Camera:
@@ -127,18 +131,33 @@ def frame_points(points: ArrayLike, size: tuple[int, int]) -> Camera:
     size
         Columns and rows of the frame.
     """
-    corners = np.asarray(points, dtype=np.float64)
-    axes = _axes(-np.array(_THREE_QUARTER), np.array([0.0, 1.0, 0.0]))
-    focal = _focal_length(size, _FIELD_OF_VIEW)
-    x, y, z = (corners @ axis for axis in (axes[1], axes[2], axes[0]))
-    # The eye (ex, ey, ez) in the camera's axes sees x within the slope s when |x - ex| <= s (z - ez): the two tightest
-    # corners a side give ez, and half way between them ex.
-    slope_x, slope_y = (max(0.5, pixels * (0.5 - _MARGIN) - 1) / focal for pixels in size)
+    axes = _axes(np.array(THREE_QUARTER), np.array([0.0, 1.0, 0.0]))
+    focal = focal_length(size)
+    return _scaled(eye_that_sees(points, axes * [[focal], [1], [1]], size), axes, focal, size)
+
+
+def eye_that_sees(points: ArrayLike, registers: ArrayLike, size: tuple[int, int]) -> NDArray[np.float64]:
+    """Give where a camera of these registers sees all points, tightly: float, shape (3,), voxels.
+
+    Parameters
+    ----------
+    points
+        float, shape (N, 3), voxels, grid frame; at least one.
+    registers
+        float, shape (3, 3): look, right and up as rows, linearly independent, of any common scale.
+    size
+        Columns and rows of the frame.
+    """
+    rows = np.asarray(registers, dtype=np.float64)
+    z, x, y = np.linalg.solve(rows.T, np.asarray(points, dtype=np.float64).T)
+    # In the frame of the registers the eye (ez, ex, ey) sees x within the slope s when |x - ex| <= s (z - ez): the two
+    # tightest corners a side give ez, and half way between them ex.
+    slope_x, slope_y = (max(0.5, pixels * (0.5 - _MARGIN) - 1) for pixels in size)
     left, right = np.min(x + slope_x * z), np.max(x - slope_x * z)
     bottom, top = np.min(y + slope_y * z), np.max(y - slope_y * z)
     ez = min((left - right) / (2 * slope_x), (bottom - top) / (2 * slope_y))
-    eye = np.array([ez, (left + right) / 2, (bottom + top) / 2]) @ axes
-    return _scaled(eye, axes, focal, size)
+    eye: NDArray[np.float64] = np.array([ez, (left + right) / 2, (bottom + top) / 2]) @ rows
+    return eye
 
 
 def outline(octree: Octree) -> NDArray[np.float64]:
@@ -149,6 +168,13 @@ def outline(octree: Octree) -> NDArray[np.float64]:
     levels = np.concatenate([part.levels for part in parts]) if parts else np.array([octree.depth], np.uint8)
     high = low + (1 << levels.astype(np.int64))[:, None]
     return np.concatenate([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)]).astype(np.float64)
+
+
+def focal_length(size: tuple[int, int], field_of_view: float = FIELD_OF_VIEW) -> float:
+    """Give the distance, in pixels, from which the frame's shorter side is seen under `field_of_view` degrees."""
+    if not 0 < field_of_view < 180:
+        raise ValueError(f"a field of view of {field_of_view} degrees is not above 0 and below 180")
+    return float(min(size) / (2 * np.tan(np.radians(field_of_view) / 2)))
 
 
 def pixel_directions(camera: Camera, size: tuple[int, int]) -> NDArray[np.int64]:
@@ -171,13 +197,6 @@ def _axes(look: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.floa
     rows = np.array([look, right, np.cross(right, look)])
     normalized: NDArray[np.float64] = rows / np.linalg.norm(rows, axis=1, keepdims=True)
     return normalized
-
-
-def _focal_length(size: tuple[int, int], field_of_view: float) -> float:
-    """Give the distance, in pixels, from which the frame's shorter side is seen under `field_of_view` degrees."""
-    if not 0 < field_of_view < 180:
-        raise ValueError(f"a field of view of {field_of_view} degrees is not above 0 and below 180")
-    return float(min(size) / (2 * np.tan(np.radians(field_of_view) / 2)))
 
 
 def _scaled(eye: NDArray[np.float64], axes: NDArray[np.float64], focal: float, size: tuple[int, int]) -> Camera:

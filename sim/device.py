@@ -1,17 +1,15 @@
-"""Devices without a board: the exact model and the verilated ray tracer, behind the board's interface."""
+"""The exact model as a device."""
 
 from __future__ import annotations
 
 import time
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError
 from voxrt.sim import _model
-from voxrt.sim.errors import SimulatorError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,7 +25,7 @@ _FRAME_LIMIT = 4095
 
 
 class _Memory:
-    """Scene memory, material table and selected octree, as both devices keep them on this side.
+    """Scene memory, material table and selected octree.
 
     Grows to the highest word written, so that a large capacity costs nothing.
     """
@@ -66,15 +64,31 @@ class _Memory:
         return address + count
 
 
-class _SimulatedDevice:
-    """What the model and the ray tracer have in common."""
+class ModelDevice:
+    """The exact model: every pixel what the hardware shows, without clocks.
 
-    def __init__(self, identity: Identity) -> None:
-        self._identity = identity
-        self._memory = _Memory(identity.capacity)
-        self._octree = self._memory.octree()
+    Parameters
+    ----------
+    threads
+        Threads of a frame, 0 for one a core.
+    capacity
+        Words of scene memory.
+    """
+
+    def __init__(self, *, threads: int = 0, capacity: int = MODEL_CAPACITY) -> None:
+        self._identity = Identity(
+            name="exact model",
+            version="1",
+            capacity=capacity,
+            depth=16,
+            size=(_FRAME_LIMIT, _FRAME_LIMIT),
+            position_limit=1 << 31,
+            features=frozenset({"flat", "shadows", "mirrors"}),
+        )
+        self._memory = _Memory(capacity)
         self._view: View | None = None
-        self._counters = Counters(0, 0, None, 0.0)
+        self._threads = threads
+        self._model = _model.Memory(self._memory.octree(), self._memory.depth)
 
     @property
     def identity(self) -> Identity:
@@ -82,7 +96,7 @@ class _SimulatedDevice:
         return self._identity
 
     def registers(self) -> Mapping[str, int]:
-        """Give what the ray tracer's registers hold."""
+        """Give what a ray tracer's registers would hold."""
         registers = {"root": self._memory.root, "depth": self._memory.depth}
         if self._view is not None:
             registers["width"], registers["height"] = self._view.size
@@ -91,10 +105,6 @@ class _SimulatedDevice:
                 registers |= {f"{name}_{axis}": value for axis, value in zip("xyz", getattr(camera, name), strict=True)}
             red, green, blue = self._view.background
             registers["background"] = red << 16 | green << 8 | blue
-        counters = self._counters
-        registers |= {"rays": counters.rays, "words_read": counters.words_read}
-        if counters.cycles is not None:
-            registers["cycles"] = counters.cycles
         return registers
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
@@ -112,52 +122,8 @@ class _SimulatedDevice:
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
-        self._octree = self._memory.octree().copy()
-
-    def close(self) -> None:
-        """Nothing to let go of."""
-
-    def _colours(self, view: View) -> NDArray[np.uint8]:
-        colours = self._memory.colours.copy()
-        colours[0] = view.background
-        return colours
-
-    def _kept(self, view: View, colour: NDArray[np.uint8], counters: Counters) -> Frame:
-        self._view, self._counters = view, counters
-        return Frame(colour, counters)
-
-
-class ModelDevice(_SimulatedDevice):
-    """The exact model: every pixel what the hardware shows, without clocks.
-
-    Parameters
-    ----------
-    threads
-        Threads of a frame, 0 for one a core.
-    capacity
-        Words of scene memory.
-    """
-
-    def __init__(self, *, threads: int = 0, capacity: int = MODEL_CAPACITY) -> None:
-        super().__init__(
-            Identity(
-                name="exact model",
-                version="1",
-                capacity=capacity,
-                depth=16,
-                size=(_FRAME_LIMIT, _FRAME_LIMIT),
-                position_limit=1 << 31,
-                features=frozenset({"flat", "shadows", "mirrors"}),
-            )
-        )
-        self._threads = threads
-        self._model = _model.Memory(self._octree, self._memory.depth)
-
-    def select_scene(self, root: int, depth: int) -> None:
-        """Trace the octree at `root` from the next frame on."""
-        super().select_scene(root, depth)
         try:
-            self._model = _model.Memory(self._octree, depth)
+            self._model = _model.Memory(self._memory.octree(), depth)
         except ValueError as error:
             raise DeviceError(f"the model refuses the memory: {error}") from error
 
@@ -179,65 +145,14 @@ class ModelDevice(_SimulatedDevice):
             )
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
-        counters = Counters(view.size[0] * view.size[1], pixels["words_read"], None, time.perf_counter() - started)
-        return self._kept(view, pixels["colour"], counters)
+        self._view = view
+        counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
+        return Frame(pixels["colour"], counters)
 
+    def close(self) -> None:
+        """Nothing to let go of."""
 
-class RtlDevice(_SimulatedDevice):
-    """The verilated ray tracer, clock by clock.
-
-    Parameters
-    ----------
-    config
-        Its configuration.
-
-    Raises
-    ------
-    SimulatorError
-        The ray tracer, or this configuration of it, is not in this installation.
-    """
-
-    def __init__(self, config: str = "tiny") -> None:
-        try:
-            module: Any = import_module("voxrt.sim._rtl")
-        except ImportError as error:
-            raise SimulatorError(
-                "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-                "use --device model"
-            ) from error
-        if config not in module.CONFIGS:
-            raise SimulatorError(
-                f"no ray tracer configuration {config!r}; there are {', '.join(sorted(module.CONFIGS))}"
-            )
-        self._tracer = module.Tracer(config)
-        super().__init__(
-            Identity(
-                name=f"simulated ray tracer, {config}",
-                version="1",
-                capacity=self._tracer.memory_words,
-                depth=self._tracer.max_depth,
-                size=(_FRAME_LIMIT, _FRAME_LIMIT),
-                position_limit=self._tracer.position_limit,
-                movable_root=False,
-            )
-        )
-
-    def select_scene(self, root: int, depth: int) -> None:
-        """Trace the octree at `root` from the next frame on."""
-        super().select_scene(root, depth)
-        self._tracer.load(self._octree)
-
-    def frame(self, view: View) -> Frame:
-        """Render a frame."""
-        started = time.perf_counter()
-        camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
-        try:
-            pixels = self._tracer.render(camera, *view.size, self._memory.depth, self._colours(view))
-        except ValueError as error:
-            raise DeviceError(f"the ray tracer refuses the frame: {error}") from error
-        if pixels["errors"]:
-            raise DeviceError(f"the ray tracer reports {', '.join(pixels['errors'])}; upload the scene again")
-        counters = Counters(
-            view.size[0] * view.size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started
-        )
-        return self._kept(view, pixels["colour"], counters)
+    def _colours(self, view: View) -> NDArray[np.uint8]:
+        colours = self._memory.colours.copy()
+        colours[0] = view.background
+        return colours

@@ -11,7 +11,7 @@ import numpy as np
 
 from voxrt.sim import _model
 from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
-from voxrt.sim.errors import SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 
@@ -81,6 +81,8 @@ def render(
 
     Raises
     ------
+    NoSuchConfigurationError
+        The ray tracer has no configuration of that name here.
     SimulatorError
         The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading; a
         size, a direction or the light is out of range.
@@ -128,7 +130,7 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
         colour=pixels["colour"],
         material=pixels["material"],
         face=pixels["face"],
-        cost=RenderCost(size[0] * size[1], pixels["words_read"], None, time.perf_counter() - started),
+        cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 
 
@@ -142,7 +144,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
             "render with --engine model"
         ) from error
     if config not in _rtl.CONFIGS:
-        raise SimulatorError(f"no ray tracer configuration {config!r}; there are {', '.join(sorted(_rtl.CONFIGS))}")
+        raise NoSuchConfigurationError(config, _rtl.CONFIGS)
     tracer = _rtl.Tracer(config)
     place = tuple(value / POSITION_UNITS for value in camera.position)
     for misfit, problem in (
@@ -203,5 +205,6 @@ def _check_shading(shading: Shading) -> None:
 def palette_of(rom: Rom) -> NDArray[np.uint8]:
     """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
     palette = np.zeros((256, 3), dtype=np.uint8)
-    palette[: len(rom.materials)] = [material.colour for material in rom.materials]
+    for number, material in enumerate(rom.materials):
+        palette[number] = material.colour
     return palette

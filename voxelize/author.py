@@ -106,12 +106,15 @@ class Author:
         self._ids: dict[str, int] = {}
         self._asset_ids: dict[tuple[str, Material], int] = {}
         self._default: int | None = None
+        self._uncoloured: set[str] = set()
         self._objects: dict[str, SceneObject] = {}
         self._notes = Notes()
         self._viewpoint: Viewpoint | None = None
         self._light: PointLight | None = None
 
-    def material(self, name: str, colour: Colour, *, mirror: bool = False, number: int | None = None) -> str:
+    def material(
+        self, name: str, colour: Colour | None = None, *, mirror: bool = False, number: int | None = None
+    ) -> str:
         """Declare a material and return its name.
 
         Parameters
@@ -119,9 +122,10 @@ class Author:
         name
             Any text, once.
         colour
-            sRGB: ``"#rrggbb"`` or three integers of 0 … 255.
+            sRGB: ``"#rrggbb"`` or three integers of 0 … 255; None for the colour that the first asset to have a
+            material of that name gives it.
         mirror
-            Reflects, where the hardware has mirrors.
+            Reflects, where the hardware has mirrors; a mirror in its asset does so anyway.
         number
             Its id, 1 … 255; None for the lowest that is free.
         """
@@ -130,7 +134,9 @@ class Author:
         if number is not None and (not 1 <= number <= MATERIAL_LIMIT or number in self._materials):
             taken = f", which belongs to {self._materials[number].name!r}" if number in self._materials else ""
             raise AuthoringError(f"material {name!r} cannot have the id {number}{taken}; ids are 1 to {MATERIAL_LIMIT}")
-        self._ids[name] = self._enter(Material(name, parse_colour(colour), mirror), number)
+        self._ids[name] = self._enter(Material(name, parse_colour(colour or EMPTY.colour), mirror), number)
+        if colour is None:
+            self._uncoloured.add(name)
         return name
 
     def add(
@@ -244,10 +250,12 @@ class Author:
         Raises
         ------
         AuthoringError
-            It has no objects.
+            It has no objects, or a material without a colour.
         """
         if not self._objects:
             raise AuthoringError("the scene has no objects")
+        for name in self.uncoloured:
+            raise AuthoringError(f"material {name!r} has no colour, and no asset has one of that name")
         table = tuple(
             self._materials.get(number, Material(f"unused {number}", EMPTY.colour, authored=False))
             for number in range(max(self._materials) + 1)
@@ -272,6 +280,20 @@ class Author:
             known = ", ".join(repr(one) for one in self._ids) or "none"
             raise AuthoringError(f"no material {name!r} is declared; there is {known}")
         return self._ids[name]
+
+    @property
+    def uncoloured(self) -> tuple[str, ...]:
+        """The declared materials that have no colour so far, in the order of their names."""
+        return tuple(sorted(self._uncoloured))
+
+    def coloured(self, name: str, material: Material) -> int:
+        """Return the id of a declared material, which takes what it does not say itself from an asset's."""
+        number = self._ids[name]
+        if name in self._uncoloured:
+            self._uncoloured.remove(name)
+            own = self._materials[number]
+            self._materials[number] = replace(own, colour=material.colour, mirror=own.mirror or material.mirror)
+        return number
 
     def declares(self, name: str) -> bool:
         """Whether a material of that name is declared."""
@@ -324,8 +346,11 @@ class _Wardrobe:
         if old not in self._numbers:
             material = self._asset.materials[old]
             target = self._target(material.name)
-            new = self._author.adopted(material) if target is None else self._author.number(target, 1)
-            self._numbers[old] = new
+            if target is None:
+                self._numbers[old] = self._author.adopted(material)
+            else:
+                self._author.number(target, 1)  # refuses one that is not declared
+                self._numbers[old] = self._author.coloured(target, material)
         return self._numbers[old]
 
     def dressed(self, mesh: Mesh) -> Mesh:
@@ -336,6 +361,8 @@ class _Wardrobe:
             rows = coat.rows.copy()
             for row, paint in enumerate(coat.paints):
                 target = self._target(paint.name)
+                if target in self._author.uncoloured:
+                    raise AuthoringError(f"material {paint.name!r} is painted: give {target!r} a colour of its own")
                 if target is not None:
                     materials[rows == row] = self._author.number(target, 1)
                     rows[rows == row] = -1
@@ -352,12 +379,12 @@ class _Wardrobe:
 
 
 def collider_around(
-    kind: ColliderKind, positions: NDArray[np.float64], triangles: NDArray[np.int32], *, pow2: bool = True
+    kind: ColliderKind, positions: NDArray[np.floating], triangles: NDArray[np.int32], *, pow2: bool = True
 ) -> Collider:
     """Return the stand-in of `kind` for a surface, in the surface's frame."""
     if kind == "mesh":
         return MeshCollider(positions, triangles)
-    corners = positions[np.unique(triangles)]
+    corners = positions[np.unique(triangles)].astype(np.float64)
     if kind == "hull":
         return HullCollider(corners)
     low, high = corners.min(axis=0), corners.max(axis=0)

@@ -38,12 +38,12 @@ def stand_ins(item: SceneObject, geometry: Geometry) -> tuple[Collider, ...] | N
         return None
     if item.colliders or len(item.mesh.triangles) == 0:
         return item.colliders
-    corners = item.mesh.positions[item.mesh.triangles.ravel()]
+    corners = item.mesh.positions[item.mesh.triangles.ravel()].astype(np.float64)
     return (BoxCollider(corners.min(axis=0), corners.max(axis=0)),)
 
 
-def corner_points(collider: Collider) -> NDArray[np.float64]:
-    """Points of a collider whose convex hull holds it (float64, shape (V, 3), object frame)."""
+def corner_points(collider: Collider) -> NDArray[np.floating]:
+    """Points of a collider whose convex hull holds it (shape (V, 3), object frame)."""
     if isinstance(collider, BoxCollider):
         return box_corners(collider)
     if isinstance(collider, SphereCollider):

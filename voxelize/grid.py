@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.colliders import Geometry, Pow2
-    from voxrt.voxelize.scene import Scene
+    from voxrt.voxelize.scene import Mesh, Scene
 
 DEPTH_LIMIT = 16
 """The deepest octree: 65536 voxels a side."""
@@ -141,11 +141,11 @@ def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64],
     return low, high
 
 
-def _instances(scene: Scene, geometry: Geometry) -> list[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]:
-    """Give the point clouds of a scene (float64, shape (V, 3), V > 0), each with the transforms that place it."""
-    clouds: dict[int, tuple[object, NDArray[np.float64], list[NDArray[np.float64]]]] = {}
+def _instances(scene: Scene, geometry: Geometry) -> list[tuple[NDArray[np.floating], list[NDArray[np.float64]]]]:
+    """Give the point clouds of a scene (shape (V, 3), V > 0), each with the transforms that place it."""
+    clouds: dict[int, tuple[object, NDArray[np.floating], list[NDArray[np.float64]]]] = {}
 
-    def place(key: object, points: Callable[[], NDArray[np.float64]], transform: NDArray[np.float64]) -> None:
+    def place(key: object, points: Callable[[], NDArray[np.floating]], transform: NDArray[np.float64]) -> None:
         if id(key) not in clouds:
             clouds[id(key)] = (key, points(), [])  # an id is unique only while its object lives
         clouds[id(key)][2].append(transform)
@@ -154,10 +154,17 @@ def _instances(scene: Scene, geometry: Geometry) -> list[tuple[NDArray[np.float6
         colliders = stand_ins(item, geometry)
         if colliders is None:
             mesh = item.mesh
-            place(mesh, lambda mesh=mesh: mesh.positions[np.unique(mesh.triangles)], item.transform)  # type: ignore[misc]
+            place(mesh, lambda mesh=mesh: _used(mesh), item.transform)  # type: ignore[misc]
         for collider in colliders or ():
             place(collider, lambda collider=collider: corner_points(collider), item.transform)  # type: ignore[misc]
     return [(points, transforms) for _, points, transforms in clouds.values() if len(points) > 0]
+
+
+def _used(mesh: Mesh) -> NDArray[np.floating]:
+    """Return the vertices that triangles use."""
+    used = np.zeros(len(mesh.positions), np.bool_)
+    used[mesh.triangles.reshape(-1).astype(np.intp)] = True  # twice as fast as indices of 32 bits
+    return mesh.positions if used.all() else mesh.positions[used]
 
 
 def _rounding_leaves(scene: Scene, grid: Grid, geometry: Geometry) -> bool:

@@ -17,14 +17,14 @@ UpAxis: TypeAlias = Literal["x", "y", "z"]
 # Loaders are imported when a file asks for them: USD alone takes longer to import than a small scene to build. Each
 # stands with what it can be told.
 _LOADERS = {
-    ".gltf": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants"}),
-    ".glb": ("voxrt.voxelize.gltf", "load_gltf", {"time", "variants"}),
-    ".usd": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
-    ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
-    ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
-    ".usdz": ("voxrt.voxelize.usd", "load_usd", {"time", "variants"}),
-    ".toml": ("voxrt.voxelize.scene_toml", "load_scene_toml", set()),
-    ".obj": ("voxrt.voxelize.obj", "load_obj", {"up", "unit"}),
+    ".gltf": ("voxrt.voxelize.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
+    ".glb": ("voxrt.voxelize.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
+    ".usd": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
+    ".usda": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
+    ".usdc": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
+    ".usdz": ("voxrt.voxelize.usd", "load_usd", {"time", "variants", "allow_outside"}),
+    ".toml": ("voxrt.voxelize.scene_toml", "load_scene_toml", {"allow_outside"}),
+    ".obj": ("voxrt.voxelize.obj", "load_obj", {"up", "unit", "allow_outside"}),
     ".stl": ("voxrt.voxelize.stl", "load_stl", {"up", "unit"}),
     ".ply": ("voxrt.voxelize.ply", "load_ply", {"up", "unit"}),
 }
@@ -36,6 +36,7 @@ _WHY_IGNORED = {
     "up": "the up axis was ignored: {} files say it themselves",
     "unit": "the unit was ignored: {} files say it themselves",
     "time": "the time was ignored: {} files have no animation",
+    "animation": "the animation's name was ignored: {} files have none to choose from",
     "variants": "variants were ignored: {} files have none",
 }
 
@@ -46,7 +47,9 @@ def load(
     up: UpAxis | None = None,
     unit: float | None = None,
     time: float | None = None,
+    animation: str | None = None,
     variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
 ) -> Scene:
     """Read an asset file into a scene (right-handed, metres, y up).
 
@@ -61,9 +64,13 @@ def load(
         Metres per unit of the file, for formats that do not say.
     time
         The second of its animation at which the file is shown, for formats that have some (glTF, USD).
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF); the first where this is not given.
     variants
         What to show of what the file has in several ways: the name of one material variant (glTF), or
         ``/prim/path:set=variant`` any number of times (USD).
+    allow_outside
+        Whether files that the asset names may stand outside its folder and the folders in it.
 
     Formats ignore what is not for them, with a warning.
 
@@ -78,16 +85,28 @@ def load(
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"give one of {', '.join(SUFFIXES)}")
-    if not path.is_file():
-        problem = "is a folder, not a file" if path.is_dir() else "no such file"
+    try:
+        is_file, is_folder = path.is_file(), path.is_dir()
+    except OSError:  # a name longer than any file's
+        is_file = is_folder = False
+    if not is_file:
+        problem = "is a folder, not a file" if is_folder else "no such file"
         raise AssetError(path, problem, fix="check the path")
     module, name, understood = _LOADERS[suffix]
     told = {
         option: value
-        for option, value in (("up", up), ("unit", unit), ("time", time), ("variants", variants))
+        for option, value in (
+            ("up", up),
+            ("unit", unit),
+            ("time", time),
+            ("animation", animation),
+            ("variants", variants),
+        )
         if value not in (None, ())
     }
-    options = {option: value for option, value in told.items() if option in understood}
+    options: dict[str, object] = {option: value for option, value in told.items() if option in understood}
+    if "allow_outside" in understood:
+        options["allow_outside"] = allow_outside
     try:
         scene: Scene = getattr(import_module(module), name)(path, **options)
     except DoesNotFitError as error:

@@ -212,7 +212,7 @@ def hull(solids: Sequence[Solid], *, material: str | None = None) -> Solid:
     return Solid.around(solids, material)
 
 
-def closed(positions: NDArray[np.float64], triangles: NDArray[np.int32], material: str | None = None) -> Solid:
+def closed(positions: NDArray[np.floating], triangles: NDArray[np.int32], material: str | None = None) -> Solid:
     """Return the solid that a closed surface encloses.
 
     Raises
@@ -223,7 +223,7 @@ def closed(positions: NDArray[np.float64], triangles: NDArray[np.int32], materia
     return _made(positions, triangles, material)
 
 
-def _made(positions: NDArray[np.float64], triangles: NDArray[np.int32], material: str | None) -> Solid:
+def _made(positions: NDArray[np.floating], triangles: NDArray[np.int32], material: str | None) -> Solid:
     mesh = manifold3d.Mesh64(np.ascontiguousarray(positions, dtype=np.float64), triangles.astype(np.uint64))
     mesh.merge()
     made = manifold3d.Manifold(mesh)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.colour import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
 from voxrt.voxelize.material_table import MaterialTable
 from voxrt.voxelize.notes import Notes
-from voxrt.voxelize.scene import Mesh, Scene, SceneObject
+from voxrt.voxelize.paint import Coat, Paint
+from voxrt.voxelize.painted import Unfinished, finish
+from voxrt.voxelize.scene import Scene, SceneObject
+from voxrt.voxelize.stl_text import ascii_solids
 from voxrt.voxelize.weld import weld
 
 if TYPE_CHECKING:
@@ -20,11 +23,6 @@ if TYPE_CHECKING:
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-
-# A solid's first line; its name may be empty and its end may lack the name.
-_SOLID = re.compile(rb"^[ \t]*solid\b[ \t]*(?P<name>[^\r\n]*)", re.IGNORECASE | re.MULTILINE)
-# Longer words are no numbers, and would each get the longest one's room in the array.
-_VERTEX = re.compile(rb"vertex\s+(\S{1,64})\s+(\S{1,64})\s+(\S{1,64})(?!\S)", re.IGNORECASE)
 
 
 def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
@@ -52,7 +50,12 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     notes = Notes()
-    solids = [(path.stem, _binary(path, data, notes))] if _is_binary(data) else _ascii(path, data)
+    tints = None
+    if _is_binary(data):
+        corners, tints = _binary(path, data, notes)
+        solids = [(path.stem, corners)]
+    else:
+        solids = ascii_solids(path, data)
     table = MaterialTable()
     transform = scene_transform(up, unit)
     objects = []
@@ -63,8 +66,12 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         if not np.isfinite(corners).all():
             raise AssetError(path, "has a coordinate that is no number", place=f"solid {name!r}", fix="export it again")
         positions, triangles = weld(corners)
-        material = table.default(notes, len(triangles))
-        mesh = Mesh(positions, triangles, np.full(len(triangles), material, dtype=np.uint8))
+        coat = None if tints is None else _coat(tints)
+        bare = np.ones(len(triangles), dtype=np.bool_) if coat is None else coat.rows < 0
+        materials = np.zeros(len(triangles), dtype=np.uint8)
+        if bare.any():
+            materials[bare] = table.default(notes, int(bare.sum()))
+        (mesh,) = finish([Unfinished(positions, triangles, materials, coat)], table, notes)
         objects.append(SceneObject(name, mesh, transform))
     if not objects:
         raise AssetError(path, "has no triangles", fix="export it with its surface")
@@ -82,8 +89,10 @@ def _is_binary(data: bytes) -> bool:
     return not (head.lstrip().lower().startswith(b"solid") and b"\0" not in head)
 
 
-def _binary(path: Path, data: bytes, notes: Notes) -> NDArray[np.float64]:
-    """Corners, float64, shape (3 * T, 3)."""
+def _binary(
+    path: Path, data: bytes, notes: Notes
+) -> tuple[NDArray[np.float64], tuple[NDArray[np.uint8], NDArray[np.bool_]] | None]:
+    """Corners, float64, shape (3 * T, 3), and the colours of facets, where some have one."""
     if len(data) < _HEADER:
         problem = "is empty" if not data else "is too short for an STL file"
         raise AssetError(path, problem, fix="export it again")
@@ -93,30 +102,40 @@ def _binary(path: Path, data: bytes, notes: Notes) -> NDArray[np.float64]:
         raise AssetError(path, f"is cut short: {stored} of {count} triangles", fix="copy or export it again")
     notes.add("trailing-bytes", "bytes after the last triangle were ignored", len(data) - _HEADER - 50 * count)
     records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
-    # Two exporters keep a colour of 15 bits here, each in its own way; nothing tells them apart.
-    notes.add("stl-colour", "triangle attributes (colours) are not honoured", int((records["attribute"] != 0).sum()))
-    return records["corners"].reshape(-1, 3).astype(np.float64)
+    corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    return corners, _facet_colours(data[:80], records["attribute"], notes)
 
 
-def _ascii(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]]]:
-    """Each solid's name, once, and corners (float64, shape (3 * T, 3))."""
-    # `endsolid` begins no solid: the pattern wants the word at the line's beginning.
-    heads = list(_SOLID.finditer(data))
-    solids: list[tuple[str, NDArray[np.float64]]] = []
-    used: set[str] = set()
-    for head, end in zip(heads, [*(head.start() for head in heads[1:]), len(data)], strict=True):
-        stem = head["name"].decode("utf-8", errors="replace").strip() or path.stem
-        name, number = stem, 2
-        while name in used:
-            name, number = f"{stem} ({number})", number + 1
-        used.add(name)
-        body = data[head.end() : end]
-        words = _VERTEX.findall(body)
-        if len(words) % 3 or len(words) // 3 != len(re.findall(rb"\bendfacet\b", body, re.IGNORECASE)):
-            raise AssetError(path, "has a facet that is no triangle", place=f"solid {name!r}", fix="export it again")
-        try:
-            corners = np.array(words, dtype=np.bytes_).astype(np.float64).reshape(-1, 3)
-        except ValueError as error:
-            raise AssetError(path, f"has a vertex that is no number: {error}", place=f"solid {name!r}") from None
-        solids.append((name, corners))
-    return solids
+def _facet_colours(
+    header: bytes, attributes: NDArray[np.uint16], notes: Notes
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]] | None:
+    """Read colours of 15 bits: uint8 (T, 3), sRGB, and which facets have one; None where no facet has.
+
+    Materialise Magics writes COLOR= and the colour of the object into the header, and red in the lowest bits of those
+    facets that have a colour of their own, whose highest bit is clear. VisCAM and SolidView write blue in the lowest
+    bits, and set the highest bit of facets that have a colour. Source: Wikipedia, "STL (file format)".
+    """
+    low, middle, high = ((attributes >> shift & 31).astype(np.uint32) for shift in (0, 5, 10))
+    flagged = attributes >= 1 << 15
+    at = header.find(b"COLOR=")
+    if 0 <= at <= len(header) - 10:
+        colours = np.stack([low, middle, high], axis=1) * 255 // 31
+        colours[flagged] = list(header[at + 6 : at + 9])
+        return colours.astype(np.uint8), np.ones(len(flagged), dtype=np.bool_)
+    notes.add(
+        "stl-attribute",
+        "triangle attributes that are no colours were ignored",
+        int(((attributes != 0) & ~flagged).sum()),
+    )
+    if not flagged.any():
+        return None
+    return (np.stack([high, middle, low], axis=1) * 255 // 31).astype(np.uint8), flagged
+
+
+def _coat(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> Coat:
+    """Paint facets with their colours."""
+    colours, coloured = tints
+    linear = np.ones((len(colours), 3, 4), dtype=np.float32)
+    linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]
+    rows = np.where(coloured, 0, -1).astype(np.int32)
+    return Coat((Paint("facet colours"),), rows, np.zeros((len(colours), 3, 2)), linear)

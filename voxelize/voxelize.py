@@ -4,8 +4,10 @@ Each object becomes parts in grid space: its mesh, or a part for each of its col
 voxel; from there on coverage is exact (see src/triangle_coverage.h), inside is told by winding numbers
 (src/solid_fill.h), and the first object keeps a voxel.
 
-Materials: a shell voxel takes the material of the first triangle, in authored order, that covers it; the inside, which
-no ray from outside can see, that of its object's first triangle.
+Materials: a shell voxel takes the material of the first triangle, in authored order, that covers it; where the triangle
+is tinted, the one of its point nearest to the voxel's centre. The inside, which no ray from outside can see, takes that
+of its object's first triangle. Surface that is cut away is still surface to the inside: it ends there, and the voxels
+that only such surface is in are empty.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ from voxrt.voxelize.colliders import (
 )
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import DEPTH_LIMIT
-from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider
+from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider, Tints
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 if TYPE_CHECKING:
@@ -37,10 +39,20 @@ if TYPE_CHECKING:
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.scene import Collider, Scene, SceneObject
 
+    _NativeMesh = tuple[
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.uint8],
+        NDArray[np.int32],
+        NDArray[np.float32],
+        NDArray[np.uint8],
+    ]
+
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding")
+_MODES = ("surface", "exact", "winding", "open")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
+_NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
 
 
 def voxelize(
@@ -59,7 +71,9 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps shells alone.
+        ``"solid"`` fills what surfaces enclose, holes or not, but not what stands open: a connected piece of an object
+        of which one opening is larger than 15 % of its area, unless other pieces close it. ``"surface"`` keeps shells
+        alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
@@ -88,7 +102,14 @@ def voxelize(
         ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
         for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
     )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()))
+    standing_open = sum(report.mode == "open" for report in objects)
+    if standing_open:
+        parts.warn(
+            "open-surface",
+            "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
+            standing_open,
+        )
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[10])
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -113,7 +134,7 @@ class _Parts:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
-        self._meshes: list[tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]]] = []
+        self._meshes: list[_NativeMesh] = []
         self._mesh_index: dict[int, int] = {}
         self._keys: list[object] = []
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
@@ -124,8 +145,8 @@ class _Parts:
     def start_object(self) -> None:
         self._objects += 1
 
-    def warn(self, kind: str, message: str) -> None:
-        self._counts[kind, message] = self._counts.get((kind, message), 0) + 1
+    def warn(self, kind: str, message: str, count: int = 1) -> None:
+        self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def warnings(self) -> list[SceneWarning]:
         return [SceneWarning(kind, message, count) for (kind, message), count in self._counts.items()]
@@ -146,9 +167,10 @@ class _Parts:
     def add_mesh(
         self,
         key: object,
-        mesh: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]],
+        mesh: tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
         material: int,
+        tints: Tints = _NO_TINTS,
     ) -> None:
         """Add a mesh part: positions, triangles, materials. Parts whose `key` is one and the same object share them."""
         if len(mesh[1]) == 0:
@@ -158,9 +180,12 @@ class _Parts:
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
                 (
-                    np.ascontiguousarray(mesh[0], dtype=np.float64),
+                    _vertices(mesh[0], mesh[1]),
                     np.ascontiguousarray(mesh[1], dtype=np.int32),
                     np.ascontiguousarray(mesh[2], dtype=np.uint8),
+                    np.ascontiguousarray(tints.sizes, dtype=np.int32),
+                    np.ascontiguousarray(tints.places, dtype=np.float32),
+                    np.ascontiguousarray(tints.materials, dtype=np.uint8),
                 )
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
@@ -181,6 +206,18 @@ class _Parts:
         )
 
 
+def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return vertices as the native voxelizer takes them: those that no triangle uses brought in from wherever."""
+    exact = np.ascontiguousarray(positions, dtype=np.float64)
+    if triangles.min() < 0 or triangles.max() >= len(exact):
+        return exact  # which the native voxelizer refuses
+    unused = np.ones(len(exact), np.bool_)
+    unused[triangles.reshape(-1).astype(np.intp)] = False  # twice as fast as indices of 32 bits
+    if unused.any():
+        exact = np.where(unused[:, None], exact[triangles[0, 0]], exact)
+    return exact
+
+
 _Report = tuple[str, tuple[float, float, float], tuple[float, float, float]]
 
 
@@ -191,8 +228,9 @@ def _add_object(parts: _Parts, item: SceneObject, geometry: Geometry, pow2: Pow2
     mesh = item.mesh
     if colliders is None:
         materials = np.unique(mesh.materials)
-        only = int(materials[0]) if len(materials) == 1 else 0
-        parts.add_mesh(mesh, (mesh.positions, mesh.triangles, mesh.materials), item.transform, only)
+        only = int(materials[0]) if len(materials) == 1 and mesh.tints is None else 0
+        arrays = (mesh.positions, mesh.triangles, mesh.materials)
+        parts.add_mesh(mesh, arrays, item.transform, only, mesh.tints or _NO_TINTS)
         return "mesh", _ZERO, _ZERO
     material = item.collider_material
     if not item.colliders and colliders:
@@ -251,7 +289,7 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
 
 def _unreachable(scene: Scene, index: int) -> Exception:
     item = scene.objects[index]
-    points = [item.mesh.positions, item.transform]
+    points = [item.mesh.positions[item.mesh.triangles], item.transform]
     if not all(np.isfinite(values).all() for values in points):
         return AssetError(
             scene.name, "a coordinate is not a number", place=item.name, fix="repair the mesh or its transform"

@@ -6,7 +6,7 @@ octants.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -71,7 +71,8 @@ class ObjectReport:
         ``"+"``.
     mode
         How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
-        ``"winding"`` (open or self-intersecting: generalized winding number).
+        ``"winding"`` (open or self-intersecting: generalized winding number), ``"open"`` (some of it stands open, like
+        a room without a front, and has a shell alone; the rest as in ``"winding"``).
     voxels
         Voxels that ended up belonging to it, first object first.
     moved
@@ -90,8 +91,22 @@ class ObjectReport:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Voxelization:
-    """Voxels, how each object got there (authored order), and what was not honoured as it stands."""
+    """Voxels and how they came about.
+
+    Attributes
+    ----------
+    voxels
+        The solid voxels.
+    objects
+        How each object got there, in authored order.
+    warnings
+        What was not honoured as it stands.
+    seconds
+        Wall seconds by stage of the native voxelizer, in order: ``"survey"``, ``"bin"``, ``"coverage"``, ``"fill"``,
+        ``"holes"``, ``"order"``, ``"gather"``; ``src/voxelizer.h`` says what each does and what bounds it.
+    """
 
     voxels: Voxels
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...] = ()
+    seconds: dict[str, float] = field(default_factory=dict)

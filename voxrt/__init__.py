@@ -18,10 +18,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
-    from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
+    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, SimulatorError, check, compare, comparison_sheet
+    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.sim import Camera, Frame, NoSuchConfigurationError, SimulatorError, check, compare, comparison_sheet
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -40,10 +42,14 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "InteriorFit",
+    "LikenessAtDepth",
     "Material",
+    "NoSuchConfigurationError",
     "Octree",
     "OutputError",
     "Picture",
+    "Region",
     "Rom",
     "RomError",
     "Scene",
@@ -58,7 +64,10 @@ __all__ = [
     "comparison_sheet",
     "convert",
     "diff",
+    "differing_regions",
+    "draw_likeness_curve",
     "fit_grid",
+    "likeness_curve",
     "load",
     "read_any",
     "read_rom",
@@ -69,10 +78,20 @@ __all__ = [
 
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
-    "voxrt.octree": ("BOARDS", "Octree", "Rom", "RomError", "ViewerError", "diff"),
+    "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
+    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pipeline": ("BudgetFit", "BuildResult", "Picture", "build", "render", "save_picture"),
-    "voxrt.sim": ("Camera", "Frame", "SimulatorError", "check", "compare", "comparison_sheet"),
+    "voxrt.fitting": ("BudgetFit", "InteriorFit"),
+    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.sim": (
+        "Camera",
+        "Frame",
+        "NoSuchConfigurationError",
+        "SimulatorError",
+        "check",
+        "compare",
+        "comparison_sheet",
+    ),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",

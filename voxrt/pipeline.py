@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from voxrt import export, octree, sim, voxelize
+from voxrt.fitting import BudgetFit, InteriorFit, find_material, fit_budget, fit_interior
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
-from voxrt.viewpoint import aim_camera, authored_camera
-from voxrt.voxelize import AssetError
+from voxrt.sim import Light, Shading
+from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.voxelize import AssetError, SceneWarning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
-    from voxrt.voxelize import ObjectReport, SceneWarning
+    from voxrt.voxelize import Grid, ObjectReport, Scene
     from voxrt.voxelize.colliders import Geometry, Pow2
     from voxrt.voxelize.load import UpAxis
 
@@ -44,27 +45,6 @@ class Picture:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class BudgetFit:
-    """What fitting a memory to a budget took.
-
-    Attributes
-    ----------
-    words
-        The budget.
-    fit
-        What was shared and what was given up, in words and voxels.
-    psnr, ssim
-        How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
-        1 for equal pictures.
-    """
-
-    words: int
-    fit: octree.Fit
-    psnr: float
-    ssim: float
-
-
-@dataclass(frozen=True, eq=False, slots=True)
 class BuildResult:
     """What a build made.
 
@@ -72,6 +52,8 @@ class BuildResult:
     ----------
     rom
         The octree memory with its materials and its place in the scene.
+    scene
+        What the asset's file said.
     objects
         How each object was voxelized, in authored order.
     warnings
@@ -80,20 +62,31 @@ class BuildResult:
         The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
     preview
         The rendered picture, None when none was asked for.
+    interior
+        What became of hidden voxels, None when they keep their materials.
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"budget"``, ``"write"``,
-        ``"preview"``.
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
+        ``"budget"``, ``"write"``, ``"preview"``.
+    parts
+        Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
+    view, lighting
+        The author's camera and light; None where the author gave none.
     """
 
     rom: Rom
+    scene: Scene
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
     preview: Picture | None = None
+    interior: InteriorFit | None = None
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+    parts: dict[str, dict[str, float]] = field(default_factory=dict)
+    view: export.View | None = None
+    lighting: export.Lighting | None = None
 
     @property
     def solid_voxels(self) -> int:
@@ -108,17 +101,21 @@ def build(
     depth: int | None = None,
     voxel_size: float | None = None,
     fill: Literal["solid", "surface"] = "solid",
+    interior: int | str = "keep",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     up: UpAxis | None = None,
     unit: float | None = None,
     time: float | None = None,
+    animation: str | None = None,
     variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
+    colours: int = voxelize.DEFAULT_COLOURS,
     budget: int | str | None = None,
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
-    engine: Engine = "rtl",
+    engine: Engine | None = None,
     strict: bool = False,
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
@@ -138,6 +135,9 @@ def build(
         Metres a voxel.
     fill
         ``"solid"`` fills what closed surfaces enclose, ``"surface"`` keeps the shell.
+    interior
+        What becomes of voxels that no ray from outside can reach: ``"keep"`` leaves them their object's material, a
+        material's id or name gives them that one, ``"any"`` gives each whatever lets most blocks be shared.
     geometry
         ``"auto"`` takes an object's colliders where it has some, else its triangles; ``"render"`` always the
         triangles; ``"collider"`` always colliders, the bounding box where an object has none.
@@ -147,8 +147,14 @@ def build(
         The up axis and the metres per unit, for formats that do not say.
     time
         The second of its animation at which the asset is shown.
+    animation
+        Which of its animations, by name or by number counted from 0 (glTF).
     variants
         What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
+    allow_outside
+        Whether files that the asset names may stand outside its folder and the folders in it.
+    colours
+        The most materials that textures and vertex colours are reduced to, 1 … 254; uniform materials keep theirs.
     budget
         Words that the memory may take, or the name of a board that knows (:data:`voxrt.octree.BOARDS`): what is seen
         least is given up until it fits.
@@ -156,7 +162,8 @@ def build(
         How the memory's words spell a material.
     preview
         PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
-        ``NAME.preview.png`` in `output`.
+        ``NAME.preview.png`` in `output`. None takes ``"rtl"``, and ``"model"`` where the scene has a light of its own,
+        which the verilated ray tracer does not cast.
     strict
         Refuse an asset of which something is not honoured as it stands, where it would be a warning.
     threads
@@ -186,41 +193,57 @@ def build(
         yield
         seconds[name] = perf_counter() - start
 
-    if output is not None:
-        check_folder(Path(output))
     name = _text(asset.stem)
-    picture_file = None
-    if preview:
-        picture_file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
-        check_folder(picture_file.parent)
+    picture_file = _picture_file(name, output, preview)
     with stage("load"):
-        scene = voxelize.load(asset, up=up, unit=unit, time=time, variants=variants)
+        scene = voxelize.load(
+            asset,
+            up=up,
+            unit=unit,
+            time=time,
+            animation=animation,
+            variants=variants,
+            allow_outside=allow_outside,
+        )
     _refuse(asset, scene.warnings if strict else ())
     with stage("fit"):
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=voxel_size, geometry=geometry, pow2=pow2)
+    with stage("tint"):
+        scene = voxelize.tint(scene, grid, colours=colours, geometry=geometry)
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
         rom = octree.Rom(name, octree.build(voxelization.voxels, threads=threads), scene.materials, grid)
-    budget_fit = None
+    interior_fit, budget_fit = None, None
+    if interior != "keep":
+        with stage("interior"):
+            rom, interior_fit = fit_interior(rom, None if interior == "any" else find_material(asset, scene, interior))
     if budget is not None:
         with stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = _fit_to(rom, words, size, threads)
-    warnings = scene.warnings + voxelization.warnings
+            rom, budget_fit = fit_budget(rom, words, size, threads)
+    view, lighting, unseen = _authored(scene, grid)
+    warnings = scene.warnings + voxelization.warnings + unseen
+    if lighting is not None and picture_file is not None and engine == "rtl":
+        warnings += (
+            SceneWarning("light", "the scene's light is left out of the picture: the model's engine casts it"),
+        )
     _refuse(asset, warnings if strict else ())
     outputs: dict[str, Path] = {}
     if output is not None:
         settings: dict[str, str | int | float | bool | None] = {
             "fill": fill,
+            "interior": interior,
             "geometry": geometry,
             "pow2": pow2,
             "up": up,
             "unit": unit,
             "time": time,
+            "animation": animation,
             "variants": ", ".join(variants) or None,
+            "colours": colours,
         }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(
@@ -231,26 +254,78 @@ def build(
                 warnings=warnings,
                 seconds=seconds,
                 source=export.Source(_text(asset.name), settings),
+                view=view,
+                lighting=lighting,
             )
         outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
     if picture_file is not None:
         with stage("preview"):
-            camera = authored_camera(scene.viewpoint, grid, size) if scene.viewpoint else aim_camera(rom, size)
-            picture = Picture(render(rom, camera, size=size, engine=engine, threads=threads), camera, engine)
+            picture = _picture(rom, scene, lighting, size, engine=engine, threads=threads)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
-    return BuildResult(rom, voxelization.objects, warnings, outputs, picture, budget_fit, seconds)
+    return BuildResult(
+        rom,
+        scene,
+        voxelization.objects,
+        warnings,
+        outputs,
+        picture,
+        interior_fit,
+        budget_fit,
+        seconds,
+        {"voxelize": voxelization.seconds},
+        view,
+        lighting,
+    )
 
 
-def _fit_to(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
-    colours = np.array([material.colour for material in rom.materials], np.uint8)
-    fit = octree.fit(rom.octree, words, colours=colours)
-    fitted = replace(rom, octree=fit.octree)
-    camera = aim_camera(rom, size)
-    before, after = (render(r, camera, size=size, engine="model", threads=threads).colour for r in (rom, fitted))
-    psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
-    return fitted, BudgetFit(words, fit, psnr, ssim)
+def _picture_file(
+    name: str, output: str | os.PathLike[str] | None, preview: str | os.PathLike[str] | bool
+) -> Path | None:
+    """Check that the folders can be written to, and return where the preview goes; None for none."""
+    if output is not None:
+        check_folder(Path(output))
+    if not preview:
+        return None
+    file = Path(output or ".") / f"{name}.preview.png" if preview is True else Path(preview)
+    check_folder(file.parent)
+    return file
+
+
+def _picture(
+    rom: Rom,
+    scene: Scene,
+    lighting: export.Lighting | None,
+    size: tuple[int, int],
+    *,
+    engine: Engine | None,
+    threads: int,
+) -> Picture:
+    if scene.viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(scene.viewpoint, rom.grid, size)
+    else:
+        camera = aim_camera(rom, size)
+    chosen: Engine = engine or ("rtl" if lighting is None else "model")
+    cast = lighting if chosen == "model" else None
+    return Picture(render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads), camera, chosen)
+
+
+def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
+    """Return how the scene's author wants it seen, and what of that cannot be."""
+    view, lighting, unseen = None, None, []
+    if scene.viewpoint is not None:
+        try:
+            camera = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
+            view = export.View(camera.position, camera.look, camera.right, camera.up)
+        except ViewpointError as error:
+            unseen.append(SceneWarning("camera", str(error)))
+    if scene.light is not None:
+        try:
+            lighting = authored_lighting(scene.light, grid)
+        except ViewpointError as error:
+            unseen.append(SceneWarning("light", str(error)))
+    return view, lighting, tuple(unseen)
 
 
 def _refuse(asset: Path, warnings: tuple[SceneWarning, ...]) -> None:
@@ -274,6 +349,7 @@ def render(
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
     config: str = "tiny",
+    lighting: export.Lighting | None = None,
     threads: int = 0,
 ) -> Frame:
     """Render a memory.
@@ -291,6 +367,8 @@ def render(
         pixels.
     config
         The configuration of the ray tracer that ``"rtl"`` runs.
+    lighting
+        Light, mirrors and flat colour, which the model alone has; None for a light in the camera.
     threads
         Threads of the model, 0 for one a core.
 
@@ -299,7 +377,13 @@ def render(
     SimulatorError
         The engine is not in this installation, or cannot hold the memory or the camera.
     """
-    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
+    shading = Shading()
+    if lighting is not None:
+        light = Light(lighting.position, lighting.ambient) if lighting.on else None
+        shading = Shading(lighting.flat, light, lighting.bounces)
+    return sim.render(
+        rom, camera or aim_camera(rom, size), size, engine=engine, config=config, shading=shading, threads=threads
+    )
 
 
 def save_picture(colour: NDArray[np.uint8], path: Path) -> None:

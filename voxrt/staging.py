@@ -11,9 +11,10 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.blob import read_blob
 from voxrt.board.errors import Refused
-from voxrt.board.scene import Scene
+from voxrt.board.scene import Lighting, Scene
 from voxrt.board.view import Camera
-from voxrt.export import read_rom
+from voxrt.export import Blob, read_any
+from voxrt.export import Lighting as Wanted
 from voxrt.octree import RomError
 from voxrt.pipeline import PREVIEW_SIZE, build
 from voxrt.sim import frame_scene
@@ -23,17 +24,17 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from voxrt.board.scene_memory import Progress
-    from voxrt.octree import Rom
 
-_STAGES = ("load", "fit", "voxelize", "octree")
+_STAGES = ("load", "fit", "tint", "voxelize", "octree")
 
 
-def board_scene(rom: Rom) -> Scene:
-    """Give a memory as a board takes it, seen whole by its first camera."""
+def board_scene(blob: Blob) -> Scene:
+    """Give a memory as a board takes it, seen as its author wants, or whole."""
+    rom = blob.rom
     colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
     colours[: len(rom.materials)] = [material.colour for material in rom.materials]
     mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
-    camera = frame_scene(rom, PREVIEW_SIZE)
+    camera = blob.view or frame_scene(rom, PREVIEW_SIZE)
     return Scene(
         rom.name,
         rom.octree.depth,
@@ -41,7 +42,16 @@ def board_scene(rom: Rom) -> Scene:
         colours,
         mirrors,
         Camera(camera.position, camera.look, camera.right, camera.up),
+        _lighting(blob.lighting),
     )
+
+
+def _lighting(wanted: Wanted | None) -> Lighting | None:
+    if wanted is None:
+        return None
+    said = {"shadows": wanted.on, "flat": wanted.flat, "mirrors": wanted.bounces}
+    features = frozenset(name for name, on in said.items() if on)
+    return Lighting(wanted.position, wanted.ambient, wanted.bounces, features)
 
 
 def load_scene(path: Path, depth: int | None = None, progress: Progress | None = None) -> Scene:
@@ -64,13 +74,14 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     if path.suffix.lower() == ".blob":
         return read_blob(path.read_bytes())
     if path.suffix.lower() == ".mem":
-        return board_scene(read_rom(path, depth=depth)[0])
+        return board_scene(read_any(path, depth=depth)[0])
 
     def begin(stage: str) -> None:
         if progress is not None and stage in _STAGES:
             progress(stage, _STAGES.index(stage), len(_STAGES))
 
-    return board_scene(build(path, depth=depth, progress=begin).rom)
+    built = build(path, depth=depth, progress=begin)
+    return board_scene(Blob(built.rom, built.view, built.lighting))
 
 
 class BuildingReader:

@@ -11,28 +11,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.sim import Camera, frame_scene, look_at, outline
+from voxrt.export import Lighting
+from voxrt.sim import Camera, Light, frame_scene, look_at, outline
+from voxrt.sim.camera import THREE_QUARTER, eye_that_sees, focal_length
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.octree import Rom
     from voxrt.sim.camera import Triple
-    from voxrt.voxelize import Grid, Viewpoint
+    from voxrt.voxelize import Grid, PointLight, Viewpoint
 
     Vector = NDArray[np.float64]
 
-_THREE_QUARTER = np.array((-0.62, -0.55, -1.0))
-"""The look of a camera in front of a scene (its front faces +z), a little to its right and above."""
-
-_SPREAD = 0.42
-"""Tangent of half the angle of view along the longer side of the picture."""
-
-_MARGIN = 0.92
-"""The part of the picture that the scene may fill."""
-
 _REGISTER = 2**15 - 1
-_DIRECTION = 2**20 - 1
 _UP = np.array((0.0, 1.0, 0.0))
 _BACK = np.array((0.0, 0.0, -1.0))
 
@@ -74,13 +66,17 @@ def aim_camera(
         return frame_scene(rom, size)
     points = outline(rom.octree)
     if look is None or right is None or up is None:
-        sight = _THREE_QUARTER
+        sight = np.array(THREE_QUARTER)
         if position is not None:
             towards = (points.min(axis=0) + points.max(axis=0)) / 2 - np.array(position) / 16
             sight = towards if towards.any() else sight
         look, right, up = _complete(_sight(sight, look, right, up), size, look, right, up)
     if position is None:
-        position = _stand_back(16 * points, size, np.array((look, right, up), np.float64))
+        registers = np.array((look, right, up), np.float64)
+        if abs(np.linalg.det(registers)) < 1e-9:
+            raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
+        x, y, z = np.floor(16 * eye_that_sees(points, registers, size) + 0.5).astype(np.int64).tolist()
+        position = (x, y, z)
     return Camera(position, look, right, up)
 
 
@@ -113,6 +109,21 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         raise ViewpointError(f"the scene's camera: {error}") from error
 
 
+def authored_lighting(light: PointLight, grid: Grid) -> Lighting:
+    """Make the light that stands where the scene's author wants it.
+
+    Raises
+    ------
+    ViewpointError
+        It is too far away for the registers.
+    """
+    place = np.floor(16 * (np.array(light.position) - grid.origin) / grid.voxel_size + 0.5)
+    if np.abs(place).max() >= 2**31:
+        raise ViewpointError("the scene's light stands too far away; move it nearer")
+    x, y, z = place.astype(np.int64).tolist()
+    return Lighting((x, y, z), Light((x, y, z)).ambient, on=True)
+
+
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:
     """Tell the unit direction to look in: the given one, else the preferred one made square to what is given."""
     if look is not None:
@@ -128,47 +139,20 @@ def _complete(
     sight: Vector, size: tuple[int, int], look: Triple | None, right: Triple | None, up: Triple | None
 ) -> tuple[Triple, Triple, Triple]:
     """Give the missing registers the values of an upright right-handed camera that looks along `sight`."""
-    if right is not None:
-        across = _unit(right, "right")
-    elif up is not None:
-        across = _unit(np.cross(sight, up), "look x up")
-    else:
-        across = np.cross(sight, _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1]))
-        across = _unit(across, "look")
-    above = np.cross(across, sight)
-    pixel = _SPREAD / (max(size) / 2)  # the sine of one pixel, nearly
-    scale = min(_REGISTER / np.abs(sight).max(), _DIRECTION / (1 + 2 * _SPREAD))
     given = up if right is None else right
-    if given is None:
-        step = pixel * scale
-        look = None  # alone it is a direction
-    else:
-        step = float(np.linalg.norm(given))
-        scale = min(scale, step / pixel)
+    if given is None:  # look alone is a direction
+        upright = _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])
+        made = look_at(np.zeros(3), sight, size=size, up=upright)
+        return made.look, made.right, made.up
+    across = _unit(right if right is not None else np.cross(sight, given), "right" if right else "look x up")
+    above = np.cross(across, sight)
+    step = float(np.linalg.norm(given))
+    reach = min(step * focal_length(size), _REGISTER / np.abs(sight).max())
     return (
-        look or _register(sight * scale),
+        look or _register(sight * reach),
         right or _register(across * step),
         up or _register(above * step),
     )
-
-
-def _stand_back(points: Vector, size: tuple[int, int], registers: Vector) -> Triple:
-    """Place the camera (1/16 voxel) so that all `points` (N, 3) are in the picture and touch its margin.
-
-    In the frame of the registers a point p seen from q lies at (depth, column, row) = (p - q) R^-1, and is in the
-    picture when |column| <= W/2 depth and |row| <= H/2 depth: linear in q, solved side by side.
-    """
-    if abs(np.linalg.det(registers)) < 1e-9:
-        raise ViewpointError("look, right and up lie in a plane; give --position as well, or other registers")
-    depths, columns, rows = np.linalg.solve(registers.T, points.T)
-    stand = []
-    for half, sides in ((size[0] / 2, columns), (size[1] / 2, rows)):
-        half_seen = _MARGIN * max(half, 0.5)
-        low, high = np.min(half_seen * depths - sides), np.min(half_seen * depths + sides)
-        stand.append(((low + high) / (2 * half_seen), (high - low) / 2))
-    (depth_x, column), (depth_y, row) = stand
-    x, y, z = np.floor(np.array((min(depth_x, depth_y), column, row)) @ registers + 0.5).astype(np.int64).tolist()
-    return (x, y, z)
 
 
 def _unit(vector: ArrayLike, name: str) -> Vector:

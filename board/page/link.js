@@ -4,6 +4,8 @@ export const PROTOCOL = 1;
 const HEADER = 56;
 const RETRY = { first: 500, most: 5000 };
 
+const counted = (count) => (count === 0xffffffffffffffffn ? null : Number(count));
+
 export class Link extends EventTarget {
   constructor() {
     super();
@@ -68,9 +70,8 @@ export class Link extends EventTarget {
     const frame = {
       width: view.getUint16(6, true), height: view.getUint16(8, true), sequence: u32(12), length: u32(16), scene: u32(20),
       viewer: u32(24), request: u32(28), rays: u32(32), seconds: u32(36) / 1e6,
-      cycles: view.getBigUint64(40, true), words: Number(view.getBigUint64(48, true)),
+      cycles: counted(view.getBigUint64(40, true)), words: counted(view.getBigUint64(48, true)),
     };
-    frame.cycles = frame.cycles === 0xffffffffffffffffn ? null : Number(frame.cycles);
     const header = view.getUint16(4, true);
     if (frame.length !== data.byteLength - header || frame.length !== 3 * frame.width * frame.height) return;
     frame.pixels = new Uint8Array(data, header);

@@ -94,6 +94,7 @@ export class Panel {
     $("light").hidden = !device.features.includes("shadows");
     $("bounces-line").hidden = !device.features.includes("mirrors");
     this.largest = device.size;
+    this.widthStep = device.width_step;
   }
 
   // What the server shows, besides the camera.
@@ -108,7 +109,8 @@ export class Panel {
     if (document.activeElement !== $("bounces")) $("bounces").value = view.bounces;
     pressed($("nonstop"), view.nonstop);
     const now = view.size.join("x");
-    const sizes = SIZES.filter((size) => size.every((part, i) => part <= this.largest[i])).map((size) => size.join("x"));
+    const sizes = SIZES.filter((size) => size.every((part, i) => part <= this.largest[i]) && size[0] % this.widthStep === 0)
+      .map((size) => size.join("x"));
     if (!sizes.includes(now)) sizes.push(now);
     if ($("size").options.length !== sizes.length || $("size").value !== now)
       $("size").replaceChildren(...sizes.map((size) => new Option(size.replace("x", " × "), size, false, size === now)));

@@ -44,7 +44,7 @@ export class Picture {
       ["latency", this.latency === null ? "–" : `${this.latency.toFixed(0)} ms`],
       ["render time", `${(frame.seconds * 1000).toFixed(1)} ms`],
       ["cycles a pixel", frame.cycles === null ? "no clock" : (frame.cycles / frame.rays).toFixed(2)],
-      ["words a ray", (frame.words / frame.rays).toFixed(2)],
+      ["words a ray", frame.words === null ? "not counted" : (frame.words / frame.rays).toFixed(2)],
       ["picture", `${frame.width} × ${frame.height}`],
       ["frame", frame.sequence.toLocaleString() + (this.missed ? ` (${this.missed} missed)` : "")],
     ];

@@ -21,10 +21,10 @@ constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 40; // more weigh the
 
 class Merging {
 public:
-    Merging(const Memory& base, unsigned finest, const RecolourCosts& recolour, std::uint64_t fine_price,
-            std::uint64_t coarse_price)
-        : base_(base), fine_level_(finest + 2), coarse_level_(finest + 3), recolour_(recolour), fine_price_(fine_price),
-          coarse_price_(coarse_price) {}
+    Merging(const Memory& base, const Memory& hidden, unsigned finest, const RecolourCosts& recolour,
+            std::uint64_t fine_price, std::uint64_t coarse_price)
+        : base_(base), hidden_(hidden), fine_level_(finest + 2), coarse_level_(finest + 3), recolour_(recolour),
+          fine_price_(fine_price), coarse_price_(coarse_price) {}
 
     std::vector<Word> words() {
         const std::vector<std::vector<Occurrence>> levels = blocks_by_level(base_);
@@ -80,7 +80,7 @@ private:
     std::map<std::array<std::uint8_t, 64 * Words>, std::array<std::uint8_t, 64 * Words>>
     stand_ins(const std::vector<Occurrence>& blocks, unsigned level, CellsOf cells_of) {
         using Cells = std::array<std::uint8_t, 64 * Words>;
-        const std::unordered_map<Word, std::uint64_t> hidden = hidden_octants(base_, level);
+        const std::unordered_map<Word, std::uint64_t> hidden = hidden_octants(base_, hidden_, level);
         std::map<Cells, std::pair<std::uint64_t, std::uint64_t>> sums; // octants, visible ones
         for (unsigned id = 1; id < 256; ++id)
             if (used_[id]) {
@@ -166,6 +166,7 @@ private:
     }
 
     Memory base_;
+    Memory hidden_;
     unsigned fine_level_;
     unsigned coarse_level_;
     const RecolourCosts& recolour_;
@@ -181,9 +182,9 @@ private:
 
 } // namespace
 
-std::vector<Word> merge_blocks(const Memory& base, unsigned finest, const RecolourCosts& recolour,
+std::vector<Word> merge_blocks(const Memory& base, const Memory& hidden, unsigned finest, const RecolourCosts& recolour,
                                std::uint64_t fine_price, std::uint64_t coarse_price) {
-    return Merging(base, finest, recolour, fine_price, coarse_price).words();
+    return Merging(base, hidden, finest, recolour, fine_price, coarse_price).words();
 }
 
 } // namespace voxrt::octree

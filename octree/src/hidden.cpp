@@ -1,112 +1,234 @@
 #include "hidden.h"
 
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+
+#include "breadth_first.h"
+#include "brick.h"
 #include "interrupt.h"
-#include "query.h"
+#include "morton.h"
 
 namespace voxrt::octree {
 namespace {
 
-constexpr std::size_t kWalkLimit = std::size_t{1} << 22;
+constexpr Node kSolid = leaf(1);
+constexpr unsigned kBrickLevel = 3;
+constexpr unsigned kCentre = 13;
 
-bool solid(const Memory& memory, Word word, unsigned level, const std::array<std::int64_t, 3>& corner, const Box& box) {
-    const std::int64_t side = std::int64_t{1} << level;
-    for (unsigned axis = 0; axis < 3; ++axis)
-        if (corner[axis] >= box.high[axis] || corner[axis] + side <= box.low[axis])
-            return true;
-    if (is_leaf(word))
-        return material(word) != 0;
-    for (unsigned octant = 0; octant < 8; ++octant)
-        if (!solid(memory, memory.child(word, octant, level), level - 1, child_corner(corner, octant, side / 2), box))
-            return false;
-    return true;
-}
+// An octant and the 26 around it, x fastest: nodes of one level.
+using Neighbourhood = std::array<Node, 27>;
 
-class HiddenWalk {
+// A memory with all of its materials made one, so that neighbourhoods differ only where what is solid does.
+class Solidity {
 public:
-    HiddenWalk(const Memory& memory, unsigned target) : memory_(memory), target_(target) {}
+    Solidity(const Memory& memory, BlockPool& pool) : memory_(memory), pool_(pool) {}
 
-    std::unordered_map<Word, std::uint64_t> hidden;
-
-    // False where the walk grew too long.
-    bool visit(Word word, unsigned level, const std::array<std::int64_t, 3>& corner) {
-        if (is_leaf(word) || level < target_ || !worth_a_visit(word, level))
-            return true;
+    Node node(Word word, unsigned level) {
+        if (is_leaf(word))
+            return material(word) == 0 ? kEmpty : kSolid;
+        const std::uint64_t key = std::uint64_t{word} << 8 | level;
+        if (const auto known = nodes_.find(key); known != nodes_.end())
+            return known->second;
         interrupt_.poll();
-        if (++visited_ > kWalkLimit)
-            return false;
-        if (level == target_) {
-            hidden[word] += enclosed(memory_, corner, level);
-            return true;
-        }
-        const std::int64_t half = std::int64_t{1} << (level - 1);
+        Block children;
         for (unsigned octant = 0; octant < 8; ++octant)
-            if (!visit(memory_.child(word, octant, level), level - 1, child_corner(corner, octant, half)))
-                return false;
-        return true;
+            children[octant] = node(memory_.child(word, octant, level), level - 1);
+        return nodes_[key] = pool_.intern(children);
     }
 
 private:
-    // Whether a block of the target level that is solid throughout lies in this one.
-    bool worth_a_visit(Word word, unsigned level) {
-        const std::uint64_t key = std::uint64_t{word} << 8 | level;
-        if (const auto known = worth_.find(key); known != worth_.end())
-            return known->second;
-        bool worth = level == target_;
-        for (unsigned octant = 0; octant < 8; ++octant) {
-            const Word child = memory_.child(word, octant, level);
-            if (level == target_)
-                worth = worth && full(child, level - 1);
-            else
-                worth = worth || (!is_leaf(child) && worth_a_visit(child, level - 1));
-        }
-        worth_.emplace(key, worth);
-        return worth;
-    }
-
-    // Target levels lie two or three above the leaves, so this needs no memo.
-    bool full(Word word, unsigned level) const {
-        if (is_leaf(word))
-            return word != kEmpty;
-        for (unsigned octant = 0; octant < 8; ++octant)
-            if (!full(memory_.child(word, octant, level), level - 1))
-                return false;
-        return true;
-    }
-
     Memory memory_;
-    unsigned target_;
-    std::unordered_map<std::uint64_t, bool> worth_;
-    std::size_t visited_ = 0;
+    BlockPool& pool_;
+    std::unordered_map<std::uint64_t, Node> nodes_;
+    Interrupt interrupt_;
+};
+
+// The solid voxels of a brick and of one voxel around it: a row along z for each (x, y), bit z + 1 of it for voxel z.
+class Halo {
+public:
+    Halo(const BlockPool& pool, const Neighbourhood& around, unsigned level) : pool_(pool), side_(1 << level) {
+        for (unsigned i = 0; i < 27; ++i)
+            paint(around[i], level,
+                  {(static_cast<int>(i % 3) - 1) * side_, (static_cast<int>(i / 3 % 3) - 1) * side_,
+                   (static_cast<int>(i / 9) - 1) * side_});
+    }
+
+    // Bit z + 1 of element 8 * x + y: voxel (x, y, z) of the brick and all around it are solid.
+    std::array<std::uint16_t, 64> interior() const {
+        std::array<std::uint16_t, kRows> z_done;
+        for (unsigned i = 0; i < kRows; ++i)
+            z_done[i] = rows_[i] & rows_[i] << 1 & rows_[i] >> 1;
+        std::array<std::uint16_t, kRows> y_done{};
+        for (int x = 0; x < side_ + 2; ++x)
+            for (int y = 1; y <= side_; ++y)
+                y_done[row(x, y)] = z_done[row(x, y - 1)] & z_done[row(x, y)] & z_done[row(x, y + 1)];
+        std::array<std::uint16_t, 64> result{};
+        for (int x = 0; x < side_; ++x)
+            for (int y = 0; y < side_; ++y)
+                result[static_cast<std::size_t>(8 * x + y)] =
+                    y_done[row(x, y + 1)] & y_done[row(x + 1, y + 1)] & y_done[row(x + 2, y + 1)];
+        return result;
+    }
+
+private:
+    static constexpr std::size_t kRows = 100;
+
+    static std::size_t row(int x, int y) { return static_cast<std::size_t>(10 * x + y); }
+
+    // `corner` counts from the brick's lowest voxel.
+    void paint(Node node, unsigned level, const std::array<int, 3>& corner) {
+        if (node == kEmpty)
+            return;
+        const int side = 1 << level;
+        std::array<int, 3> low;
+        std::array<int, 3> high;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            low[axis] = std::max(corner[axis], -1) + 1;
+            high[axis] = std::min(corner[axis] + side, side_ + 1) + 1;
+            if (low[axis] >= high[axis])
+                return;
+        }
+        if (is_leaf(node)) {
+            const auto run = static_cast<std::uint16_t>((1u << high[2]) - (1u << low[2]));
+            for (int x = low[0]; x < high[0]; ++x)
+                for (int y = low[1]; y < high[1]; ++y)
+                    rows_[row(x, y)] |= run;
+            return;
+        }
+        for (int octant = 0; octant < 8; ++octant)
+            paint(pool_[node][static_cast<std::size_t>(octant)], level - 1,
+                  {corner[0] + (octant & 1) * side / 2, corner[1] + (octant >> 1 & 1) * side / 2,
+                   corner[2] + (octant >> 2) * side / 2});
+    }
+
+    const BlockPool& pool_;
+    int side_;
+    std::array<std::uint16_t, kRows> rows_{};
+};
+
+class HiddenFinder {
+public:
+    explicit HiddenFinder(const BlockPool& solid) : solid_(solid), cache_(kCacheEntries) {}
+
+    std::vector<Word> words(Node root, unsigned depth) {
+        Neighbourhood world;
+        world.fill(kEmpty);
+        world[kCentre] = root;
+        return breadth_first_words(pool_, visit(world, depth));
+    }
+
+private:
+    struct Entry {
+        Neighbourhood around{};
+        unsigned level = 0; // 0 marks a free entry
+        Node node = 0;
+    };
+    static constexpr unsigned kCacheBits = 15;
+    static constexpr std::size_t kCacheEntries = std::size_t{1} << kCacheBits;
+
+    Node visit(const Neighbourhood& around, unsigned level) {
+        if (around[kCentre] == kEmpty)
+            return kEmpty;
+        if (std::all_of(around.begin(), around.end(), [](Node node) { return node == kSolid; }))
+            return kSolid;
+        interrupt_.poll();
+        Entry& entry = cache_[slot_of(around, level)];
+        if (entry.level == level && entry.around == around)
+            return entry.node;
+        Node node;
+        if (level <= kBrickLevel) {
+            node = brick(Halo(solid_, around, level).interior(), level);
+        } else {
+            Block children;
+            for (unsigned octant = 0; octant < 8; ++octant)
+                children[octant] = visit(around_child(around, octant), level - 1);
+            node = pool_.intern(children);
+        }
+        entry = {around, level, node}; // the recursion may have used the entry; the last to finish keeps it
+        return node;
+    }
+
+    // Along an axis, the children of three octants count -1 ... 4 from the first child of the middle one, 0 and 1.
+    Neighbourhood around_child(const Neighbourhood& around, unsigned octant) const {
+        Neighbourhood result;
+        for (unsigned i = 0; i < 27; ++i) {
+            const unsigned x = i % 3 + (octant & 1) + 1;
+            const unsigned y = i / 3 % 3 + (octant >> 1 & 1) + 1;
+            const unsigned z = i / 9 + (octant >> 2) + 1;
+            const Node parent = around[x / 2 + 3 * (y / 2) + 9 * (z / 2)];
+            result[i] = is_leaf(parent) ? parent : solid_[parent][(x & 1) | (y & 1) << 1 | (z & 1) << 2];
+        }
+        return result;
+    }
+
+    Node brick(const std::array<std::uint16_t, 64>& interior, unsigned level) {
+        std::uint64_t mask[8] = {};
+        for (unsigned x = 0; x < 8; ++x)
+            for (unsigned y = 0; y < 8; ++y)
+                for (unsigned row = interior[8 * x + y] >> 1; row != 0; row &= row - 1) {
+                    const unsigned z = static_cast<unsigned>(std::countr_zero(row));
+                    const unsigned code = spread(x) | spread(y) << 1 | spread(z) << 2;
+                    mask[code / 64] |= std::uint64_t{1} << (code % 64);
+                }
+        switch (level) {
+        case 1:
+            return bricks_.from_mask8(static_cast<std::uint8_t>(mask[0]), 1);
+        case 2:
+            return bricks_.from_mask64(mask[0], 1);
+        default:
+            return bricks_.from_mask(mask, 1);
+        }
+    }
+
+    // Bit k of three at bit 3k.
+    static constexpr unsigned spread(unsigned value) { return (value & 1) | (value & 2) << 2 | (value & 4) << 4; }
+
+    static std::size_t slot_of(const Neighbourhood& around, unsigned level) {
+        std::uint64_t hash = level;
+        for (const Node node : around) {
+            hash = (hash ^ node) * 0x9E3779B97F4A7C15u;
+            hash ^= hash >> 32;
+        }
+        return static_cast<std::size_t>(hash * 0x9E3779B97F4A7C15u >> (64 - kCacheBits));
+    }
+
+    const BlockPool& solid_;
+    BlockPool pool_;
+    BrickBuilder bricks_{pool_};
+    std::vector<Entry> cache_;
     Interrupt interrupt_;
 };
 
 } // namespace
 
-bool enclosed(const Memory& memory, const std::array<std::int64_t, 3>& corner, unsigned level) {
-    const std::int64_t side = std::int64_t{1} << level;
-    const std::int64_t world = std::int64_t{1} << memory.depth;
-    const auto is_solid = [&](const Box& box) { return solid(memory, memory.root(), memory.depth, {0, 0, 0}, box); };
-    const Box octant{corner, {corner[0] + side, corner[1] + side, corner[2] + side}};
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        if (corner[axis] == 0 || corner[axis] + side == world)
-            return false;
-        Box layer = octant;
-        layer.high[axis] = layer.low[axis]--;
-        if (!is_solid(layer))
-            return false;
-        layer.low[axis] += side + 1;
-        layer.high[axis] += side + 1;
-        if (!is_solid(layer))
-            return false;
-    }
-    return is_solid(octant);
+std::vector<Word> hidden_voxels(const Memory& memory) {
+    BlockPool solid;
+    const Node root = Solidity(memory, solid).node(memory.root(), memory.depth);
+    return HiddenFinder(solid).words(root, memory.depth);
 }
 
-std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, unsigned level) {
-    HiddenWalk walk(memory, level);
-    if (!walk.visit(memory.root(), memory.depth, {0, 0, 0}))
-        walk.hidden.clear();
-    return std::move(walk.hidden);
+std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, const Memory& hidden, unsigned level) {
+    std::unordered_map<std::uint64_t, std::uint64_t> pairs{{std::uint64_t{memory.root()} << 32 | hidden.root(), 1}};
+    for (unsigned above = memory.depth; above > level; --above) {
+        std::unordered_map<std::uint64_t, std::uint64_t> below;
+        for (const auto& [pair, octants] : pairs) {
+            const Word word = static_cast<Word>(pair >> 32);
+            const Word behind = static_cast<Word>(pair);
+            if (is_leaf(word) || behind == kEmpty)
+                continue;
+            for (unsigned octant = 0; octant < 8; ++octant) {
+                const Word child = is_leaf(behind) ? behind : hidden.child(behind, octant, above);
+                below[std::uint64_t{memory.child(word, octant, above)} << 32 | child] += octants;
+            }
+        }
+        pairs = std::move(below);
+    }
+    std::unordered_map<Word, std::uint64_t> result;
+    for (const auto& [pair, octants] : pairs)
+        if (const Word behind = static_cast<Word>(pair); is_leaf(behind) && behind != kEmpty)
+            result[static_cast<Word>(pair >> 32)] += octants;
+    return result;
 }
 
 } // namespace voxrt::octree

@@ -1,19 +1,24 @@
-// Blocks that no ray from outside can reach.
+// Which voxels no ray from outside can reach.
 #pragma once
 
 #include <unordered_map>
+#include <vector>
 
 #include "memory.h"
 
 namespace voxrt::octree {
 
-/// How many octants of side 2**level hold a block that is solid throughout and has nothing but solid voxels at its six
-/// faces, by block. Walks the octants around such blocks, one by one; gives up with an empty answer after 2**22 of
-/// them.
-std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, unsigned level);
+/// The memory of the hidden voxels, material 1 each: those that are solid, as are all 26 around them, inside the world.
+///
+/// A ray crosses one plane at a time, so its first solid voxel shares a face with an empty one. The voxels at edges and
+/// corners count too since a camera may stand on an edge or a corner of an empty voxel, and looks into what lies there.
+///
+/// Cost: octants at the surface of what is solid, and blocks; never volume. Neighbourhoods met before are looked up in
+/// a cache of bounded size. The GIL must not be held.
+std::vector<Word> hidden_voxels(const Memory& memory);
 
-/// Whether the octant at `corner` of side 2**level and the layer of voxels at its six faces are solid; an octant at the
-/// edge of the world is not.
-bool enclosed(const Memory& memory, const std::array<std::int64_t, 3>& corner, unsigned level);
+/// How many octants of side 2**level hold a block all of whose voxels are solid in `hidden`, by block. Linear in the
+/// pairs of blocks that lie in one place.
+std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, const Memory& hidden, unsigned level);
 
 } // namespace voxrt::octree

@@ -1,27 +1,25 @@
-// Lets Ctrl-C through while the GIL is released.
+// Lets whoever waits for long work stop it.
 #pragma once
 
 #include <cstdint>
 
-#include <nanobind/nanobind.h>
-
 namespace voxrt::octree {
 
-/// From the thread that Python called, without the GIL: asks for signals and throws what their handlers raised.
+/// Long work calls `poll` for each of its small steps and `check` for each large one; both call `hook` now and then,
+/// which ends the work by throwing. The Python module's hook lets Ctrl-C through; without one nothing is asked.
 class Interrupt {
 public:
+    /// For the whole process; set it before the first work begins. Called from the thread that asked for the work.
+    static inline void (*hook)() = [] {};
+
     /// Once a small unit of work: every 2**16 calls count.
     void poll() {
         if ((++calls_ & 0xFFFF) == 0)
-            check();
+            hook();
     }
 
     /// Once a large unit of work.
-    static void check() {
-        nanobind::gil_scoped_acquire gil;
-        if (PyErr_CheckSignals() != 0)
-            throw nanobind::python_error();
-    }
+    static void check() { hook(); }
 
 private:
     std::uint32_t calls_ = 0;

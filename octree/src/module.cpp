@@ -17,8 +17,12 @@
 #include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
+#include "hidden.h"
+#include "interior.h"
+#include "interrupt.h"
 #include "leaves.h"
 #include "query.h"
+#include "regions.h"
 #include "surface.h"
 #include "validate.h"
 
@@ -220,6 +224,24 @@ bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth)
     return {found.appeared, found.vanished, found.recoloured, bounds};
 }
 
+// Bounds (x, y, z of the lowest voxel, then of the end) and counts (appeared, vanished, recoloured), a row a region.
+auto bind_differing_regions(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
+    const Memory a = memory_of(first, depth);
+    const Memory b = memory_of(second, depth);
+    std::vector<std::int64_t> bounds;
+    std::vector<std::uint64_t> counts;
+    {
+        nb::gil_scoped_release release;
+        for (const Region& region : differing_regions(a, b)) {
+            bounds.insert(bounds.end(), region.bounds.low.begin(), region.bounds.low.end());
+            bounds.insert(bounds.end(), region.bounds.high.begin(), region.bounds.high.end());
+            counts.insert(counts.end(), {region.appeared, region.vanished, region.recoloured});
+        }
+    }
+    const std::size_t regions = counts.size() / 3;
+    return nb::make_tuple(to_numpy(std::move(bounds), regions, 6), to_numpy(std::move(counts), regions, 3));
+}
+
 auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
     std::vector<Word> coarse;
@@ -233,17 +255,18 @@ auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
 }
 
 auto bind_merge_blocks(
-    const Vector<Word>& words, unsigned depth, unsigned finest,
+    const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
     const nb::ndarray<const std::uint16_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>& costs,
     std::uint64_t fine_price, std::uint64_t coarse_price) {
     const Memory memory = memory_of(words, depth);
+    const Memory behind = memory_of(hidden, depth);
     require(std::max(fine_price, coarse_price) <= std::uint64_t{1} << 60, "the price is above 2**60");
     auto recolour = std::make_unique<RecolourCosts>();
     std::copy_n(costs.data(), 256 * 256, (*recolour)[0].data());
     std::vector<Word> merged;
     {
         nb::gil_scoped_release release;
-        merged = merge_blocks(memory, finest, *recolour, fine_price, coarse_price);
+        merged = merge_blocks(memory, behind, finest, *recolour, fine_price, coarse_price);
     }
     return words_to_numpy(std::move(merged));
 }
@@ -255,6 +278,45 @@ std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& 
     nb::gil_scoped_release release;
     const SurfaceChange change = surface_change(a, b);
     return {change.surface, change.changed};
+}
+
+auto bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    std::vector<Word> hidden;
+    {
+        nb::gil_scoped_release release;
+        hidden = hidden_voxels(memory);
+    }
+    return words_to_numpy(std::move(hidden));
+}
+
+auto bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, std::uint8_t material) {
+    const Memory memory = memory_of(words, depth);
+    const Memory behind = memory_of(hidden, depth);
+    std::vector<Word> filled;
+    {
+        nb::gil_scoped_release release;
+        filled = fill_hidden(memory, behind, material);
+    }
+    return words_to_numpy(std::move(filled));
+}
+
+auto bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    const Memory behind = memory_of(hidden, depth);
+    std::vector<Word> shared;
+    {
+        nb::gil_scoped_release release;
+        shared = share_hidden(memory, behind);
+    }
+    return words_to_numpy(std::move(shared));
+}
+
+// Lets Ctrl-C through, from the thread that Python called.
+void check_signals() {
+    nb::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0)
+        throw nb::python_error();
 }
 
 // A LeafWalk with the words that it reads.
@@ -292,6 +354,7 @@ private:
 
 NB_MODULE(_native, m) {
     using namespace voxrt::octree;
+    Interrupt::hook = &check_signals;
     m.def("build", &bind_build, "depth"_a, "brick_codes"_a.noconvert(), "brick_masks"_a.noconvert(),
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
           "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
@@ -304,10 +367,14 @@ NB_MODULE(_native, m) {
     m.def("solid_bounds", &bind_solid_bounds, "words"_a.noconvert(), "depth"_a);
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
-    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "depth"_a, "finest"_a, "costs"_a.noconvert(),
-          "fine_price"_a, "coarse_price"_a);
+    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
+          "costs"_a.noconvert(), "fine_price"_a, "coarse_price"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
+    m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);
+    m.def("share_hidden", &bind_share_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

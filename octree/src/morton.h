@@ -16,4 +16,14 @@ constexpr std::uint32_t compact_bits(std::uint64_t code) {
     return static_cast<std::uint32_t>(code);
 }
 
+/// Bit k of `value` (16 bits) at bit 3k.
+constexpr std::uint64_t spread_bits(std::uint32_t value) {
+    std::uint64_t code = value & 0xFFFFu;
+    code = (code | code << 16) & 0x00FF0000FF0000FFu;
+    code = (code | code << 8) & 0xF00F00F00F00F00Fu;
+    code = (code | code << 4) & 0x30C30C30C30C30C3u;
+    code = (code | code << 2) & 0x9249249249249249u;
+    return code;
+}
+
 } // namespace voxrt::octree

@@ -27,14 +27,15 @@ bool exposed(const Neighbourhood& cells, std::size_t i) {
 
 class SurfaceComparison {
 public:
-    SurfaceComparison(const Memory& first, const Memory& second) : first_(first), second_(second) {}
+    SurfaceComparison(const Memory& first, const Memory& hidden, const Memory& second)
+        : first_(first), hidden_(hidden), second_(second) {}
 
     SurfaceChange result{0, 0};
 
-    // `word` is the octant of `first` at `corner`, or a leaf that holds all of it.
-    void visit(Word word, unsigned level, const std::array<std::int64_t, 3>& corner) {
+    // `word` and `behind` are the octants of `first` and of its hidden voxels at `corner`, or leaves that hold them.
+    void visit(Word word, Word behind, unsigned level, const std::array<std::int64_t, 3>& corner) {
         interrupt_.poll();
-        if (word == kEmpty || (is_leaf(word) && enclosed(first_, corner, level)))
+        if (word == kEmpty || (is_leaf(behind) && behind != kEmpty))
             return;
         if (level <= 3) {
             compare(corner, std::int64_t{1} << level);
@@ -42,7 +43,8 @@ public:
         }
         const std::int64_t half = std::int64_t{1} << (level - 1);
         for (unsigned octant = 0; octant < 8; ++octant)
-            visit(is_leaf(word) ? word : first_.child(word, octant, level), level - 1,
+            visit(is_leaf(word) ? word : first_.child(word, octant, level),
+                  is_leaf(behind) ? behind : hidden_.child(behind, octant, level), level - 1,
                   child_corner(corner, octant, half));
     }
 
@@ -64,6 +66,7 @@ private:
     }
 
     Memory first_;
+    Memory hidden_;
     Memory second_;
     Neighbourhood a_{};
     Neighbourhood b_{};
@@ -75,8 +78,10 @@ private:
 SurfaceChange surface_change(const Memory& first, const Memory& second) {
     if (first.depth != second.depth)
         throw std::invalid_argument("octrees of different depths cannot be compared voxel by voxel");
-    SurfaceComparison comparison(first, second);
-    comparison.visit(first.root(), first.depth, {0, 0, 0});
+    const std::vector<Word> words = hidden_voxels(first);
+    const Memory hidden{words.data(), words.size(), first.depth};
+    SurfaceComparison comparison(first, hidden, second);
+    comparison.visit(first.root(), hidden.root(), first.depth, {0, 0, 0});
     return comparison.result;
 }
 

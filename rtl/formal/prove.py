@@ -20,6 +20,7 @@ PROOFS = {
     "voxrt_fifo": ("prove", 4),
     "voxrt_pixel_buffer": ("bmc", 15),
     "voxrt_pixel_packer": ("bmc", 9),
+    "voxrt_registers": ("bmc", 8),
 }
 
 # What a module is made of.
@@ -41,8 +42,11 @@ prep -top {name}_properties -flatten
 
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
-    parts = [name, *PARTS.get(name, ())]
-    files = [RTL / "voxrt_pkg.sv", *(RTL / f"{part}.sv" for part in parts), FORMAL / f"{name}_properties.sv"]
+    generated = RTL / "generated"
+    own = [RTL / f"{part}.sv" for part in (name, *PARTS.get(name, ()))]
+    own = [RTL / "voxrt_pkg.sv", *own, generated / f"{name}_pkg.sv", generated / f"{name}.sv"]
+    files = [path for path in own if path.exists()]
+    files.append(FORMAL / f"{name}_properties.sv")
     sources = " ".join(path.name for path in files)
     job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
     with tempfile.TemporaryDirectory() as folder:

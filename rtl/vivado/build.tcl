@@ -5,7 +5,8 @@
 # NOT RUN: written without Vivado at hand, from its documentation. The core that it instantiates is proven by simulation;
 # this script is not. Pictures go by VDMA into the processor's memory, as in the original; HDMI is not part of it.
 #
-# Addresses: 0x43C0_0000 registers (2 KiB), 0x4200_0000 octree memory (128 KiB), 0x4300_0000 VDMA.
+# Addresses: 0x43C0_0000 registers (2 KiB), 0x4200_0000 octree memory (256 KiB: ranges are powers of
+# two, and the root makes it a word more than 128 KiB), 0x4300_0000 VDMA.
 
 set here [file dirname [file normalize [info script]]]
 set rtl [file dirname $here]
@@ -34,7 +35,8 @@ create_bd_cell -type ip -vlnv xilinx.com:ip:axi_vdma vdma
 set_property -dict [list \
   CONFIG.c_include_mm2s 0 \
   CONFIG.c_include_s2mm 1 \
-  CONFIG.c_m_axis_s2mm_tdata_width 32 \
+  CONFIG.c_s_axis_s2mm_tdata_width 32 \
+  CONFIG.c_m_axi_s2mm_data_width 64 \
   CONFIG.c_use_s2mm_fsync 2 \
   CONFIG.c_num_fstores 3] [get_bd_cells vdma]
 
@@ -48,7 +50,7 @@ connect_bd_net [get_bd_pins ps/FCLK_CLK0] [get_bd_pins vdma/s_axis_s2mm_aclk]
 
 foreach {segment offset range} {
   core/s_axil 0x43C00000 4K
-  memory/S_AXI 0x42000000 128K
+  memory/S_AXI 0x42000000 256K
   vdma/S_AXI_LITE 0x43000000 64K
 } {
   set mapped [get_bd_addr_segs -of_objects [get_bd_addr_spaces ps/Data] -filter "NAME =~ *[lindex [split $segment /] 0]*"]

@@ -13,7 +13,7 @@ from stand_ins.browser import chromium
 
 from voxrt.board.server import FrameServer, Listening
 from voxrt.board.show import Program
-from voxrt.export import write_rom
+from voxrt.export import Blob, write_rom
 from voxrt.octree import Octree, Rom
 from voxrt.sim import look_at, pixel_directions
 from voxrt.sim.device import ModelDevice
@@ -76,7 +76,7 @@ def shown(server, browser):
 
 
 def test_page(tmp_path):
-    first = board_scene(rom_of("first", worlds.boxes(4, 9, 3), 4))
+    first = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
     still = "document.querySelector('#overlay').innerText.includes('still')"
     with chromium() as browser, serving(first) as server:
         browser.open(server.url)
@@ -133,7 +133,7 @@ def test_page(tmp_path):
 
 
 def test_the_board_goes_away_and_comes_back():
-    scene = board_scene(rom_of("first", worlds.boxes(4, 9, 3), 4))
+    scene = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
     with chromium((420, 800), dark=False) as browser:
         with serving(scene) as server:
             port = server.port

@@ -1,7 +1,9 @@
-"""The driver of the board, register by register, against a stand-in with the exact model inside."""
+"""The driver of the board, register by register, against a stand-in with the verilated core inside."""
 
 from __future__ import annotations
 
+import json
+import re
 import runpy
 from dataclasses import replace
 from pathlib import Path
@@ -10,20 +12,23 @@ import numpy as np
 import pytest
 from oracles import worlds
 from oracles.cuts import memory_of
-from stand_ins.pynq import Core, install
+from stand_ins.pynq import BASE, Core, install
 
 from voxrt.board import register_device
+from voxrt.board import vdma as vdma_module
 from voxrt.board.errors import DeviceError, Refused
-from voxrt.board.pynq_device import open_pynq
+from voxrt.board.pynq_device import PARTS, open_pynq
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import Camera, View
+from voxrt.board.view_check import check_view
 from voxrt.board.viewpoint import face_world
 from voxrt.sim.device import ModelDevice
 
 SIZE = (64, 48)
-GENERATED = Path(__file__).parents[2] / "rtl" / "generated" / "voxrt_registers.py"
+RTL = Path(__file__).parents[2] / "rtl"
+GENERATED = RTL / "generated" / "voxrt_registers.py"
 
 
 def scene_of(seed, depth=3):
@@ -36,12 +41,17 @@ def ignore(_stage, _done, _total):
     pass
 
 
-def test_frames(monkeypatch):
-    core = Core()
-    channel = install(monkeypatch, core)
+@pytest.fixture
+def core():
+    pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
+    return Core()
+
+
+def test_frames(monkeypatch, core):
+    vdma = install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
-    assert device.identity.capacity == 513
-    assert (device.identity.depth, device.identity.position_limit) == (10, 1 << 16)
+    assert device.identity.capacity == 16377  # what is mapped, in whole blocks
+    assert (device.identity.depth, device.identity.position_limit) == (16, 1 << 21)
     memory, model = SceneMemory(device), ModelDevice()
     for seed in (1, 2):
         scene = scene_of(seed)
@@ -52,46 +62,85 @@ def test_frames(monkeypatch):
             frame, expected = device.frame(view), model.frame(view)
             assert (frame.colour == expected.colour).all()
             assert len(np.unique(frame.colour.reshape(-1, 3), axis=0)) > 4
-            assert (frame.counters.rays, frame.counters.cycles) == (size[0] * size[1], 3 * size[0] * size[1])
-    assert channel.kept == 0
-    assert device.registers()["size"] == 32 | 24 << 16
+            assert frame.counters.rays == size[0] * size[1]
+            assert frame.counters.rays < frame.counters.words_read <= frame.counters.cycles
+            assert len(vdma.memory) == 1
+    registers = device.registers()
+    assert registers["size"] == 32 | 24 << 16
+    assert registers["position[0]"] == view.camera.position[0] & 0xFFFFFFFF
     device.close()
-    assert core.values["control"] == 4
+    assert device.registers()["control"] == 4
+    assert vdma.memory == {}
 
 
-def test_faults(monkeypatch):
-    core = Core()
-    install(monkeypatch, core)
+def test_faults(monkeypatch, core):
+    vdma = install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
     memory = SceneMemory(device)
     memory.swap(scene_of(1), ignore)
     view = View(Camera((-20, 5, 900), (0, 0, -90), (1, 0, 0), (0, 1, 0)), SIZE)
-    core.errors = 1 << 8 | 1 << 9
-    with pytest.raises(DeviceError, match="met a direction overflow and a bad pointer"):
+    good = device.frame(view).colour
+    with pytest.raises(DeviceError, match="met a direction overflow;"):
+        device.frame(replace(view, camera=replace(view.camera, right=(32767, 0, 0), up=(32767, 0, 0))))
+    device.write_memory(0, np.array([7], dtype=np.uint32))
+    with pytest.raises(DeviceError, match="met a bad pointer"):
         device.frame(view)
-    core.errors = 0
-    device.frame(view)
-    with pytest.raises(Refused, match="holds 513"):
-        memory.swap(replace(scene_of(1), words=np.full(521, 0xFFFFFF01, dtype=np.uint32)), ignore)
+    device.write_memory(0, np.array([1], dtype=np.uint32))
+    with pytest.raises(Refused, match="holds 16377"):
+        memory.swap(replace(scene_of(1), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
     with pytest.raises(DeviceError, match="an octree at word 8"):
         device.select_scene(8, 3)
-    monkeypatch.setattr(register_device, "_FRAME_SECONDS", 0.0)
-    core.hangs = True
-    with pytest.raises(DeviceError, match="the frame does not end"):
+    core.vdma_errors = 1 << 8
+    with pytest.raises(DeviceError, match="the VDMA met a line that ended too early"):
         device.frame(view)
-    core.hangs = False
-    monkeypatch.undo()
-    device.frame(view)
+    core.vdma_errors = 0
+    assert (device.frame(view).colour == good).all()
+    with monkeypatch.context() as patch:
+        patch.setattr(register_device, "_STUCK_SECONDS", 0.0)
+        core.hangs = True
+        with pytest.raises(DeviceError, match="the frame does not end: no pixel came"):
+            device.frame(view)
+        core.hangs = False
+    assert (device.frame(view).colour == good).all()
+    with monkeypatch.context() as patch:
+        patch.setattr(vdma_module, "_SECONDS", 0.0)
+        patch.setattr(vdma, "tick", lambda: core.run(100))  # the channel lets the frame go by
+        with pytest.raises(DeviceError, match="the VDMA did not answer"):
+            device.frame(view)
+    assert (device.frame(view).colour == good).all()
 
 
-def test_other_hardware(monkeypatch):
+def test_widths_that_the_vdma_cannot_write(monkeypatch, core):
+    install(monkeypatch, core)
+    device = open_pynq("voxrt.bit")
+    SceneMemory(device).swap(scene_of(1), ignore)
+    view = View(face_world(3, SIZE), SIZE)
+    check_view(view, device.identity)
+    for columns in (1, 4, 44, 62, 63):
+        with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, as PYNQ"):
+            check_view(replace(view, size=(columns, 48)), device.identity)
+
+
+def test_other_hardware(monkeypatch, core):
     with pytest.raises(DeviceError, match="this machine has no PYNQ"):
         open_pynq("voxrt.bit")
-    install(monkeypatch, Core(identity=7))
-    with pytest.raises(DeviceError, match="no voxrt ray tracer answers"):
-        open_pynq("voxrt.bit")
+    install(monkeypatch, core)
     with pytest.raises(DeviceError, match="cannot be opened"):
         open_pynq("missing")
+    core.identity = 7
+    with pytest.raises(DeviceError, match="no voxrt ray tracer answers"):
+        open_pynq("voxrt.bit")
+
+
+def test_the_block_design_has_these_names():
+    design = (RTL / "vivado" / "build.tcl").read_text()
+    cells = re.findall(r"create_bd_cell .* (\w+)$", design, re.MULTILINE)
+    assert set(PARTS) < set(cells)
+    for name, base in BASE.items():
+        assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
+    mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
+    blocks = json.loads((RTL / "configurations.json").read_text())["z1"]["BlockBits"]
+    assert mapped >= 4 * (1 + (8 << blocks))
 
 
 def test_the_map_is_the_generated_one():

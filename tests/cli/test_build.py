@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 from voxrt.cli.results import BuildReport
+from voxrt.voxelize import DEFAULT_COLOURS
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -64,11 +65,11 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
         assert result[key] == manifest[key], key
     assert report.words == 1 + 8 * report.blocks == len((folder / "out/house.mem").read_text().split())
     assert [material.name for material in report.materials[1:]] == ["timber", "glass", "brick", "plaster", "tiles"]
-    assert list(report.seconds) == ["load", "fit", "voxelize", "octree", "write", "preview"]
+    assert list(report.seconds) == ["load", "fit", "tint", "voxelize", "octree", "write", "preview"]
     assert report.render is not None
     assert report.render.rays == 640 * 480
     assert report.render.cycles is None
-    assert report.render.words_per_ray == pytest.approx(report.render.words_read / report.render.rays)
+    assert report.render.words_per_ray is None
 
 
 def test_without_preview_render_is_null(voxrt):
@@ -135,6 +136,46 @@ def test_options_reach_their_stage(voxrt, folder):
     exact = json.loads(voxrt("build", "dog.usda", "--json", "--pow2", "none").out)
     assert rounded["voxels"] > exact["voxels"]
     assert rounded["words"] < exact["words"]
+
+
+def test_interiors_are_made_what_is_asked(voxrt, folder):
+    """A cube of 16 voxels: its shell is brick, which none of its inside need be."""
+
+    def built(*options: str) -> dict:
+        finished = voxrt("build", "cube.obj", "--depth", "4", "--json", *options)
+        assert finished.code == 0, finished.err
+        return json.loads(finished.out)
+
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+    text += "".join(
+        f"usemtl {name}\nf {' '.join(map(str, face))}\n"
+        for name, face in zip(["brick", "slate", *["brick"] * 4], faces, strict=True)
+    )
+    (folder / "cube.obj").write_text(text)
+    kept = built()
+    assert kept["interior"] is None
+    for option, number in (("slate", 2), ("2", 2), ("brick", 1)):
+        made = built("--interior", option, "--profile")
+        assert made["interior"] == {"material": number, "hidden": 14**3, "words_before": kept["words"]}
+        assert made["seconds"]["interior"] > 0
+        manifest = json.loads((folder / "cube.json").read_bytes())
+        assert manifest["source"]["settings"]["interior"] == option
+        assert manifest["materials"][number]["voxels"] >= 14**3
+    shared = built("--interior", "any")
+    assert shared["interior"]["material"] is None
+    assert shared["words"] <= kept["words"]
+    assert shared["voxels"] == kept["voxels"] == 16**3
+    assert built("--interior", "any", "--budget", str(shared["words"]))["budget"]["recoloured"] == 0
+    assert "interior" in voxrt("build", "cube.obj", "--interior", "any", "--depth", "4", "--profile").err
+
+
+@pytest.mark.parametrize("material", ["marble", "0", "9", "-1"])
+def test_interiors_of_no_material(voxrt, material):
+    finished = voxrt("build", "house.obj", f"--interior={material}")
+    assert finished.code == 3
+    assert f"has no material {material!r} for its interior; name one of: 1 timber, 2 glass" in finished.error
 
 
 def test_warnings_go_to_people_and_to_programs(voxrt):
@@ -226,8 +267,43 @@ def test_time_and_variants_reach_the_loader(voxrt):
 def test_profile_has_a_row_a_stage(voxrt):
     finished = voxrt("build", "house.obj", "--depth", "3", "--profile", "--json")
     assert finished.code == 0
-    assert [line.split()[0] for line in finished.err.splitlines()] == [
-        "stage",
-        *json.loads(finished.out)["seconds"],
-        "all",
-    ]
+    lines = [line[2:] for line in finished.err.splitlines()]
+    stages = [line.split()[0] for line in lines if not line.startswith(" ")]
+    assert stages == ["stage", *json.loads(finished.out)["seconds"], "all"]
+    first = next(i for i, line in enumerate(lines) if line.startswith("voxelize")) + 1
+    parts = ["survey", "bin", "coverage", "fill", "holes", "order", "gather"]
+    assert [line.split()[0] for line in lines[first : first + len(parts)]] == parts
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 0
+1 0 0 0 255 0
+0 1 0 0 0 255
+3 0 1 2
+"""
+
+
+def test_colours_bound_what_paint_is_reduced_to(voxrt, folder):
+    (folder / "rainbow.ply").write_text(PLY)
+    for asked, most in ((("--colours", "5"), 5), ((), DEFAULT_COLOURS)):
+        assert voxrt("build", "rainbow.ply", "--depth", "6", *asked).code == 0
+        manifest = json.loads((folder / "rainbow.json").read_bytes())
+        names = [material["name"] for material in manifest["materials"][1:]]
+        assert names[0] == "vertex colours"
+        assert most * 0.8 < len(names) - 1 <= most
+        assert all(name.startswith("vertex colours #") for name in names[1:])
+        assert manifest["source"]["settings"]["colours"] == most
+    finished = voxrt("build", "rainbow.ply", "--colours", "255")
+    assert finished.code == 2
+    assert "255 is not 1 to 254" in finished.error

@@ -18,7 +18,7 @@ def built(voxrt, folder):
 
 
 def test_a_memory_is_like_its_source(voxrt, built):
-    pytest.importorskip("open3d", reason="the extra voxrt[compare] is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt[compare] is not installed")
     arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
     finished = voxrt(*arguments, "-o", "like.png", "--json")
     assert finished.code == 0, finished.err
@@ -28,9 +28,24 @@ def test_a_memory_is_like_its_source(voxrt, built):
     assert result.depth_median is not None
     assert result.depth_median < 1
     assert result.outputs == {"picture": "like.png"}
+    assert result.wrong_pixels == 0
     with Image.open(built / "like.png") as sheet:
-        assert sheet.size == (3 * 96, 72)
+        assert sheet.size == (4 * 96, 72)
     assert "silhouette" in voxrt(*arguments).err
+
+
+def test_a_finer_grid_is_liker(voxrt, built):
+    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt[compare] is not installed")
+    finished = voxrt("compare", "house.mem", "house.obj", "--size", "96x72", "--curve", "curve.png", "--json")
+    assert finished.code == 0, finished.err
+    curve = msgspec.json.decode(finished.out, type=CompareResult, strict=True).curve
+    assert [point.depth for point in curve] == [3, 4, 5, 6]
+    assert [point.words for point in curve] == sorted(point.words for point in curve)
+    in_world = [point.depth_mean / (1 << point.depth) for point in curve if point.depth_mean]
+    assert in_world == sorted(in_world, reverse=True)
+    assert curve[0].silhouette_iou < curve[-1].silhouette_iou
+    with Image.open(built / "curve.png") as drawn:
+        assert drawn.width > 600
 
 
 @pytest.mark.usefixtures("built")

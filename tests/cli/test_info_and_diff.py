@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from voxrt import Material, Rom
-from voxrt.cli.memory_results import DiffResult, InfoResult
+from voxrt.cli.memory_results import DiffResult, InfoResult, RegionEntry
 from voxrt.export import write_rom
 from voxrt.octree import from_dense
 from voxrt.voxelize import EMPTY, Grid
@@ -60,8 +60,30 @@ def test_diff(voxrt):
     finished = voxrt("diff", "before.mem", "after.mem", "--json")
     assert finished.code == 0
     told = msgspec.json.decode(finished.out, type=DiffResult, strict=True)
-    assert told == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)))
-    assert "3 voxels" in voxrt("diff", "before.mem", "after.mem").err
+    regions = [
+        RegionEntry(((0, 0, 0), (1, 1, 1)), 0, 0, 1),
+        RegionEntry(((7, 0, 0), (8, 1, 1)), 0, 1, 0),
+        RegionEntry(((7, 7, 0), (8, 8, 1)), 1, 0, 0),
+    ]
+    assert told == DiffResult(3, 1, 1, 1, ((0, 0, 0), (8, 8, 1)), regions)
+
+
+@pytest.mark.usefixtures("worlds")
+def test_diff_tells_people_where(voxrt):
+    lines = [line.split() for line in voxrt("diff", "before.mem", "after.mem").err.splitlines()]
+    assert ["differ", "3", "voxels"] in lines
+    assert ["region", "7,7,0", "up", "to", "8,8,1:", "1", "appeared"] in lines
+
+
+def test_diff_tells_people_of_the_largest(voxrt, folder):
+    world = np.zeros((16, 16, 16), np.uint8)
+    write_rom(folder, Rom("none", from_dense(world), (EMPTY, Material("stone", (9, 9, 9)))))
+    world[:2, :2, 4:10] = 1
+    world[4:16:2, 4:16:2, 15] = 1
+    write_rom(folder, Rom("many", from_dense(world), (EMPTY, Material("stone", (9, 9, 9)))))
+    err = voxrt("diff", "none.mem", "many.mem").err
+    assert "0,0,4 up to 2,2,10: 24 appeared" in err
+    assert "37 in all; 32 voxels in those not shown" in err
 
 
 @pytest.mark.usefixtures("worlds")

@@ -35,7 +35,9 @@ REAL = [
 
 @pytest.mark.parametrize("name", REAL)
 def test_builds_and_previews(name, tmp_path):
-    result = voxrt.build(asset(name), tmp_path, depth=6, preview=True, size=(96, 72), engine="model")
+    result = voxrt.build(
+        asset(name), tmp_path, depth=6, preview=True, size=(96, 72), engine="model", allow_outside=True
+    )
     assert result.solid_voxels > 100
     assert sorted(result.outputs) == ["manifest", "mem", "preview"]
     rom, warnings = voxrt.read_rom(result.outputs["mem"])

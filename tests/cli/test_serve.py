@@ -51,6 +51,25 @@ def test_upload_to_a_device(voxrt):
     assert "house.mem: runs now" in finished.err
 
 
+def test_upload_to_the_simulated_hardware(voxrt):
+    pytest.importorskip("voxrt.sim._rtl")
+    assert voxrt("build", "house.obj", "--depth", 4).code == 0
+    for config in ("tiny", "quad"):
+        finished = voxrt("upload", "house.mem", "--device", "sim", "--config", config)
+        assert finished.code == 0
+        assert "house.mem: runs now" in finished.err
+    for command in (("upload", "house.mem", "--device", "sim"), ("serve", "--device", "sim"), ("render", "house.mem")):
+        finished = voxrt(*command, "--config", "huge")
+        assert finished.code == 2
+        assert "no ray tracer configuration 'huge'; there are " in finished.error
+
+
+def test_a_server_on_the_simulated_hardware(folder):
+    pytest.importorskip("voxrt.sim._rtl")
+    with serving(folder, "house.obj", "--depth", "4", "--device", "sim") as served:
+        assert served["url"]
+
+
 def test_a_server_for_others_wants_a_token(folder):
     with serving(folder, "--host", "0.0.0.0") as served:
         assert "#token=" in served["url"]

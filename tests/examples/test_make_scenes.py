@@ -14,7 +14,7 @@ import voxrt
 from voxrt.octree import census
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-SCENES = ("courtyard.glb", "house.obj", "house.mtl", "dog.usda", "planet.glb")
+SCENES = ("courtyard.glb", "house.obj", "house.mtl", "dog.usda", "planet.glb", "toadstool.vox")
 
 
 def test_the_script_makes_the_committed_scenes(tmp_path):

@@ -32,13 +32,10 @@ def blob():
 @pytest.mark.parametrize("path", list(itertools.product(export.WRITABLE_SUFFIXES, repeat=2)), ids="".join)
 def test_every_format_to_every_other(tmp_path, path):
     first, second = path
-    files, warnings = export.convert(export.Blob(rom()), tmp_path / f"one{first}", dialect="msb")
-    assert warnings == ()
+    files = export.convert(export.Blob(rom()), tmp_path / f"one{first}", dialect="msb")
     read, warnings = export.read_any(files[0])
     assert warnings == ()
-    files, _ = export.convert(
-        read, str(tmp_path / "sub" / f"two{second}") if second != ".blob" else tmp_path / "two.blob"
-    )
+    files = export.convert(read, str(tmp_path / "sub" / f"two{second}") if second != ".blob" else tmp_path / "two.blob")
     read, warnings = export.read_any(str(files[0]))
     assert warnings == ()
     assert (read.rom.materials, read.rom.grid) == (MATERIALS, rom().grid)
@@ -50,17 +47,19 @@ def test_words_alone_go_through_every_format(tmp_path):
     for suffix in (".coe", ".mif", ".bin"):
         read, warnings = export.read_any(tmp_path / "a.mem", depth=2)
         assert [w.kind for w in warnings] == ["assumed-dialect", "assumed-palette"]
-        files, _ = export.convert(read, tmp_path / f"b{suffix}")
+        files = export.convert(read, tmp_path / f"b{suffix}")
         files[1].unlink()
         again, warnings = export.read_any(files[0])
         assert [w.kind for w in warnings] == ["assumed-dialect", "assumed-depth", "assumed-palette"]
         np.testing.assert_array_equal(again.rom.octree.words, rom().octree.words)
 
 
-def test_what_a_file_of_words_cannot_hold_is_said(tmp_path):
-    _, warnings = export.convert(blob(), tmp_path / "a.mem")
-    assert [(w.kind, w.count) for w in warnings] == [("lost-defaults", 2)]
-    assert warnings[0].message == "camera and lighting defaults are kept by .blob files alone"
+def test_files_of_words_keep_camera_and_light_in_their_manifest(tmp_path):
+    for target in ("a.mem", "b.coe", "c.blob"):
+        export.convert(blob(), tmp_path / target)
+        read, warnings = export.read_any(tmp_path / target)
+        assert warnings == ()
+        assert (read.view, read.lighting) == (blob().view, blob().lighting)
 
 
 def test_files_of_no_kind(tmp_path):

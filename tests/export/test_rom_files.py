@@ -201,7 +201,18 @@ def test_broken_manifests_are_refused_by_field(tmp_path, change, message):
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"{", b"[]", b"null", b"\xff", b"[" * 10**6, b'{"schema": 1}', b'{"schema": null}']
+    "data",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b"null",
+        b"\xff",
+        b"[" * 10**6,
+        b'{"schema": 1}',
+        b'{"schema": null}',
+        b'{"schema": 1, "\xa8": 1}',
+    ],
 )
 def test_what_is_no_manifest_is_refused(tmp_path, data):
     path = tmp_path / "a.json"

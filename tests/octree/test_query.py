@@ -110,6 +110,52 @@ def test_diff(data):
     assert found.voxels == len(where)
 
 
+def pieces(differs):
+    """The voxels of each piece, flooded one voxel at a time over its 26 neighbours."""
+    left = {tuple(place) for place in np.argwhere(differs).tolist()}
+    while left:
+        piece, front = [], [left.pop()]
+        while front:
+            piece.append(front.pop())
+            beside = {
+                tuple(p + o - 1 for p, o in zip(piece[-1], offset, strict=True)) for offset in np.ndindex(3, 3, 3)
+            }
+            front += beside & left
+            left -= beside
+        yield np.array(piece)
+
+
+@given(st.data())
+def test_regions_are_what_hangs_together(data):
+    a, b = data.draw(dense_cubes(4)), data.draw(dense_cubes(4))
+    side = max(len(a), len(b))
+    a, b = (np.pad(c, (0, side - len(c))) for c in (a, b))
+    expected = []
+    for piece in pieces(a != b):
+        before, after = a[tuple(piece.T)], b[tuple(piece.T)]
+        counts = [(before == 0).sum(), (after == 0).sum(), ((before != 0) & (after != 0)).sum()]
+        expected.append((-len(piece), tuple(piece.min(0)), tuple(piece.max(0) + 1), *counts))
+    shared = [octree.from_dense(cube) for cube in (a, b)]
+    unshared = [octree.decode(unshared_words(cube), "report", side.bit_length() - 1) for cube in (a, b)]
+    for first, second in (shared, unshared):
+        found = [
+            (-part.voxels, *part.bounds, part.appeared, part.vanished, part.recoloured)
+            for part in octree.differing_regions(first, second)
+        ]
+        assert sorted(found) == sorted(expected)
+        assert [row[:2] for row in found] == sorted(row[:2] for row in found)
+
+
+def test_more_pieces_than_are_told_apart():
+    """A chequered world of 2**23 voxels against an empty one: one region."""
+    words = np.array([1, *[0xFFFFFF00, 0xFFFFFF01] * 4], np.uint32)
+    deep = [word for level in range(8) for word in [9 + 8 * level] * 8]
+    tree = octree.decode(np.array([1, *deep, *words[1:]], np.uint32), "report", 9)
+    empty = octree.decode(np.array([0xFFFFFF00], np.uint32), "report", 9)
+    (region,) = octree.differing_regions(empty, tree)
+    assert region == octree.Region(((1, 0, 0), (512, 512, 512)), 2**26, 0, 0)
+
+
 def test_a_world_far_larger_than_memory():
     """A world of 2**48 voxels in 129 words: counts come from the words, never from the voxels."""
     tree = doubled(16)
@@ -120,6 +166,7 @@ def test_a_world_far_larger_than_memory():
     assert half[1] + column[1] == solid
     assert octree.solid_bounds(tree) == ((1, 1, 1), (65536,) * 3)
     assert octree.diff(tree, tree).voxels == 0
+    assert octree.differing_regions(tree, tree) == ()
     first = next(octree.leaves(tree, solid_only=True, chunk=3))
     assert first.corners.tolist() == [[1, 1, 1], [3, 1, 1], [1, 3, 1]]
     corner = octree.to_dense(tree, (65530,) * 3, (65540,) * 3)
@@ -143,6 +190,8 @@ def test_refusals():
         next(octree.leaves(tree, chunk=0))
     with pytest.raises(ValueError, match="depth 1 and 2"):
         octree.diff(tree, octree.from_dense(np.ones((4, 4, 4), int)))
+    with pytest.raises(ValueError, match="depth 1 and 2"):
+        octree.differing_regions(tree, octree.from_dense(np.ones((4, 4, 4), int)))
 
 
 @pytest.mark.parametrize("words", [[], [1], [1, *[1] * 8], [9, *[0xFFFFFF00] * 8], [7], [0x7FFFFFF9] * 9])

@@ -229,3 +229,11 @@ def test_real_files_of_many_models():
 def test_not_a_vox():
     with pytest.raises(AssetError, match="does not start with 'VOX '"):
         octree.read_vox(asset("malformed/dot_vox/not_a.vox"))
+
+
+def test_odd_chunk_names_keep_to_one_line(tmp_path):
+    data = (
+        b"VOX " + struct.pack("<i", 150) + b"MAIN" + struct.pack("<ii", 0, 12) + b"a\n\r\xff" + struct.pack("<ii", 9, 0)
+    )
+    with pytest.raises(AssetError, match=r"^[^\n\r]*chunk a\\n\\r\\xff at byte 20[^\n\r]*$"):
+        read(tmp_path, data)

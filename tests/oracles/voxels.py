@@ -72,8 +72,14 @@ def flat_cover(corners, side, *, inverted=False):
 
 def winding(vertices, triangles, side):
     """Generalized winding number at voxel centres, beside them by a little so that no surface is hit: float64."""
-    at = (_cells(side) * UNIT + UNIT // 2).astype(float) + np.array([0.31, 0.17, 0.23])
-    total = np.zeros((side,) * 3)
+    return winding_at(
+        (_cells(side) * UNIT + UNIT // 2).astype(float) + np.array([0.31, 0.17, 0.23]), vertices, triangles
+    )
+
+
+def winding_at(at, vertices, triangles):
+    """Generalized winding number, summed triangle by triangle: float64, shape of `at` (..., 3) but for its last."""
+    total = np.zeros(at.shape[:-1])
     for a, b, c in vertices[triangles].astype(float):
         u, v, w = a - at, b - at, c - at
         lu, lv, lw = (np.linalg.norm(x, axis=-1) for x in (u, v, w))

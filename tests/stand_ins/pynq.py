@@ -1,135 +1,180 @@
-"""A stand-in for a PYNQ board: register file, memory and VDMA as their documents have them, the exact model inside.
+"""A stand-in for a PYNQ board: `pynq`'s classes as their documents have them, around the verilated core.
 
-The register file follows rtl/registers.rdl: start is a pulse, dropped while hold is set or a frame is under way; status
-bits are cleared by writing 1. A frame takes two reads of the status.
+Names and addresses are those of rtl/vivado/build.tcl. Registers, scene memory and video are the core's own pins. The
+VDMA between its stream and the processor's memory is a model of the write channel of PG020: it needs what the
+programming sequence there demands, in its order, lines and addresses that are whole words of a 64-bit bus, and tells a
+frame by its status bit. The core's clock ticks with every access, as a board's would between two of them.
 """
 
 from __future__ import annotations
 
+import sys
 import types
+from functools import partial
 
 import numpy as np
 
-from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.sim import _model
-
-ADDRESSES = {address: name for name, (address, _) in REGISTERS.items()}
-BASE = {"pixel_generator_0": 0x43C00000, "axi_bram_ctrl_0": 0x40000000}
+BASE = {"core": 0x43C00000, "memory": 0x42000000, "vdma": 0x43000000}
+CLOCKS_AN_ACCESS = 2000
+FRAME_CAME, LINE_TOO_EARLY = 1 << 12, 1 << 8
 
 
-def signed(value, bits):
-    return value - (1 << bits) if value >> (bits - 1) else value
+class Vdma:
+    """The write channel's registers, and memory that it can reach."""
+
+    def __init__(self, core):
+        self.core = core
+        self.memory = {}  # physical address: buffer
+        self.halt()
+
+    def halt(self):
+        self.control, self.status = 0x00010002, 1  # one frame an interrupt, circular; halted
+        self.buffers, self.stride, self.row_bytes, self.rows = [0, 0, 0], 0, 0, 0
+        self.waits = False
+
+    def read(self, offset):
+        self.tick()
+        return {0x30: self.control, 0x34: self.status}[offset]
+
+    def write(self, offset, value):
+        self.tick()
+        if offset == 0x30:
+            self.control = value
+            if value & 4:
+                self.halt()
+            elif value & 1:
+                self.status &= ~1
+        elif offset == 0x34:
+            self.status &= ~value
+        elif offset == 0xA8:
+            self.stride = value
+        elif offset == 0xA4:
+            self.row_bytes = value
+        elif offset == 0xA0:
+            assert self.control & 1, "VSIZE is the last register to be written"
+            assert all(buffer in self.memory for buffer in self.buffers)
+            assert self.stride >= self.row_bytes > 0
+            assert all(value % 8 == 0 for value in (*self.buffers, self.stride, self.row_bytes)), "unaligned transfer"
+            assert self.stride * value <= self.memory[self.buffers[0]].nbytes
+            self.rows = value
+            self.arm()
+        else:
+            self.buffers[(offset - 0xAC) // 4] = value
+
+    def arm(self):
+        self.core.expect(self.row_bytes // 3, self.rows, stall_seed=1)
+        self.waits = True
+
+    def tick(self):
+        """Let the core work; a frame that is complete goes into memory, and the channel waits for the next."""
+        if self.core.hangs or not self.core.run(CLOCKS_AN_ACCESS) or not self.waits:
+            return
+        buffer = self.memory[self.buffers[0]].reshape(-1)
+        for row, line in enumerate(self.core.frame()):
+            buffer[row * self.stride : row * self.stride + self.row_bytes] = line.reshape(-1)
+        self.status |= FRAME_CAME | self.core.vdma_errors
+        self.arm()
 
 
 class Core:
-    def __init__(self, blocks=6, identity=0x56585254, hangs=False):
-        self.words = np.zeros(1 + (8 << blocks), dtype=np.uint32)
-        self.values = dict.fromkeys(REGISTERS, 0)
-        self.values |= {"identity": identity, "version": 1, "configuration": 1 | 10 << 8 | 17 << 16 | blocks << 24}
-        self.materials = np.zeros((256, 3), dtype=np.uint8)
-        self.reads_left = 0
-        self.hangs = hangs
-        self.stream = None
-        self.errors = 0
+    """The verilated core, with faults to order."""
+
+    def __init__(self, config="tiny"):
+        from voxrt.sim._rtl import PixelGenerator
+
+        self._core = PixelGenerator(config)
+        self.hangs = False  # its clock stands
+        self.vdma_errors = 0
+        self.identity = None  # another one's
+        for name in ("expect", "run", "frame", "read_memory", "write_memory", "memory_words"):
+            setattr(self, name, getattr(self._core, name))
 
     def read(self, offset):
-        name = ADDRESSES[offset]
-        if name == "status" and self.reads_left:
-            self.reads_left -= not self.hangs
-            if self.reads_left == 0:
-                self.values["status"] = self.values["status"] & ~1 | 2 | self.errors
-        return self.values[name]
+        return self.identity if self.identity is not None and offset == 0 else self._core.read(offset)
 
     def write(self, offset, value):
-        assert 0 <= value < 1 << 32
-        if offset >= MATERIALS:
-            self.materials[(offset - MATERIALS) // 4] = value >> 16 & 255, value >> 8 & 255, value & 255
-            return
-        name = ADDRESSES[offset]
-        if name == "status":
-            self.values[name] &= ~value
-        elif name == "control":
-            self.values[name] = value & 6
-            if value & 8:
-                self.reads_left, self.values["status"] = 0, 0
-            if value & 1 and not value & 4 and not self.reads_left:
-                self.start()
-        else:
-            self.values[name] = value
-
-    def start(self):
-        get = self.values.__getitem__
-        camera = [[signed(get(f"position[{axis}]"), 32) for axis in range(3)]]
-        camera += [[signed(get(f"{name}[{axis}]"), 16) for axis in range(3)] for name in ("look", "right", "up")]
-        width, height = get("size") & 0xFFF, get("size") >> 16
-        memory = _model.Memory(self.words, get("depth"))
-        pixels = memory.render(self.materials, np.array(camera, dtype=np.int32), width, height)
-        self.stream = pixels["colour"][..., (1, 2, 0)]  # green, blue, red
-        self.values |= {"rays": width * height, "words_read": pixels["words_read"], "cycles": 3 * width * height}
-        self.values["status"] |= 1
-        self.reads_left = 2
+        self._core.write(offset, value)
 
 
-class Channel:
-    def __init__(self, core):
-        self.core = core
-        self.mode = None
-        self.running = False
-        self.kept = 0
+class PortArray(np.ndarray):
+    """MMIO's array of the memory: reading and writing it reads and writes the core's."""
 
-    def start(self):
-        assert not self.running
-        self.running = True
+    def __getitem__(self, key):
+        start, stop, step = key.indices(len(self))
+        assert step == 1
+        return self.core.read_memory(start, stop - start)
 
-    def stop(self):
-        self.running = False
-
-    def readframe(self):
-        assert self.running
-        assert self.core.stream.shape == (self.mode.height, self.mode.width, 3)
-        self.kept += 1
-
-        class PynqBuffer(np.ndarray):
-            def freebuffer(buffer):  # noqa: N805
-                self.kept -= 1
-
-        return self.core.stream.copy().view(PynqBuffer)
+    def __setitem__(self, key, words):
+        start, stop, step = key.indices(len(self))
+        assert step == 1
+        assert stop - start == len(words)
+        self.core.write_memory(start, np.ascontiguousarray(words, dtype=np.uint32))
 
 
-def install(monkeypatch, core):
-    """Put a `pynq` with this core in its overlay where imports find it; its VDMA channel."""
-    channel = Channel(core)
+class Mmio:
+    """pynq.MMIO of one part of the block design."""
 
-    class MMIO:
-        def __init__(self, base_addr, length):
-            assert length % 4 == 0
-            self.is_core = base_addr == BASE["pixel_generator_0"]
-            self.read, self.write = core.read, core.write
+    def __init__(self, board, base_addr, length):
+        assert length % 4 == 0
+        self.board, self.length = board, length
+        self.part = next(name for name, base in BASE.items() if base == base_addr)
 
-        @property
-        def array(self):
-            assert not self.is_core
-            return core.words
+    def read(self, offset=0):
+        assert offset % 4 == 0
+        if self.part == "vdma":
+            return self.board.vdma.read(offset)
+        self.board.vdma.tick()
+        return self.board.core.read(offset)
 
-    class Overlay:
-        def __init__(self, bitfile_name):
-            if not bitfile_name.endswith(".bit"):
-                raise OSError(f"{bitfile_name} does not exist.")
-            entry = {name: {"phys_addr": base, "addr_range": 0x10000} for name, base in BASE.items()}
-            self.ip_dict = {"pixel_generator_0": entry["pixel_generator_0"]}
-            self.mem_dict = {"axi_bram_ctrl_0": entry["axi_bram_ctrl_0"]}
-            self.axi_vdma_0 = types.SimpleNamespace(readchannel=channel)
+    def write(self, offset, data):
+        assert offset % 4 == 0
+        assert type(data) is int
+        assert 0 <= data < 1 << 32
+        part = self.board.vdma if self.part == "vdma" else self.board.core
+        part.write(offset, data)
 
-    class VideoMode:
-        def __init__(self, width, height, bits_per_pixel):
-            assert bits_per_pixel == 24
-            self.width, self.height = width, height
+    @property
+    def array(self):
+        assert self.part == "memory"
+        array = np.broadcast_to(np.uint32(0), self.length // 4).view(PortArray)
+        array.core = self.board.core
+        return array
 
-    modules = {
-        "pynq": types.SimpleNamespace(Overlay=Overlay, MMIO=MMIO),
-        "pynq.lib": types.SimpleNamespace(),
-        "pynq.lib.video": types.SimpleNamespace(VideoMode=VideoMode),
-    }
-    for name, module in modules.items():
-        monkeypatch.setitem(__import__("sys").modules, name, module)
-    return channel
+
+class Board:
+    """What an overlay finds, and memory that the VDMA can write."""
+
+    def __init__(self, core, memory_bytes):
+        self.core, self.vdma = core, Vdma(core)
+        self.memory_bytes = memory_bytes
+
+    def overlay(self, bitfile_name):
+        if not bitfile_name.endswith(".bit"):
+            raise OSError(f"{bitfile_name} does not exist.")
+        entry = {name: {"phys_addr": base, "addr_range": 0x10000} for name, base in BASE.items()}
+        entry["memory"]["addr_range"] = self.memory_bytes
+        memories = {"memory": entry.pop("memory")}
+        return types.SimpleNamespace(ip_dict=entry, mem_dict=memories)
+
+    def allocate(self, shape, dtype="u4"):
+        buffer = np.full(shape, 0xA5, dtype=dtype).view(PynqBuffer)
+        buffer.physical_address = 0x10000000 + 0x1000 * len(self.vdma.memory)
+        buffer.memory = self.vdma.memory
+        buffer.memory[buffer.physical_address] = buffer
+        return buffer
+
+
+class PynqBuffer(np.ndarray):
+    def invalidate(self):
+        """Nothing is cached here."""
+
+    def freebuffer(self):
+        del self.memory[self.physical_address]
+
+
+def install(monkeypatch, core, memory_bytes=0x10000):
+    """Put a `pynq` with this core in its overlay where imports find it; its VDMA."""
+    board = Board(core, memory_bytes)
+    module = types.SimpleNamespace(Overlay=board.overlay, MMIO=partial(Mmio, board), allocate=board.allocate)
+    monkeypatch.setitem(sys.modules, "pynq", module)
+    return board.vdma

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from oracles.meshes import box_mesh, icosphere, one_object, scene_of
 from oracles.voxels import compete, dense, snap, voxelize_mesh
 
-from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
+from voxrt.voxelize import Grid, Mesh, SceneObject, fit_grid, voxelize
 
 UNIT_GRID = {depth: Grid(depth, (0.0, 0.0, 0.0), 1.0) for depth in range(1, 7)}
 
@@ -148,3 +148,18 @@ def test_threads_do_not_matter(data):
     one, three = (voxelize(scene_of(*meshes), UNIT_GRID[6], threads=n).voxels for n in (1, 3))
     for name in one.__slots__:
         np.testing.assert_array_equal(getattr(one, name), getattr(three, name))
+
+
+@pytest.mark.parametrize("far", [1e30, np.nan])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_vertices_of_no_triangle_count_for_nothing(far, dtype):
+    box = box_mesh((0, 0, 0), (2, 3, 4))
+    stray = Mesh(
+        np.concatenate([[[far] * 3], box.positions, [[far, 0, 0]]]).astype(dtype), box.triangles + 1, box.materials
+    )
+    plain, odd = one_object(box), one_object(stray)
+    assert fit_grid(odd, depth=3) == fit_grid(plain, depth=3)
+    found = [voxelize(scene, fit_grid(plain, depth=3)).voxels for scene in (plain, odd)]
+    assert all(
+        np.array_equal(getattr(found[0], name), getattr(found[1], name)) for name in ("brick_codes", "brick_masks")
+    )

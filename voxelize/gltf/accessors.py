@@ -128,19 +128,25 @@ def read_floats(document: Document, index: int, place: str, types: Container[str
     return as_floats(document, read_accessor(document, index, place, types), index)
 
 
+def as_reals(document: Document, stored: NDArray[Any], index: int) -> NDArray[np.floating]:
+    """Return the elements that accessor `index` describes as finite reals, normalized integers mapped.
+
+    Those stored as reals stay as they are stored, float32, without a copy.
+    """
+    if stored.dtype.kind == "f":
+        finite = np.isfinite(stored)
+        if not finite.all():
+            row = int(np.argmin(finite.all(axis=1)))
+            raise document.error(f"accessors[{index}]", f"element {row} is not a finite number")
+        return stored
+    document.charge(stored.size * 8, f"accessors[{index}]")
+    return normalized(stored) if document.gltf.accessors[index].normalized else stored.astype(np.float64)
+
+
 def as_floats(document: Document, stored: NDArray[Any], index: int) -> NDArray[np.float64]:
     """Return the elements that accessor `index` describes as finite float64, normalized integers mapped."""
     document.charge(stored.size * 8, f"accessors[{index}]")
-    if stored.dtype.kind != "f" and document.gltf.accessors[index].normalized:
-        return normalized(stored)
-    with np.errstate(invalid="ignore"):
-        elements: NDArray[np.float64] = stored.astype(np.float64)
-        total = elements.sum()
-    # What is stored is far smaller than a double can be: only elements that are not finite make the sum so.
-    if not np.isfinite(total):
-        row = int(np.argmin(np.isfinite(elements).all(axis=1)))
-        raise document.error(f"accessors[{index}]", f"element {row} is not a finite number")
-    return elements
+    return as_reals(document, stored, index).astype(np.float64, copy=False)
 
 
 def as_unit_floats(stored: NDArray[Any]) -> NDArray[np.float64]:
@@ -161,16 +167,18 @@ def _strided(
 ) -> NDArray[Any]:
     """Return `count` elements from the buffer view that `source` names, without a copy where they lie packed."""
     assert source.buffer_view is not None
-    data = document.view(source.buffer_view, f"{place}.bufferView")
-    stride = document.gltf.buffer_views[source.buffer_view].byte_stride or layout.element_bytes
+    view = document.item(document.gltf.buffer_views, source.buffer_view, f"{place}.bufferView", "buffer view")
+    stride = view.byte_stride or layout.element_bytes
     if stride < layout.element_bytes:
         raise document.error(place, f"elements of {layout.element_bytes} bytes in a buffer view of stride {stride}")
-    end = source.byte_offset + stride * (count - 1) + layout.element_bytes
+    data = document.view(source.buffer_view, f"{place}.bufferView")
+    offset = source.byte_offset or 0
+    end = offset + stride * (count - 1) + layout.element_bytes
     if end > len(data):
         raise document.error(place, f"{count} elements end at byte {end} of a buffer view of {len(data)}")
     shape = (count, layout.columns, layout.rows)
     strides = (stride, layout.column_bytes, layout.dtype.itemsize)
-    elements: NDArray[Any] = np.ndarray(shape, layout.dtype, data, source.byte_offset, strides)
+    elements: NDArray[Any] = np.ndarray(shape, layout.dtype, data, offset, strides)
     return elements.reshape(count, layout.components)
 
 

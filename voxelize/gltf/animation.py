@@ -16,48 +16,65 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
-    from voxrt.voxelize.gltf.schema import Animation, Gltf, Node
+    from voxrt.voxelize.gltf.schema import Gltf, Node
 
 _COMPONENTS = {"translation": 3, "rotation": 4, "scale": 3}
 
 
-def posed(document: Document, time: float | None) -> Gltf:
-    """Return the file's JSON with its nodes as its first animation has them at `time` seconds.
+def posed(document: Document, time: float | None, animation: str | None = None) -> Gltf:
+    """Return the file's JSON with its nodes as an animation has them at `time` seconds.
+
+    The animation is the one called `animation`, or of that number counted from 0; else the first.
 
     Before an animation's first key and after its last, the nodes stand as at that key. Without `time`, nodes stand as
-    the file says, and that there are animations is noted.
+    the file says, and that there are animations is noted; where an animation is named they stand as at its second 0.
 
     Raises
     ------
     AssetError
-        There is no animation to sample, or it is broken.
+        There is no such animation to sample, or it is broken.
     """
     gltf = document.gltf
-    if time is None:
+    if time is None and animation is None:
         if gltf.animations:
             message = "animations were not played: the nodes stand as the file places them"
             document.notes.add("animation", message, len(gltf.animations))
         return gltf
     if not gltf.animations:
-        raise document.error("animations", "a time was asked for and the file has no animation", "leave the time out")
-    if len(gltf.animations) > 1:
-        document.notes.add("animation", "animations after the first were not played", len(gltf.animations) - 1)
+        asked = "a time" if animation is None else "an animation"
+        raise document.error("animations", f"{asked} was asked for and the file has no animation", "leave it out")
+    if len(gltf.animations) > 1 and animation is None:
+        message = "animations after the first were not played: --animation chooses another"
+        document.notes.add("animation", message, len(gltf.animations) - 1)
     nodes = list(gltf.nodes)
-    _play(document, gltf.animations[0], time, nodes)
+    _play(document, _chosen(document, animation), time or 0.0, nodes)
     return structs.replace(gltf, nodes=nodes)
 
 
-def _play(document: Document, animation: Animation, time: float, nodes: list[Node]) -> None:
-    """Move `nodes` to where `animation` has them."""
+def _chosen(document: Document, wanted: str | None) -> int:
+    names = [animation.name for animation in document.gltf.animations]
+    if wanted is None:
+        return 0
+    if wanted in names:
+        return names.index(wanted)
+    if wanted.isdecimal() and int(wanted) < len(names):
+        return int(wanted)
+    known = ", ".join(repr(name) if name else str(index) for index, name in enumerate(names[:8]))
+    raise document.error("animations", f"no animation {wanted!r} in the file", f"it has {known}")
+
+
+def _play(document: Document, index: int, time: float, nodes: list[Node]) -> None:
+    """Move `nodes` to where animation `index` has them."""
+    animation = document.gltf.animations[index]
     for at, channel in enumerate(animation.channels):
-        place = f"animations[0].channels[{at}]"
+        place = f"animations[{index}].channels[{at}]"
         target = channel.target
         if target.node is None or target.path not in (*_COMPONENTS, "weights"):
             document.notes.add("animation", f"animations of {target.path[:40]!r} were not played")
             continue
         node = document.item(nodes, target.node, f"{place}.target.node", "node")
         sampler = document.item(animation.samplers, channel.sampler, f"{place}.sampler", "sampler")
-        here = f"animations[0].samplers[{channel.sampler}]"
+        here = f"animations[{index}].samplers[{channel.sampler}]"
         keys = read_floats(document, sampler.input, f"{here}.input", {"SCALAR"})[:, 0]
         if len(keys) > 1 and not (np.diff(keys) > 0).all():
             raise document.error(f"{here}.input", "the times do not increase")

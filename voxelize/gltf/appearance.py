@@ -49,16 +49,13 @@ class Dress:
 
     Attributes
     ----------
-    keys
-        The materials of triangles that have one colour.
-    rows
-        intp, shape (T,): the key of each triangle; -1 where it is painted, or air.
+    runs
+        Stretches of triangles that have one colour, as start, stop and material. The others are painted, or air.
     coat
         The paint on painted triangles, or None.
     """
 
-    keys: tuple[MaterialKey, ...]
-    rows: NDArray[np.intp]
+    runs: tuple[tuple[int, int, MaterialKey], ...]
     coat: Coat | None
 
 
@@ -87,8 +84,7 @@ def dress(document: Document, textures: Textures, surface: Surface, look: Look) 
     """Find what each triangle of `surface` wears in `look`."""
     count = len(surface.triangles)
     document.charge(count * 8, f"meshes[{look.mesh}]")
-    keys: dict[MaterialKey, int] = {}
-    rows = np.full(count, -1, np.intp)
+    runs: list[tuple[int, int, MaterialKey]] = []
     painter = _Painter(document, textures, count)
     for span in surface.spans:
         place = f"meshes[{look.mesh}].primitives[{span.primitive}]"
@@ -100,10 +96,10 @@ def dress(document: Document, textures: Textures, surface: Surface, look: Look) 
         if wears.factor[3] < wears.cutoff:
             document.notes.add("transparent", "faces of transparent materials are air", faces)
             continue
-        rows[span.start : span.stop] = keys.setdefault(key, len(keys))
+        runs.append((span.start, span.stop, key))
         if key.index == NO_MATERIAL:
             document.notes.add("default-material", "faces without a material got the default one", faces)
-    return Dress(tuple(keys), rows, painter.coat())
+    return Dress(tuple(runs), painter.coat())
 
 
 def _material(document: Document, look: Look, span: Span, place: str) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.voxelize.gltf.accessors import as_floats, layout_of, read_accessor
+from voxrt.voxelize.gltf.accessors import as_floats, as_reals, layout_of, read_accessor
 from voxrt.voxelize.gltf.extensions import DRACO, read_extension
 from voxrt.voxelize.gltf.schema import TRIANGLE_STRIP, TRIANGLES, DracoPrimitive
 
@@ -57,6 +57,10 @@ class Attributes:
         """Read attribute `name` as finite float64, shape (vertices, components), normalized integers mapped."""
         accessor = self._primitive.attributes[name]
         return as_floats(self._document, self.stored(name, types), accessor)
+
+    def reals(self, name: str, types: Container[str]) -> NDArray[np.floating]:
+        """Read attribute `name` as :meth:`floats` does, but float32 where the file has that."""
+        return as_reals(self._document, self.stored(name, types), self._primitive.attributes[name])
 
     def stored(self, name: str, types: Container[str]) -> NDArray[Any]:
         """Read attribute `name` as it is stored, shape (vertices, components)."""

@@ -19,16 +19,17 @@ def collider_around(mesh: Mesh, kind: ColliderKind) -> Collider:
     """Return the collider of `kind` around `mesh`, in its frame; the sphere is centred in the bounding box."""
     if kind == "mesh":
         return MeshCollider(mesh.positions, mesh.triangles)
+    corners = mesh.positions[np.unique(mesh.triangles)].astype(np.float64)
     if kind == "hull":
-        return HullCollider(mesh.positions)
-    minimum, maximum = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+        return HullCollider(corners)
+    minimum, maximum = corners.min(axis=0), corners.max(axis=0)
     if kind == "box":
         return BoxCollider(minimum, maximum)
     centre = minimum + (maximum - minimum) / 2
-    return SphereCollider(centre, float(np.sqrt(((mesh.positions - centre) ** 2).sum(axis=1).max())))
+    return SphereCollider(centre, float(np.sqrt(((corners - centre) ** 2).sum(axis=1).max())))
 
 
-def collider_points(collider: Collider) -> NDArray[np.float64]:
+def collider_points(collider: Collider) -> NDArray[np.floating]:
     """Return points, shape (N, 3), between which `collider` lies."""
     if isinstance(collider, BoxCollider):
         return np.stack([collider.minimum, collider.maximum])

@@ -37,8 +37,8 @@ class Pose:
 
 
 def morphed(
-    document: Document, primitive: Primitive, positions: NDArray[np.float64], pose: Pose, place: str
-) -> NDArray[np.float64]:
+    document: Document, primitive: Primitive, positions: NDArray[np.floating], pose: Pose, place: str
+) -> NDArray[np.floating]:
     """Return `positions`, shape (V, 3), with the displacements of the primitive's targets added as `pose` weighs them.
 
     Raises
@@ -59,8 +59,8 @@ def morphed(
 
 
 def skinned(
-    document: Document, attributes: Attributes, positions: NDArray[np.float64], pose: Pose, place: str
-) -> NDArray[np.float64]:
+    document: Document, attributes: Attributes, positions: NDArray[np.floating], pose: Pose, place: str
+) -> NDArray[np.floating]:
     """Return `positions`, shape (V, 3), carried by the joints of `pose` to the scene frame.
 
     Raises
@@ -72,7 +72,7 @@ def skinned(
         return positions
     document.charge(positions.nbytes * 8, place)
     total = np.zeros((len(positions), 1))
-    carried = np.zeros_like(positions)
+    carried = np.zeros(positions.shape)
     number = 0
     with np.errstate(over="ignore", invalid="ignore"):
         while f"JOINTS_{number}" in attributes and f"WEIGHTS_{number}" in attributes:

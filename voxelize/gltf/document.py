@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import base64
 import binascii
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
 
+from voxrt.voxelize.companions import ALLOW_OUTSIDE, Companions
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.container import read_container
 from voxrt.voxelize.gltf.extensions import MESHOPT, read_extension
@@ -16,6 +16,7 @@ from voxrt.voxelize.notes import Notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from voxrt.voxelize.gltf.schema import BufferView, Gltf
 
@@ -42,8 +43,9 @@ class Document:
         What could not be honoured as it stands.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
         self.path = path
+        self._companions = Companions.of(path, allow_outside=allow_outside)
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
         self._buffers: dict[int, memoryview] = {}
@@ -76,7 +78,7 @@ class Document:
             return memoryview(self._unpacked[index])
         compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
         if compressed is None:
-            return self._buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
+            return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
         self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
         return memoryview(self._unpacked[index])
 
@@ -90,7 +92,7 @@ class Document:
             raise self.error(here, f"ends at byte {end} of a buffer of {buffer.byte_length}")
         if size != view.byte_length:
             raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
-        data = self._buffer(compressed.buffer)[compressed.byte_offset : end]
+        data = self.buffer(compressed.buffer)[compressed.byte_offset : end]
         try:
             return decode(compressed, bytes(data))
         except BadStreamError as error:
@@ -105,7 +107,8 @@ class Document:
             if end > buffer.byte_length:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
-    def _buffer(self, index: int) -> memoryview:
+    def buffer(self, index: int) -> memoryview:
+        """Return the bytes of buffer `index`, as many as it says."""
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -126,7 +129,7 @@ class Document:
         return self._buffers[index]
 
     def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
-        """Return what `uri` refers to: inline data, or at most `most` bytes of a file in the asset's folder or below.
+        """Return what `uri` refers to: inline data, or at most `most` bytes of a file that may be opened.
 
         A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
         """
@@ -135,33 +138,27 @@ class Document:
         scheme = uri.partition(":")[0]
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
-        folder = self.path.parent.resolve()
         # Some exporters forget to encode names, or write paths as Windows does.
-        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
-            try:
-                target = (folder / Path(name)).resolve()
-                found = target.is_file()
-            except (OSError, ValueError, RuntimeError):  # too long, a NUL, a loop of links
-                continue
-            if not found:
-                continue
-            if not target.is_relative_to(folder):
-                fix = "put the file beside the asset"
-                raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", fix)
-            try:
-                with target.open("rb") as file:
-                    data = file.read(most)
-            except OSError as error:
-                problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
-                raise self.error(place, problem, "check its permissions") from error
-            self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
-            return data
-        return None
+        target = self._companions.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
+        if target is None:
+            return None
+        if not self._companions.allows(target):
+            raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", ALLOW_OUTSIDE)
+        try:
+            with target.open("rb") as file:
+                data = file.read(most)
+        except OSError as error:
+            problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
+            raise self.error(place, problem, "check its permissions") from error
+        self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
+        return data
 
     def _inline(self, uri: str, place: str) -> bytes:
         header, comma, body = uri.partition(",")
         if not comma:
             raise self.error(place, "a data URI without a comma")
+        if ";;" in header:
+            raise self.error(place, "a data URI with an empty parameter: ';;'")
         if not header.endswith(";base64"):
             return unquote_to_bytes(body)
         text = unquote(body) if "%" in body else body

@@ -63,10 +63,13 @@ NO_BEARING = frozenset(
 """Extensions that say nothing about where surfaces are or what base colour they have."""
 
 
+CONVERT_IMAGES = "convert it: gltf-transform ktxdecompress IN OUT for KTX2, gltf-transform png IN OUT for others"
+"""What turns images of kinds that are not read into such that are (glTF Transform's command line)."""
+
 _WAYS_OUT = {
     "KHR_meshopt_compression": "compress it with EXT_meshopt_compression, or not at all",
-    "KHR_texture_basisu": "export its images as PNG, JPEG or WebP",
-    "EXT_texture_avif": "export its images as PNG, JPEG or WebP",
+    "KHR_texture_basisu": CONVERT_IMAGES,
+    "EXT_texture_avif": CONVERT_IMAGES,
 }
 
 _T = TypeVar("_T")

@@ -16,6 +16,7 @@ from voxrt.voxelize.gltf.materials import number_materials
 from voxrt.voxelize.gltf.nodes import place_nodes
 from voxrt.voxelize.gltf.shown import Stage
 from voxrt.voxelize.gltf.textures import Textures
+from voxrt.voxelize.gltf.unused import refuse_broken_parts
 from voxrt.voxelize.material_table import MaterialTable
 from voxrt.voxelize.painted import Unfinished, finish
 from voxrt.voxelize.scene import Mesh, Scene, SceneObject
@@ -32,7 +33,14 @@ if TYPE_CHECKING:
 _NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
 
 
-def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...] = ()) -> Scene:
+def load_gltf(
+    path: Path,
+    *,
+    time: float | None = None,
+    animation: str | None = None,
+    variants: tuple[str, ...] = (),
+    allow_outside: bool = False,
+) -> Scene:
     """Read a ``.gltf`` or ``.glb`` file.
 
     Parameters
@@ -40,9 +48,13 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     path
         The file.
     time
-        The second of the file's first animation at which it is shown; None for the pose in which the file stands.
+        The second of an animation at which the file is shown; None for the pose in which the file stands.
+    animation
+        The name of that animation, or its number counted from 0; None for the first.
     variants
         The name of the material variant to show; none for the materials that its primitives name first.
+    allow_outside
+        Whether buffers and images may stand outside the file's folder.
 
     Raises
     ------
@@ -52,10 +64,10 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     DoesNotFitError
         More than 255 materials are used.
     """
-    document = Document(path)
+    document = Document(path, allow_outside=allow_outside)
     check_required(document)
     refuse_misplaced(document)
-    document.gltf = posed(document, time)
+    document.gltf = posed(document, time, animation)
     stage = Stage(document, place_nodes(document), find_variant(document, variants))
     shown = list(stage.shown())
     textures = Textures(document)
@@ -63,7 +75,8 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
     dressed = [dress(document, textures, stage.surface(bend), look) for bend, look in worn]
     bare = {seen.material for seen in shown if seen.mesh is None}
     table = MaterialTable()
-    ids = number_materials(document, table, bare.union(*(wears.keys for wears in dressed)))
+    used = {key for wears in dressed for _, _, key in wears.runs}
+    ids = number_materials(document, table, bare | used)
     unfinished = [_unfinished(stage.surface(bend), wears, ids) for (bend, _), wears in zip(worn, dressed, strict=True)]
     meshes = dict(zip(worn, finish(unfinished, table, document.notes), strict=True))
     objects = tuple(
@@ -72,6 +85,7 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
         for thing in _objects(document, name, seen, meshes, ids)
     )
     if not objects:
+        refuse_broken_parts(document)
         said = "; ".join(one.message for one in document.notes.warnings())
         problem = "has no triangles to voxelize" + (f" ({said})" if said else "")
         raise document.error("", problem, "check that the scene shows a mesh")
@@ -79,8 +93,10 @@ def load_gltf(path: Path, *, time: float | None = None, variants: tuple[str, ...
 
 
 def _unfinished(surface: Surface, wears: Dress, ids: Mapping[MaterialKey, int]) -> Unfinished:
-    by_row = np.array([*(ids[key] for key in wears.keys), 0], np.uint8)  # row -1 is the last
-    return Unfinished(surface.positions, surface.triangles, by_row[wears.rows], wears.coat)
+    materials = np.zeros(len(surface.triangles), np.uint8)
+    for start, stop, key in wears.runs:
+        materials[start:stop] = ids[key]
+    return Unfinished(surface.positions, surface.triangles, materials, wears.coat)
 
 
 def _objects(

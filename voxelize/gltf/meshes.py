@@ -48,21 +48,21 @@ class Surface:
     Attributes
     ----------
     positions
-        float64, shape (V, 3), finite; every vertex is used.
+        float32 or float64, shape (V, 3), finite. Not every vertex need be used, but not many are unused.
     triangles
         int32, shape (T, 3), counter-clockwise seen from outside.
     spans
         Which primitive they come from.
     """
 
-    positions: NDArray[np.float64]
+    positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
     spans: tuple[Span, ...]
 
 
 def read_surface(document: Document, index: int, pose: Pose) -> Surface:
     """Read mesh `index` in `pose`."""
-    positions: list[NDArray[np.float64]] = []
+    positions: list[NDArray[np.floating]] = []
     triangles: list[NDArray[np.int32]] = []
     spans: list[Span] = []
     shared: dict[object, tuple[int, int]] = {}
@@ -78,7 +78,7 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
         # Primitives of one mesh often share their vertices and differ in indices and material only.
         same = tuple(primitive.attributes.items()), at if attributes.is_compressed or primitive.targets else None
         if same not in shared:
-            bent = morphed(document, primitive, attributes.floats("POSITION", {"VEC3"}), pose, place)
+            bent = morphed(document, primitive, attributes.reals("POSITION", {"VEC3"}), pose, place)
             bent = skinned(document, attributes, bent, pose, place)
             shared[same] = vertices, len(bent)
             vertices += len(bent)
@@ -95,12 +95,10 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
 
 
 def compact(
-    positions: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Leave out the vertices that no triangle uses: they must not stretch the bounds of the scene."""
-    used = np.zeros(len(positions), np.bool_)
-    used[triangles.reshape(-1).astype(np.intp)] = True  # twice as fast as indices of 32 bits
-    if used.all():
+    positions: NDArray[np.floating], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
+    """Leave out the vertices that no triangle uses where there must be many: a mesh may share the file's vertices."""
+    if len(positions) <= triangles.size:
         return positions, triangles
-    rows = np.cumsum(used, dtype=np.int32) - np.int32(1)
-    return positions[used], rows[triangles]
+    rows, corners = np.unique(triangles, return_inverse=True)
+    return positions[rows], corners.reshape(-1, 3).astype(np.int32)

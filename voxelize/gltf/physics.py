@@ -132,7 +132,7 @@ def physics_collider(
         if not len(surface.triangles):
             raise document.error(where, "a collider without triangles")
         if geometry.convex_hull:
-            return HullCollider(surface.positions)
+            return HullCollider(surface.positions[np.unique(surface.triangles)].astype(np.float64))
         return MeshCollider(surface.positions, surface.triangles)
     if geometry.shape is None:
         raise document.error(here, "names neither a shape nor a mesh")

@@ -90,7 +90,7 @@ class Accessor(Named, frozen=True, kw_only=True):
     count: Count
     type: ElementType
     buffer_view: Index | None = None
-    byte_offset: Index = 0
+    byte_offset: Index | None = None
     normalized: bool = False
     sparse: Sparse | None = None
 

@@ -7,17 +7,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from voxrt.voxelize.gltf.extensions import read_extension
+from voxrt.voxelize.gltf.extensions import CONVERT_IMAGES, read_extension
 from voxrt.voxelize.gltf.schema import Sampler, TextureSource
 from voxrt.voxelize.images import decode_image
-from voxrt.voxelize.paint import Texture
+from voxrt.voxelize.texture import Texture
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
-    from voxrt.voxelize.paint import Wrap
+    from voxrt.voxelize.texture import Wrap
 
 _NEAREST = 9728
 _WRAPS: dict[int, Wrap] = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
@@ -56,7 +56,8 @@ class Textures:
         if source is None:
             kinds = [kind for name, kind in _UNREADABLE.items() if name in texture.extensions]
             what = f"is a {kinds[0]} image alone" if kinds else "has no image"
-            document.notes.add("texture", f"{here} {what}: its materials took the colour of their factor")
+            way_out = f"; {CONVERT_IMAGES}" if kinds else ""
+            document.notes.add("texture", f"{here} {what}: its materials took the colour of their factor{way_out}")
             return None
         document.item(document.gltf.images, source, f"{here}.source", "image")
         if source not in self._images:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.companions import Companions
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
 from voxrt.voxelize.material_table import MaterialTable
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
+def load_obj(
+    path: str | Path, *, up: str | None = None, unit: float | None = None, allow_outside: bool = False
+) -> Scene:
     """Read a Wavefront OBJ file, its material libraries and textures.
 
     ``o`` statements make the objects; in a file without them ``g`` statements do, except that groups which share
@@ -41,6 +44,8 @@ def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file's up axis; None means y.
     unit
         Metres per unit of the file; None means 1.
+    allow_outside
+        Whether material libraries and textures may stand outside the file's folder.
 
     Returns
     -------
@@ -60,7 +65,8 @@ def load_obj(path: str | Path, *, up: str | None = None, unit: float | None = No
     said = read_statements(text, notes)
     _refuse_unreadable_positions(text, said, notes)
     table = MaterialTable()
-    seen = look_at_faces(text, said, table, notes)
+    companions = Companions.of(path, allow_outside=allow_outside)
+    seen = look_at_faces(text, said, companions, table, notes)
     uv = None
     if any(layout is not None for layout in seen.layouts):
         uv, given = texture_coordinates(text, said)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.obj.text import read_text
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from voxrt.voxelize.notes import Notes
 
 # What a material may say that has no bearing on its colour in plain light.
@@ -43,7 +44,7 @@ _OPTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class MtlTexture:
-    """What ``map_Kd`` says: a file's name, where the image lies, and whether it ends at its edges.
+    """What ``map_Kd`` or ``map_d`` says: a file's name, where the image lies, and whether it ends at its edges.
 
     A surface's coordinates are multiplied by `scale` and `offset` is added.
     """
@@ -52,6 +53,10 @@ class MtlTexture:
     scale: tuple[float, float] = (1.0, 1.0)
     offset: tuple[float, float] = (0.0, 0.0)
     clamp: bool = False
+
+    def placed(self) -> tuple[object, ...]:
+        """Return all that says where the image lies."""
+        return self.scale, self.offset, self.clamp
 
 
 @dataclass(slots=True)
@@ -68,12 +73,15 @@ class MtlMaterial:
         ``d``, or 1 - ``Tr``.
     texture
         ``map_Kd``, or None.
+    opacity_texture
+        ``map_d``, or None.
     """
 
     name: str
     colour: tuple[float, float, float] | None = None
     opacity: float = 1.0
     texture: MtlTexture | None = None
+    opacity_texture: MtlTexture | None = None
 
 
 def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
@@ -119,9 +127,9 @@ def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> N
         if material.opacity == 1.0:  # exporters that write both mean d
             material.opacity = 1.0 - transparency
     elif keyword == "map_kd":
-        material.texture = _texture(argument, place)
+        material.texture = _texture(keyword, argument, place)
     elif keyword == "map_d":
-        place.notes.add("opacity-texture", "map_d is not honoured: the surface is opaque throughout")
+        material.opacity_texture = _texture(keyword, argument, place)
     elif keyword not in _WITHOUT_BEARING:
         place.notes.add("unknown-statement", f"{place.path.name}: {keyword!r} was not understood")
 
@@ -140,16 +148,16 @@ def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
     return values[0], values[1], values[2]
 
 
-def _texture(argument: str, place: _Place) -> MtlTexture | None:
+def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
     """Read the options that stand before a file's name, which may hold blanks."""
     rest = argument
     scale, offset, clamp = (1.0, 1.0), (0.0, 0.0), False
     while rest.startswith("-"):
         option, _, rest = rest.partition(" ")
-        rest = rest.lstrip()
-        fewest, most = _OPTIONS.get(option.lower(), (0, 0))
+        option, rest = option.lower(), rest.lstrip()
+        fewest, most = _OPTIONS.get(option, (0, 0))
         if not most:
-            place.notes.add("unknown-statement", f"{place.path.name}: map_Kd option {option!r} was not understood")
+            place.notes.add("unknown-statement", f"{place.path.name}: {keyword} option {option!r} was not understood")
         values: list[str] = []
         while len(values) < most:
             word, _, after = rest.partition(" ")
@@ -166,7 +174,7 @@ def _texture(argument: str, place: _Place) -> MtlTexture | None:
         elif option == "-clamp":
             clamp = values == ["on"]
         elif option in ("-mm", "-t"):
-            place.notes.add("texture", f"{place.path.name}: map_Kd option {option!r} is not honoured")
+            place.notes.add("texture", f"{place.path.name}: {keyword} option {option!r} is not honoured")
     return MtlTexture(rest, scale, offset, clamp) if rest else None
 
 
@@ -186,24 +194,3 @@ def _real(words: list[str], place: _Place) -> float:
     if not math.isfinite(value):
         raise AssetError(place.path, f"{' '.join(words)!r} is no number", place=place.line, fix="repair the line")
     return value
-
-
-def find_companion(folder: Path, name: str) -> Path | None:
-    """Return a file that an asset in `folder` names, in or below that folder; None where there is none.
-
-    Backslashes separate folders too, a path from another machine is tried by its last part, and the case of letters
-    does not matter: that is how the exporting machine found it.
-    """
-    parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
-    root = folder.resolve()
-    for tail in (parts, parts[-1:]):
-        place = root
-        for part in tail:
-            here = place / part
-            if part != ".." and not here.exists() and place.is_dir():
-                here = next((entry for entry in sorted(place.iterdir()) if entry.name.lower() == part.lower()), here)
-            place = here
-        found = place.resolve()
-        if tail and found.is_file() and found.is_relative_to(root):
-            return found
-    return None

@@ -90,7 +90,11 @@ def read_text(path: Path) -> Text:
         data = path.read_bytes()
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
-    data = _to_ascii_compatible(path, data)
+    return as_text(path, _to_ascii_compatible(path, data))
+
+
+def as_text(path: Path, data: bytes) -> Text:
+    """Find the lines of ASCII compatible bytes."""
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not data.endswith(b"\n"):

@@ -66,6 +66,8 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
 def _coat(tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]) -> Coat | None:
     """Paint triangles with their faces' colours, else with their vertices'; None where there are none."""
     by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
+    if "tristrips" in tables:  # they have no colours of faces
+        by_face = None
     if by_face is not None:
         colours = np.repeat(by_face[faces][:, None], 3, axis=1)
     elif by_vertex is not None:
@@ -99,16 +101,49 @@ def _unit(column: Column) -> NDArray[np.float64]:
     return np.clip(values / full, 0.0, 1.0)
 
 
+def _polygons(tables: dict[str, Table]) -> ListColumn | None:
+    """Return the file's faces, then the triangles of its strips; None where it has neither."""
+    faces, strips = (
+        table.get("vertex_indices", table.get("vertex_index"))
+        for table in (tables.get("face", {}), tables.get("tristrips", {}))
+    )
+    if not isinstance(strips, ListColumn):
+        return faces if isinstance(faces, ListColumn) else None
+    triangles = triangles_of_strips(strips)
+    counts, values = np.full(len(triangles), 3, dtype=np.int64), triangles.reshape(-1)
+    if isinstance(faces, ListColumn):
+        counts = np.concatenate([faces.counts, counts])
+        values = np.concatenate([faces.values.astype(np.float64), values])
+    return ListColumn(counts, values)
+
+
+def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
+    """Return the triangles of strips, every other one turned round; -1 begins a strip anew.
+
+    Their corners are float64, shape (T, 3), as ASCII files have them.
+    """
+    # One -1 after each row, so that rows are strips of their own.
+    stored = np.insert(strips.values.astype(np.float64), np.cumsum(strips.counts), -1.0)
+    places = np.arange(len(stored))
+    breaks = stored == -1
+    since = places - np.maximum.accumulate(np.where(breaks, places, -1)) - 1
+    last = np.flatnonzero(~breaks & (since >= 2))
+    even = (since[last] % 2 == 0)[:, None]
+    first, second, third = (stored[last - back] for back in (2, 1, 0))
+    triangles = np.where(even, np.stack([first, second, third], axis=1), np.stack([second, first, third], axis=1))
+    a, b, c = triangles.T
+    real: NDArray[np.bool_] = (a != b) & (b != c) & (a != c)
+    return triangles[real]  # those that only join one strip to the next are none
+
+
 def _geometry(
     path: Path, tables: dict[str, Table], notes: Notes
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Positions, corners per face, corners, and which of the file's faces they are of."""
-    vertices, faces = tables.get("vertex", {}), tables.get("face", {})
-    if "tristrips" in tables:
-        notes.add("tristrips", "triangle strips are not honoured; export triangles")
+    vertices = tables.get("vertex", {})
     axes = [vertices.get(axis) for axis in "xyz"]
-    polygons = faces.get("vertex_indices", faces.get("vertex_index"))
-    if not isinstance(polygons, ListColumn) or not len(polygons.counts):
+    polygons = _polygons(tables)
+    if polygons is None or not len(polygons.counts):
         raise AssetError(path, "has no faces", fix="export it with its polygons; point clouds have no surface")
     if any(axis is None or isinstance(axis, ListColumn) for axis in axes):
         raise AssetError(path, "has vertices without x, y and z", fix="export it again")

@@ -10,6 +10,7 @@ import numpy as np
 
 from voxrt.voxelize import solid as solids
 from voxrt.voxelize.author import Author, AuthoringError
+from voxrt.voxelize.companions import ALLOW_OUTSIDE, Companions
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.load import load
 from voxrt.voxelize.scene_toml.check import Checked, check
@@ -23,13 +24,15 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene_toml.positions import Path as KeyPath
 
 
-def load_scene_toml(path: str | Path) -> Scene:
+def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
     """Read a scene file and the assets that it names.
 
     Parameters
     ----------
     path
         The file; assets stand relative to its folder.
+    allow_outside
+        Whether assets may stand outside that folder, and what they name outside theirs.
 
     Returns
     -------
@@ -50,12 +53,13 @@ def load_scene_toml(path: str | Path) -> Scene:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     except UnicodeDecodeError:
         raise AssetError(path, "is no UTF-8 text", fix="save it as UTF-8") from None
-    return _Builder(check(path, text)).scene()
+    return _Builder(check(path, text), allow_outside=allow_outside).scene()
 
 
 class _Builder:
-    def __init__(self, checked: Checked) -> None:
+    def __init__(self, checked: Checked, *, allow_outside: bool) -> None:
         self._checked = checked
+        self._companions = Companions.of(checked.path, allow_outside=allow_outside)
         self._assets: dict[tuple[object, ...], Scene] = {}
 
     def scene(self) -> Scene:
@@ -71,6 +75,9 @@ class _Builder:
                 raise checked.error(("materials", name), str(error), "correct the material") from None
         for index, node in enumerate(values.objects):
             self._add(node, ("objects", index), "", np.eye(4), None)
+        for name in self._author.uncoloured:
+            problem = f"material {name!r} has no colour, and no asset has one of that name"
+            raise checked.error(("materials", name), problem, "give it a colour")
         if values.camera is not None:
             camera = values.camera
             try:
@@ -186,14 +193,24 @@ class _Builder:
         return reduce(Solid.__or__, parts)
 
     def _asset(self, asset: Asset, where: KeyPath) -> Scene:
-        key = (asset.file, asset.up, asset.unit, asset.time, tuple(asset.variants))
+        key = (asset.file, asset.up, asset.unit, asset.time, asset.animation, tuple(asset.variants))
         if key not in self._assets:
             path = self._checked.path.parent / asset.file
             if path.suffix.lower() == ".toml":
                 raise self._checked.error((*where, "file"), "a scene file holds no other", "copy its objects")
+            found = self._companions.find(asset.file)
+            if found is not None and not self._companions.allows(found):
+                problem = f"asset {asset.file[:60]!r} lies outside the scene file's folder"
+                raise self._checked.error((*where, "file"), problem, ALLOW_OUTSIDE)
             try:
                 self._assets[key] = load(
-                    path, up=asset.up, unit=asset.unit, time=asset.time, variants=tuple(asset.variants)
+                    path,
+                    up=asset.up,
+                    unit=asset.unit,
+                    time=asset.time,
+                    animation=asset.animation,
+                    variants=tuple(asset.variants),
+                    allow_outside=self._companions.allow_outside,
                 )
             except AssetError as error:
                 if error.place:

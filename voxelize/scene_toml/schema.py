@@ -27,14 +27,14 @@ class MaterialTable(_Table, frozen=True, kw_only=True):
     Attributes
     ----------
     colour
-        ``"#rrggbb"`` or three integers of 0 … 255.
+        ``"#rrggbb"`` or three integers of 0 … 255; left out, the one that the asset with such a material gives it.
     mirror
         Reflects, where the hardware has mirrors.
     id
         1 … 255, to keep an id whatever is declared before.
     """
 
-    colour: Colour
+    colour: Colour | None = None
     mirror: bool = False
     id: Annotated[int, Meta(ge=1, le=255)] | None = None
 
@@ -92,8 +92,9 @@ class Asset(_Table, frozen=True, kw_only=True):
         Its path, from this file's folder.
     up, unit
         For formats that do not say: the up axis, and metres per unit.
-    time, variants
-        For formats that have them: seconds of its animation, and what to show of what it has in several ways.
+    time, animation, variants
+        For formats that have them: seconds of its animation, which animation, and what to show of what it
+        has in several ways.
     materials
         Its material names to those of this file. One of a name that this file declares is that one anyway.
     """
@@ -102,6 +103,7 @@ class Asset(_Table, frozen=True, kw_only=True):
     up: Axis | None = None
     unit: Length | None = None
     time: Number | None = None
+    animation: str | None = None
     variants: list[str] = []
     materials: dict[str, str] = {}
 

@@ -3,8 +3,14 @@
 // Covered by caps, an open surface closes and its winding number is an integer that the column sweep knows exactly. The
 // generalized winding number of the open surface (Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside
 // Segmentation using Generalized Winding Numbers", 2013) is that integer less the solid angle of the caps over 4 pi.
-// So its evaluation costs the holes and not the surface. Far caps are taken together as dipoles (Barill, Dickson,
-// Schmidt, Levin and Jacobson, "Fast Winding Numbers for Soups and Clouds", 2018).
+// So its evaluation costs the holes and not the surface.
+//
+// Far caps are taken together as dipoles (Barill, Dickson, Schmidt, Levin and Jacobson, "Fast Winding Numbers for Soups
+// and Clouds", 2018) with their first moments, and what is found out about a cube is handed down to its parts, which
+// look at what was too near for it alone (Greengard and Rokhlin, "A Fast Algorithm for Particle Simulations", 1987).
+// Every approximation carries a proven bound of its error. 1 / distance is harmonic, so that its derivative of order n
+// is at most n! / distance^(n + 1) in any directions: a dipole of area A whose ends lie within t D of D is off by at
+// most A / (4 pi D^2) sum over k >= 2 of (k + 1) t^k.
 #pragma once
 
 #include "fixed_point.h"
@@ -20,83 +26,60 @@ struct Point {
     bool operator==(const Point&) const = default;
 };
 
-/// The edges of holes. How the solid angle of a surface changes depends on its rim alone, like the field of a current
-/// in a wire (Biot and Savart).
-class HoleRim {
-public:
-    struct Piece {
-        Point from, to;
-        int times;
-    };
-    /// Within some reach of a point the solid angle over 4 pi differs from a linear one by `error` at most.
-    struct Slope {
-        Point gradient{0, 0, 0};
-        double error = 0;
-    };
-
-    HoleRim() = default;
-    explicit HoleRim(std::vector<Piece> pieces);
-
-    /// The error is infinite where the rim is within `reach` of q.
-    Slope slope(const Point& q, double reach) const;
-
-private:
-    struct Node {
-        Point middle{}, along{}; // the sum of pieces as vectors
-        double length = 0, radius = 0;
-        uint32_t piece = 0; // of a leaf
-        int32_t left = -1, right = -1;
-    };
-    int32_t build(uint32_t first, uint32_t last);
-
-    std::vector<Piece> pieces_;
-    std::vector<Node> nodes_;
+/// The solid angle of some caps over 4 pi about a point: linear, and by how much it may be off.
+struct LinearAngle {
+    double angle = 0;
+    Point gradient{0, 0, 0};
+    double error = 0;
 };
 
-/// Triangles with multiplicity, as a tree of dipoles.
+/// All caps as seen from a ball.
+struct HoleView {
+    Point centre{0, 0, 0};
+    LinearAngle far;
+    LinearAngle near;           // of caps that the parts of the ball can see better
+    std::vector<uint32_t> open; // nodes of all that is not in `far`
+    double doubt = 0;           // the most that caps add which are in neither
+    /// Caps pass through the ball. They are taken as seen from the centre: to go on through one keeps the angle, with a
+    /// surface that it closes, in step with the winding number at the centre.
+    bool crossed = false;
+};
+
+/// Triangles as a tree of dipoles.
 class HoleWinding {
 public:
-    struct Cap {
-        std::array<Point, 3> corners;
-        int times;
-    };
+    using Cap = std::array<Point, 3>; // multiples of 1/4096
 
     HoleWinding() = default;
-    /// The first edge of each cap is on the rim of its hole.
     explicit HoleWinding(std::vector<Cap> caps);
 
     bool empty() const { return caps_.empty(); }
 
-    /// The caps' solid angle over 4 pi, seen from q, far caps taken together: within kDipoleError, by experience.
-    double at(const Point& q) const;
-    static constexpr double kDipoleError = 0.01;
+    /// What is known of all caps before looking.
+    HoleView start() const;
 
-    struct Measured {
-        double angle, error;
-    };
-    /// The same with what it may be off by: all caps are summed where they are few.
-    Measured measured_at(const Point& q) const;
+    /// Looks from a ball within that of `from`. Where reach is 0, all is far and exact but for what was far already,
+    /// and `centre` is to be a point where voxels are asked.
+    void look(const HoleView& from, const Point& centre, double reach, HoleView& to) const;
 
-    /// How the same changes within `reach` of q, where no cap lies between; across one it jumps by a whole number.
-    HoleRim::Slope slope(const Point& q, double reach) const { return rim_.slope(q, reach); }
+    /// The caps' solid angle over 4 pi, within `tolerance`. On a cap the point counts as just below it, where the
+    /// column sweep has it.
+    double at(const Point& q, double tolerance) const;
 
 private:
     struct Node {
-        Point centre{};
-        double nx = 0, ny = 0, nz = 0; // sum of area vectors times multiplicity
+        Point centre{}, dipole{}; // the sum of area vectors
+        double moment[6] = {};    // symmetric part of area vector (x) offset from the centre: xx yy zz xy yz zx
         double area = 0, radius = 0;
         uint32_t first = 0, last = 0; // caps
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
-
-    // The sum of this many caps takes about as long as the rest of the work on a brick.
-    static constexpr size_t kFewCaps = 1000;
-    static constexpr double kRoundingError = 1e-6;
+    static double dipole_angle(const Node& node, const Point& d, double square);
+    static void add_dipole(const Node& node, const Point& d, double square, LinearAngle& sum);
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;
-    HoleRim rim_;
 };
 
 } // namespace voxrt

@@ -1,10 +1,11 @@
 // Which voxels of a tile lie inside a surface with holes: those where its generalized winding number is beyond 1/2.
 //
-// That number is the one of the surface with its holes capped, known for every voxel, less what the caps add. Along a
-// way past the surface it changes smoothly, and as the rim of the holes alone lets it: nearly linearly within cubes
-// that are small beside their distance from the rim. So in a cube one voxel of each piece that the surface leaves is
-// asked; where that decides no others, as at the rim and on the surface in the middle of a hole's doubt, the cube is
-// cut.
+// That number is the one of the surface with its holes capped, known for every voxel, less what the caps add. Cubes are
+// looked at from large to small, each knowing what its parent found out about the caps. Where no surface passes a cube,
+// the number changes smoothly, and one voxel may decide all; where the caps add less than 1/2, the number of the capped
+// surface decides; else the cube is cut. A voxel that rounding alone could turn counts as outside.
+//
+// Bound: bricks of surface, and voxels near holes.
 #pragma once
 
 #include "hole_winding.h"
@@ -20,12 +21,13 @@ namespace voxrt {
 
 class OpenInside {
 public:
-    enum class Verdict : uint8_t { outside, inside, mixed };
+    /// Of a brick. `capped`: inside is where the winding number of the capped surface is not zero.
+    enum class Verdict : uint8_t { outside, inside, capped, mixed };
 
-    /// What the settling of large cubes asks of a brick: the closed surface's winding number at two of its voxels.
+    /// What the settling of large cubes asks of a brick: the capped surface's winding number at two of its voxels.
     struct Brick {
         int corner = 0, middle = 0; // voxels (0, 0, 0) and (4, 4, 4)
-        bool shell = false;
+        bool surface = false;
     };
 
     /// The inside lies within `box`; every brick is then to be told before settle().
@@ -43,93 +45,21 @@ public:
         }
         bricks_.resize(size_t(kTileColumns) * height_);
         verdicts_.assign(bricks_.size(), Verdict::outside);
+        mixed_.resize(bricks_.size());
+        views_.clear();
     }
 
     Brick& brick(int column, int k) { return bricks_[size_t(column) * height_ + k]; }
 
     void settle() {
+        const HoleView all = holes_->start();
         for (int k = 0; k < height_; k += kTileBricks)
-            settle_cube(0, 0, k, kTileBricks);
+            settle_cube(0, 0, k, kTileBricks, all, 0);
     }
 
     Verdict verdict(int column, int k) const { return verdicts_[size_t(column) * height_ + k]; }
 
-    /// The voxels of a brick that are inside, the shell's left out of a mixed one. `numbers`: the closed surface's
-    /// winding numbers there; asked of mixed ones only.
-    Slices inside(int column, int k, const Slices& shell, const std::vector<int>& numbers) {
-        Slices box = box_of(column, k), within{};
-        if (verdict(column, k) == Verdict::inside)
-            return box;
-        if (verdict(column, k) == Verdict::outside)
-            return within;
-        x_ = x0_ + column % kTileBricks * kBrickSide;
-        y_ = y0_ + column / kTileBricks * kBrickSide;
-        z_ = k * kBrickSide;
-        for (int z = 0; z < kBrickSide; ++z)
-            box[z] &= ~shell[z];
-        decide({0, 0, 0, std::min(side_, kBrickSide)}, box, numbers.data(), within);
-        return within;
-    }
-
-private:
-    static constexpr double kHalfDiagonal = 0.8660254037844386;
-    static constexpr double kTie = 0.5 + 1e-6; // what is beyond by rounding alone is not
-    // A voxel is asked where its column's ray runs.
-    static constexpr double kSample = 0.5 + 1.0 / 8192;
-
-    struct Cell {
-        int x, y, z, side; // in a brick
-    };
-
-    bool beyond_box(int x, int y, int z, int side) const {
-        return x > high_[0] || y > high_[1] || z > high_[2] || x + side <= low_[0] || y + side <= low_[1] ||
-               z + side <= low_[2];
-    }
-
-    /// The voxel about a cube's middle, as it is asked, and how far from it voxels of the cube are asked.
-    static Point sample(int x, int y, int z, int side) {
-        return {x + side / 2 + kSample, y + side / 2 + kSample, z + side / 2 + kSample};
-    }
-    static double reach(int side) { return side / 2 * 2 * kHalfDiagonal; }
-
-    void settle_cube(int bx, int by, int k, int bricks) {
-        const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
-        if (beyond_box(x, y, z, side))
-            return;
-        Verdict verdict = Verdict::mixed;
-        if (x + side <= side_ && y + side <= side_ && z + side <= side_)
-            verdict = verdict_of(bx, by, k, bricks, sample(x, y, z, side), reach(side));
-        if (verdict == Verdict::mixed && bricks > 1) {
-            const int step = bricks / 2;
-            for (int i = 0; i < 8; ++i)
-                settle_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step);
-            return;
-        }
-        for (int v = by; v < by + bricks; ++v)
-            for (int u = bx; u < bx + bricks; ++u)
-                std::fill_n(verdicts_.begin() + ptrdiff_t(v * kTileBricks + u) * height_ + k, bricks, verdict);
-    }
-
-    Verdict verdict_of(int bx, int by, int k, int bricks, const Point& q, double reach) {
-        for (int v = by; v < by + bricks; ++v)
-            for (int u = bx; u < bx + bricks; ++u)
-                for (int w = k; w < k + bricks; ++w)
-                    if (brick(v * kTileBricks + u, w).shell)
-                        return Verdict::mixed;
-        const HoleRim::Slope slope = holes_->slope(q, reach);
-        const Point& g = slope.gradient;
-        double change = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + slope.error;
-        if (!(change < 0.5))
-            return Verdict::mixed;
-        const int half = bricks / 2;
-        const Brick& middle = brick((by + half) * kTileBricks + bx + half, k + half);
-        const HoleWinding::Measured caps = holes_->measured_at(q);
-        const double number = std::abs((bricks > 1 ? middle.corner : middle.middle) - caps.angle);
-        change += caps.error;
-        return number - change > kTie ? Verdict::inside : number + change < 0.5 ? Verdict::outside : Verdict::mixed;
-    }
-
-    /// A brick's voxels within the box.
+    /// A brick's voxels within the box: where the inside may be.
     Slices box_of(int column, int k) const {
         const int x = x0_ + column % kTileBricks * kBrickSide, y = y0_ + column / kTileBricks * kBrickSide;
         uint64_t columns = 0;
@@ -145,103 +75,187 @@ private:
         return box;
     }
 
-    /// Decides the voxels `asked` of a cell, none of which has surface.
-    void decide(const Cell& cell, const Slices& asked, const int* numbers, Slices& within) {
-        const uint64_t square = cell.side == kBrickSide
-                                    ? ~uint64_t{0}
-                                    : ((uint64_t{1} << cell.side * cell.side) - 1) << column_bit(cell.x, cell.y);
-        Slices open{};
+    /// The voxels of a mixed brick that are inside, the surface's left out. `numbers`: the capped surface's winding
+    /// numbers there.
+    Slices inside(int column, int k, const Slices& surface, const std::vector<int>& numbers) {
+        x_ = x0_ + column % kTileBricks * kBrickSide;
+        y_ = y0_ + column / kTileBricks * kBrickSide;
+        z_ = k * kBrickSide;
+        numbers_ = numbers.data();
+        surface_ = &surface;
+        Slices open = box_of(column, k), within{};
+        for (int z = 0; z < kBrickSide; ++z)
+            open[z] &= ~surface[z];
+        decide({0, 0, 0, std::min(side_, kBrickSide)}, views_[mixed_[size_t(column) * height_ + k]], 0, open, within);
+        return within;
+    }
+
+private:
+    static constexpr double kRootOfThree = 1.7320508075688772;
+    static constexpr double kTie = 0.5 + 1e-6; // what is beyond by rounding alone is not
+    // A voxel is asked where its column's ray runs.
+    static constexpr double kSample = 0.5 + 1.0 / 8192;
+
+    struct Cell {
+        int x, y, z, side; // in a brick
+    };
+    bool beyond_box(int x, int y, int z, int side) const {
+        return x > high_[0] || y > high_[1] || z > high_[2] || x + side <= low_[0] || y + side <= low_[1] ||
+               z + side <= low_[2];
+    }
+
+    /// Looks at a cube whose lowest corner is at (x, y, z); returns how far from the view's centre its voxels are
+    /// asked. Where caps pass a clear cube, one without surface, it is looked at from a voxel, where the number is
+    /// known.
+    double look(const HoleView& from, int x, int y, int z, int side, bool clear, HoleView& to) const {
+        double middle = (side - 1) / 2.0;
+        holes_->look(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kRootOfThree,
+                     to);
+        if (!to.crossed || !clear)
+            return middle * kRootOfThree;
+        middle = side / 2;
+        holes_->look(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kRootOfThree,
+                     to);
+        return middle * kRootOfThree;
+    }
+
+    static Point gradient(const HoleView& view) {
+        const Point &f = view.far.gradient, &n = view.near.gradient;
+        return {f.x + n.x, f.y + n.y, f.z + n.z};
+    }
+    static double error(const HoleView& view) { return view.far.error + view.near.error + view.doubt; }
+
+    void settle_cube(int bx, int by, int k, int bricks, const HoleView& from, int level) {
+        const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
+        if (beyond_box(x, y, z, side))
+            return;
+        const bool within = x + side <= side_ && y + side <= side_ && z + side <= side_;
+        const bool clear = within && !has_surface(bx, by, k, bricks);
+        HoleView& view = levels_[level];
+        const double reach = look(from, x, y, z, side, clear, view);
+        const Verdict verdict = verdict_of(view, reach, bx, by, k, bricks, clear);
+        if (verdict == Verdict::mixed && bricks > 1) {
+            const int step = bricks / 2;
+            for (int i = 0; i < 8; ++i)
+                settle_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step, view, level + 1);
+            return;
+        }
+        for (int v = by; v < by + bricks; ++v)
+            for (int u = bx; u < bx + bricks; ++u)
+                std::fill_n(verdicts_.begin() + place(u, v, k), std::min(bricks, height_ - k), verdict);
+        if (verdict == Verdict::mixed) {
+            mixed_[place(bx, by, k)] = uint32_t(views_.size());
+            views_.push_back(view);
+        }
+    }
+
+    ptrdiff_t place(int bx, int by, int k) const { return ptrdiff_t(by * kTileBricks + bx) * height_ + k; }
+
+    bool has_surface(int bx, int by, int k, int bricks) const {
+        for (int v = by; v < by + bricks; ++v)
+            for (int u = bx; u < bx + bricks; ++u)
+                for (int w = k; w < k + bricks; ++w)
+                    if (bricks_[place(u, v, w)].surface)
+                        return true;
+        return false;
+    }
+
+    Verdict verdict_of(const HoleView& view, double reach, int bx, int by, int k, int bricks, bool clear) const {
+        const Point g = gradient(view);
+        const double off = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * reach + error(view);
+        const double angle = view.far.angle + view.near.angle;
+        if (!view.crossed && std::abs(angle) + off < 0.5)
+            return Verdict::capped;
+        if (!clear)
+            return Verdict::mixed;
+        const int half = bricks / 2;
+        const Brick& middle = bricks_[place(bx + half, by + half, k + half)];
+        const double there = std::abs((bricks > 1 ? middle.corner : middle.middle) - angle);
+        return there - off > kTie ? Verdict::inside : there + off < 0.5 ? Verdict::outside : Verdict::mixed;
+    }
+
+    static uint64_t square_of(const Cell& cell) {
+        return cell.side == kBrickSide ? ~uint64_t{0}
+                                       : ((uint64_t{1} << cell.side * cell.side) - 1) << column_bit(cell.x, cell.y);
+    }
+    bool is_clear(const Cell& cell) const {
+        uint64_t any = 0;
         for (int z = cell.z; z < cell.z + cell.side; ++z)
-            open[z] = asked[z] & square;
-        if (is_empty(open))
+            any |= (*surface_)[z] & square_of(cell);
+        return any == 0;
+    }
+
+    /// Decides the voxels of a cell that are open, none of which has surface.
+    void decide(const Cell& cell, const HoleView& view, int level, Slices& open, Slices& within) {
+        const double off = error(view);
+        if (off < 0.5 && (!view.crossed || is_clear(cell))) {
+            const Point g = gradient(view);
+            const double angle = view.far.angle + view.near.angle;
+            const int half = cell.side / 2;
+            const int at_centre = numbers_[(cell.z + half) * 64 + column_bit(cell.x + half, cell.y + half)];
+            for (int z = cell.z; z < cell.z + cell.side; ++z)
+                for (uint64_t left = open[z] & square_of(cell); left != 0; left &= left - 1) {
+                    const int bit = std::countr_zero(left);
+                    const int number = view.crossed ? at_centre : numbers_[z * 64 + bit];
+                    const double there =
+                        std::abs(number - angle - g.x * (x_ + column_x(bit) + kSample - view.centre.x) -
+                                 g.y * (y_ + column_y(bit) + kSample - view.centre.y) -
+                                 g.z * (z_ + z + kSample - view.centre.z));
+                    if (there - off > kTie)
+                        within[z] |= uint64_t{1} << bit;
+                    else if (!(there + off < (off == 0 ? kTie : 0.5)))
+                        continue;
+                    open[z] &= ~(uint64_t{1} << bit);
+                }
+        }
+        uint64_t left = 0;
+        for (int z = cell.z; z < cell.z + cell.side; ++z)
+            left |= open[z] & square_of(cell);
+        if (left == 0)
             return;
         if (cell.side == 1) {
-            const Point q = sample(x_ + cell.x, y_ + cell.y, z_ + cell.z, 1);
-            if (std::abs(numbers[cell.z * 64 + column_bit(cell.x, cell.y)] - holes_->at(q)) > kTie)
-                within[cell.z] |= open[cell.z];
+            if (ask(cell))
+                within[cell.z] |= left;
             return;
         }
-        const double middle = (cell.side - 1) / 2.0 + kSample; // of the points where its voxels are asked
-        const HoleRim::Slope slope = holes_->slope({x_ + cell.x + middle, y_ + cell.y + middle, z_ + cell.z + middle},
-                                                   (cell.side - 1) * kHalfDiagonal);
-        if (slope.error < 0.24) { // twice it, below, decides nothing beyond 1/2
-            Slices left = open;
-            for (int z = cell.z; z < cell.z + cell.side; ++z)
-                while (left[z] != 0)
-                    decide_piece(cell, take_piece(cell, z, std::countr_zero(left[z]), left), slope, numbers, open,
-                                 within);
-        }
         const int half = cell.side / 2;
-        for (int i = 0; i < 8; ++i)
-            decide({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half}, open,
-                   numbers, within);
-    }
-
-    struct Voxel {
-        int z, bit; // in a brick
-    };
-
-    /// Moves the voxels of a cell that are joined to one by their sides from `left` to a list, that one first.
-    const std::vector<Voxel>& take_piece(const Cell& cell, int z, int bit, Slices& left) {
-        piece_.clear();
-        auto take = [&](int x, int y, int z) {
-            const uint64_t one = uint64_t{1} << column_bit(x, y);
-            if (left[z] & one) {
-                left[z] ^= one;
-                piece_.push_back({z, column_bit(x, y)});
-            }
-        };
-        take(column_x(bit), column_y(bit), z);
-        for (size_t i = 0; i < piece_.size(); ++i) {
-            const Voxel at = piece_[i];
-            const int x = column_x(at.bit), y = column_y(at.bit);
-            if (x > cell.x)
-                take(x - 1, y, at.z);
-            if (x + 1 < cell.x + cell.side)
-                take(x + 1, y, at.z);
-            if (y > cell.y)
-                take(x, y - 1, at.z);
-            if (y + 1 < cell.y + cell.side)
-                take(x, y + 1, at.z);
-            if (at.z > cell.z)
-                take(x, y, at.z - 1);
-            if (at.z + 1 < cell.z + cell.side)
-                take(x, y, at.z + 1);
-        }
-        return piece_;
-    }
-
-    /// Decides those voxels of a piece, joined past the surface, that the slope from one of them can, and takes them
-    /// off `open`. The slope is that of a potential wherever the rim is not, so the way from one to another does not
-    /// matter.
-    void decide_piece(const Cell& cell, const std::vector<Voxel>& piece, const HoleRim::Slope& slope,
-                      const int* numbers, Slices& open, Slices& within) const {
-        const int sx = column_x(piece[0].bit), sy = column_y(piece[0].bit), sz = piece[0].z;
-        const Point seed = sample(x_ + sx, y_ + sy, z_ + sz, 1);
-        const HoleWinding::Measured caps = cell.side == kBrickSide
-                                               ? holes_->measured_at(seed)
-                                               : HoleWinding::Measured{holes_->at(seed), HoleWinding::kDipoleError};
-        const double start = numbers[sz * 64 + piece[0].bit] - caps.angle;
-        // Both the seed and the voxel may lie off the line.
-        const double error = 2 * slope.error + caps.error;
-        for (const Voxel& v : piece) {
-            const double number = std::abs(start - slope.gradient.x * (column_x(v.bit) - sx) -
-                                           slope.gradient.y * (column_y(v.bit) - sy) - slope.gradient.z * (v.z - sz));
-            if (number - error > kTie)
-                within[v.z] |= uint64_t{1} << v.bit;
-            else if (!(number + error < 0.5))
+        for (int i = 0; i < 8; ++i) {
+            const Cell part{cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half};
+            uint64_t asked = 0;
+            for (int z = part.z; z < part.z + half; ++z)
+                asked |= open[z] & square_of(part);
+            if (asked == 0)
                 continue;
-            open[v.z] &= ~(uint64_t{1} << v.bit);
+            look(view, x_ + part.x, y_ + part.y, z_ + part.z, half, is_clear(part), levels_[level]);
+            decide(part, levels_[level], level + 1, open, within);
         }
+    }
+
+    /// Whether a voxel is inside, as exactly as that takes.
+    bool ask(const Cell& cell) const {
+        const Point q{x_ + cell.x + kSample, y_ + cell.y + kSample, z_ + cell.z + kSample};
+        const int number = numbers_[cell.z * 64 + column_bit(cell.x, cell.y)];
+        for (const double tolerance : {1e-2, 1e-4}) {
+            const double there = std::abs(number - holes_->at(q, tolerance));
+            if (there - tolerance > kTie || there + tolerance < 0.5)
+                return there > 0.5;
+        }
+        return std::abs(number - holes_->at(q, 0)) > kTie;
     }
 
     const HoleWinding* holes_ = nullptr;
     int side_ = 0, height_ = 0, x0_ = 0, y0_ = 0;
     int low_[3] = {}, high_[3] = {};
-    int x_ = 0, y_ = 0, z_ = 0; // of the brick looked into
     std::vector<Brick> bricks_;
     std::vector<Verdict> verdicts_;
-    std::vector<Voxel> piece_;
+    std::vector<uint32_t> mixed_; // by brick: its view
+    std::vector<HoleView> views_; // of mixed bricks
+    HoleView levels_[4];          // of the cubes, then of the cells about what is looked at
+
+    // The brick looked into.
+    int x_ = 0, y_ = 0, z_ = 0;
+    const int* numbers_ = nullptr;
+    const Slices* surface_ = nullptr;
 };
 
 } // namespace voxrt

@@ -1,5 +1,8 @@
 #include "open_surface.h"
 
+#include "boundary_loops.h"
+#include "inside_probes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,10 +11,11 @@
 namespace voxrt {
 namespace {
 
-constexpr double kSheetShare = 0.6; // caps larger than this part of the surface: a sheet (a bowl's are one half)
-constexpr double kEnclosed = 0.75;  // sheets enclose what sees them with at least this winding number
-constexpr int kProbes = 8;          // a side, where sheets are asked
-constexpr uint32_t kUnnumbered = 0xFFFF'FFFF;
+constexpr double kOpening = 0.15; // a piece stands open where a loop closes with more than this share of its area
+constexpr double kClosed = 0.87;  // pieces close one another where this share of all directions does not lead out
+constexpr double kRoom = 0.75; // what stands open encloses something where this share does not; a plain sheet does not
+
+constexpr double kLeastOpening = 1e-300; // of a piece that does not close
 
 class Groups {
 public:
@@ -31,11 +35,13 @@ private:
     std::vector<uint32_t> parent_;
 };
 
-double area(const Point& a, const Point& b, const Point& c) {
+/// Area, as a vector along the normal.
+Point area(const Point& a, const Point& b, const Point& c) {
     const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
     const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx) / 2;
+    return {(uy * vz - uz * vy) / 2, (uz * vx - ux * vz) / 2, (ux * vy - uy * vx) / 2};
 }
+double length(const Point& a) { return std::hypot(a.x, a.y, a.z); }
 
 /// For each vertex the first one at the same place.
 std::vector<uint32_t> weld(const std::vector<Point>& points) {
@@ -52,7 +58,8 @@ std::vector<uint32_t> weld(const std::vector<Point>& points) {
     return first;
 }
 
-std::vector<Boundary::Edge> boundary_of(const MeshView& mesh, const std::vector<uint32_t>& welded) {
+/// By first vertex.
+std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<uint32_t>& welded) {
     struct Edge {
         uint32_t low, high;
         int way;
@@ -67,98 +74,118 @@ std::vector<Boundary::Edge> boundary_of(const MeshView& mesh, const std::vector<
         }
     std::sort(edges.begin(), edges.end(),
               [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
-    std::vector<Boundary::Edge> boundary;
+    std::vector<BoundaryEdge> boundary;
     for (size_t i = 0; i < edges.size();) {
         int sum = 0;
         size_t j = i;
         for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
             sum += edges[j].way;
         if (sum > 0)
-            boundary.push_back({edges[i].low, edges[i].high, sum, 0});
+            boundary.push_back({edges[i].low, edges[i].high, sum, (j - i) % 2 == 0});
         else if (sum < 0)
-            boundary.push_back({edges[i].high, edges[i].low, -sum, 0});
+            boundary.push_back({edges[i].high, edges[i].low, -sum, (j - i) % 2 == 0});
         i = j;
     }
+    std::sort(boundary.begin(), boundary.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
+        return a.from != b.from ? a.from < b.from : a.to < b.to;
+    });
     return boundary;
 }
 
-/// The highest winding number, either way, on a lattice over the box of some caps: what is inside of sheets alone.
-double highest_winding(const std::vector<HoleWinding::Cap>& caps) {
-    Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    for (const auto& cap : caps)
-        for (const Point& p : cap.corners) {
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+/// A mesh with its loops of boundary, by connected piece.
+class Pieces {
+public:
+    Pieces(const MeshView& mesh, const std::vector<Point>& points)
+        : mesh_(mesh), points_(points), welded_(weld(points)), groups_(points.size()),
+          loops_(cut_into_loops(boundary_of(mesh, welded_), points.size())), own_(points.size(), 0),
+          opening_(points.size(), 0) {
+        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            const auto [a, b, c] = corners(t);
+            groups_.join(a, b);
+            groups_.join(a, c);
         }
-    const HoleWinding winding(caps);
-    double highest = 0;
-    for (int i = 0; i < kProbes * kProbes * kProbes; ++i) {
-        const double u = (i % kProbes + 0.5) / kProbes, v = (i / kProbes % kProbes + 0.5) / kProbes;
-        const double w = (i / kProbes / kProbes + 0.5) / kProbes;
-        highest = std::max(highest, std::abs(winding.at({low.x + u * (high.x - low.x), low.y + v * (high.y - low.y),
-                                                         low.z + w * (high.z - low.z)})));
+        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            const auto [a, b, c] = corners(t);
+            own_[groups_.of(a)] += length(area(points[a], points[b], points[c]));
+        }
+        for (const auto& [loop, turned] : loops_) {
+            Point sum{0, 0, 0};
+            for (size_t i = 2; i < loop.size(); ++i) {
+                const Point n = area(points[loop[0]], points[loop[i - 1]], points[loop[i]]);
+                sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+            }
+            double& opening = opening_[groups_.of(loop[0])];
+            opening = std::max({opening, 2 * turned > loop.size() ? 0 : length(sum), kLeastOpening});
+        }
     }
-    return highest;
-}
+
+    std::array<uint32_t, 3> corners(size_t t) const {
+        const int32_t* corner = mesh_.triangles.data() + 3 * t;
+        return {welded_[corner[0]], welded_[corner[1]], welded_[corner[2]]};
+    }
+    const std::vector<BoundaryLoop>& loops() const { return loops_; }
+
+    /// Whether the piece of a vertex has a large opening.
+    bool is_open(uint32_t vertex) {
+        const uint32_t piece = groups_.of(vertex);
+        return opening_[piece] > kOpening * own_[piece];
+    }
+
+    /// How well all pieces that do not close enclose together, where those with large openings are.
+    InsideProbes::Enclosure measure_open() {
+        Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            for (uint32_t v : corners(t))
+                if (is_open(v)) {
+                    const Point& p = points_[v];
+                    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+                    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+                }
+        InsideProbes probes(low, high);
+        auto add = [&](const std::array<uint32_t, 3>& t) { probes.add(points_[t[0]], points_[t[1]], points_[t[2]]); };
+        for (size_t t = 0; t < mesh_.triangle_count(); ++t)
+            if (opening_[groups_.of(corners(t)[0])] > 0)
+                add(corners(t));
+        std::vector<std::array<uint32_t, 3>> caps;
+        for (const auto& loop : loops_)
+            close_loop(loop.vertices, caps);
+        std::vector<HoleWinding::Cap> seen;
+        for (const auto& cap : caps) {
+            add(cap);
+            seen.push_back({points_[cap[0]], points_[cap[1]], points_[cap[2]]});
+        }
+        return probes.measure(HoleWinding(std::move(seen)));
+    }
+
+private:
+    const MeshView& mesh_;
+    const std::vector<Point>& points_;
+    std::vector<uint32_t> welded_;
+    Groups groups_;
+    std::vector<BoundaryLoop> loops_;
+    std::vector<double> own_, opening_; // by piece: area of the surface, of its largest loop closed
+};
 
 } // namespace
 
 Boundary find_boundary(const MeshView& mesh, const std::vector<Point>& points) {
-    const std::vector<uint32_t> welded = weld(points);
-    std::vector<Boundary::Edge> edges = boundary_of(mesh, welded);
-
-    Groups pieces(points.size()), holes(points.size());
-    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-        pieces.join(welded[mesh.triangles[3 * t]], welded[mesh.triangles[3 * t + 1]]);
-        pieces.join(welded[mesh.triangles[3 * t]], welded[mesh.triangles[3 * t + 2]]);
-    }
-    for (const Boundary::Edge& edge : edges)
-        holes.join(edge.from, edge.to);
-    std::vector<uint32_t> numbers(points.size(), kUnnumbered);
+    Pieces pieces(mesh, points);
     Boundary boundary;
-    std::vector<Point> means;
-    std::vector<double> ends;
-    for (Boundary::Edge& edge : edges) {
-        uint32_t& number = numbers[holes.of(edge.from)];
-        if (number == kUnnumbered) {
-            number = boundary.holes++;
-            means.push_back({0, 0, 0});
-            ends.push_back(0);
+    bool any_open = false;
+    for (const auto& loop : pieces.loops())
+        any_open = any_open || pieces.is_open(loop.vertices[0]);
+    if (any_open) {
+        const InsideProbes::Enclosure enclosure = pieces.measure_open();
+        if (enclosure.mean < kClosed) {
+            boundary.stands_open = enclosure.highest > kRoom;
+            boundary.shell_only.resize(mesh.triangle_count());
+            for (size_t t = 0; t < mesh.triangle_count(); ++t)
+                boundary.shell_only[t] = pieces.is_open(pieces.corners(t)[0]);
         }
-        edge.hole = number;
-        for (const Point& p : {points[edge.from], points[edge.to]})
-            means[number] = {means[number].x + p.x, means[number].y + p.y, means[number].z + p.z};
-        ends[number] += 2;
     }
-    auto cap_of = [&](const Boundary::Edge& edge) {
-        const Point& sum = means[edge.hole];
-        const double n = ends[edge.hole];
-        return HoleWinding::Cap{{points[edge.to], points[edge.from], {sum.x / n, sum.y / n, sum.z / n}}, edge.times};
-    };
-
-    std::vector<double> own(points.size(), 0), capped(points.size(), 0);
-    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-        const int32_t* corner = mesh.triangles.data() + 3 * t;
-        own[pieces.of(welded[corner[0]])] += area(points[corner[0]], points[corner[1]], points[corner[2]]);
-    }
-    for (const Boundary::Edge& edge : edges) {
-        const HoleWinding::Cap cap = cap_of(edge);
-        capped[pieces.of(edge.from)] += edge.times * area(cap.corners[0], cap.corners[1], cap.corners[2]);
-    }
-
-    // A sheet's caps show what the sheet itself would, negated.
-    auto is_sheet = [&](uint32_t vertex) { return capped[pieces.of(vertex)] > kSheetShare * own[pieces.of(vertex)]; };
-    std::vector<HoleWinding::Cap> of_sheets;
-    for (const Boundary::Edge& edge : edges)
-        if (is_sheet(edge.from))
-            of_sheets.push_back(cap_of(edge));
-    if (!of_sheets.empty() && highest_winding(of_sheets) < kEnclosed) {
-        boundary.sheet.resize(mesh.triangle_count());
-        for (size_t t = 0; t < mesh.triangle_count(); ++t)
-            boundary.sheet[t] = is_sheet(welded[mesh.triangles[3 * t]]);
-        std::erase_if(edges, [&](const Boundary::Edge& edge) { return is_sheet(edge.from); });
-    }
-    boundary.edges = std::move(edges);
+    for (const auto& loop : pieces.loops())
+        if (boundary.shell_only.empty() || !pieces.is_open(loop.vertices[0]))
+            close_loop(loop.vertices, boundary.caps);
     return boundary;
 }
 

@@ -1,8 +1,11 @@
-// An open surface made closable: its boundary edges found, its holes capped, its mere sheets told apart.
+// An open surface made closable: its holes capped, and told apart from what is open on purpose.
 //
-// A hole is a connected piece of the boundary; it is capped by the fan from its mean point. A connected piece of the
-// surface whose caps are nearly as large as itself is a sheet. Sheets that together enclose nothing (their generalized
-// winding number stays low) have a shell and no inside; panels that stand around a room do enclose it.
+// A hole in a scan is a flaw: what it opens is filled all the same. Rooms without a front, bowls and sheets are open as
+// they were made, and have a shell alone. They are told so: a connected piece of the surface stands open where one of
+// its loops of boundary, closed, is large beside the piece itself (by its vector area, so that it does not matter how
+// it is closed; a face wound against its neighbours opens nothing). Pieces that stand open may close one another, as a
+// box and its lid or the panels around a room do. Then hardly any direction leads out from what they enclose; their
+// generalized winding number is the share of those that do not.
 #pragma once
 
 #include "hole_winding.h"
@@ -12,16 +15,11 @@
 
 namespace voxrt {
 
-/// The edges that a surface walks oftener one way than the other, its sheets left out.
+/// What closes a surface.
 struct Boundary {
-    struct Edge {
-        uint32_t from, to;
-        int times;     // how much oftener it is walked this way than back
-        uint32_t hole; // which it is part of
-    };
-    std::vector<Edge> edges;
-    uint32_t holes = 0;
-    std::vector<uint8_t> sheet; // by triangle: 1 has no inside; empty where none
+    std::vector<std::array<uint32_t, 3>> caps; // three vertices each
+    std::vector<uint8_t> shell_only;           // by triangle: 1 is part of what stands open; empty where none
+    bool stands_open = false;                  // some of that encloses something, as a room without a front does
 };
 
 /// `points`: a position each vertex; vertices at one position count as one. Bound: sorting the edges.
@@ -32,38 +30,24 @@ struct OpenSurface {
     template <class At> OpenSurface(std::shared_ptr<const Boundary> found, At&& at);
 
     std::shared_ptr<const Boundary> boundary;
-    std::vector<std::array<Vertex, 3>> caps; // a triangle as often as it counts
-    HoleWinding holes;                       // the same caps
+    std::vector<std::array<Vertex, 3>> caps;
+    HoleWinding holes; // the same caps
 
-    bool is_sheet(size_t triangle) const { return !boundary->sheet.empty() && boundary->sheet[triangle] != 0; }
+    bool is_shell_only(size_t triangle) const {
+        return !boundary->shell_only.empty() && boundary->shell_only[triangle] != 0;
+    }
 };
 
 inline Point in_voxels(const Vertex& v) { return {double(v.x) / kUnit, double(v.y) / kUnit, double(v.z) / kUnit}; }
 
 template <class At>
 OpenSurface::OpenSurface(std::shared_ptr<const Boundary> found, At&& at) : boundary(std::move(found)) {
-    struct Mean {
-        int64_t x = 0, y = 0, z = 0, count = 0;
-        Vertex rounded() const {
-            return {int32_t(floor_div(x, count)), int32_t(floor_div(y, count)), int32_t(floor_div(z, count))};
-        }
-    };
-    std::vector<Mean> means(boundary->holes);
-    for (const Boundary::Edge& edge : boundary->edges)
-        for (const Vertex& v : {at(edge.from), at(edge.to)}) {
-            Mean& mean = means[edge.hole];
-            mean.x += v.x;
-            mean.y += v.y;
-            mean.z += v.z;
-            ++mean.count;
-        }
     std::vector<HoleWinding::Cap> seen;
-    for (const Boundary::Edge& edge : boundary->edges) {
-        // A cap walks its edge backwards.
-        const std::array<Vertex, 3> cap = {at(edge.to), at(edge.from), means[edge.hole].rounded()};
-        for (int i = 0; i < edge.times; ++i)
-            caps.push_back(cap);
-        seen.push_back({{in_voxels(cap[0]), in_voxels(cap[1]), in_voxels(cap[2])}, edge.times});
+    caps.reserve(boundary->caps.size());
+    seen.reserve(boundary->caps.size());
+    for (const auto& [a, b, c] : boundary->caps) {
+        const auto& cap = caps.emplace_back(std::array<Vertex, 3>{at(a), at(b), at(c)});
+        seen.push_back({in_voxels(cap[0]), in_voxels(cap[1]), in_voxels(cap[2])});
     }
     holes = HoleWinding(std::move(seen));
 }

@@ -328,7 +328,9 @@ Survey survey_parts(const std::vector<PartView>& parts, int side, bool fill, Wor
                 lists.push_back(std::move(list));
         begin = end;
     }
+    Lap lap;
     sort_by_tile(survey, lists);
+    survey.bin_seconds = lap();
     return survey;
 }
 

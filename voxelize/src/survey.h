@@ -8,6 +8,7 @@
 
 #include "open_surface.h"
 #include "parallel.h"
+#include "stage_seconds.h"
 #include "tiling.h"
 
 #include <memory>
@@ -33,6 +34,7 @@ struct Survey {
     std::vector<uint32_t> starts;     // tile t owns items starts[t] … starts[t+1]-1
     std::vector<Item> items;          // by tile, then part and triangle in authored order
     int tiles_a_side = 0;
+    double bin_seconds = 0; // that the listing took
 };
 
 /// Surveys the parts for a grid of `side` voxels. Throws OutOfReach.

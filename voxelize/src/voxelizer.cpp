@@ -4,6 +4,7 @@
 #include "solid_fill.h"
 #include "survey.h"
 #include "tile_order.h"
+#include "tint.h"
 
 namespace voxrt {
 namespace {
@@ -19,6 +20,7 @@ struct Scratch {
     std::vector<Vertex> vertices;
     std::vector<int64_t> object_voxels;
     std::vector<uint8_t> complex; // by part: winding numbers beyond 0 and 1 were seen
+    StageSeconds seconds;
 };
 
 class TileWorker {
@@ -37,14 +39,19 @@ public:
             while (next < end && survey_.items[next].part == part)
                 ++next;
             const Item* items = survey_.items.data() + i;
-            if (parts_[part].kind == PartKind::mesh)
+            if (parts_[part].kind == PartKind::mesh) {
                 add_mesh(part, {items, next - i}, window, s);
-            else
+            } else {
+                Lap lap;
                 add_solid(parts_[part], window, s);
+                s.seconds.coverage += lap();
+            }
             i = next;
         }
+        Lap lap;
         if (!s.tile.empty())
             s.order.order(s.tile, index, tile_x, tile_y, out);
+        s.seconds.order += lap();
     }
 
 private:
@@ -75,19 +82,23 @@ private:
             vertices = &s.vertices;
         }
         s.layer.start(window.x0, window.y0);
+        Lap lap;
         if (fill_)
             cover<true>(part, surveyed, *vertices, items, window, s.layer);
         else
             cover<false>(part, surveyed, *vertices, items, window, s.layer);
-        if (s.layer.empty() && !surveyed.open)
+        s.seconds.coverage += lap();
+        const bool has_holes = surveyed.open && !surveyed.open->holes.empty();
+        if (s.layer.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = !fill_          ? s.fill.claim_shell(s.tile, s.layer)
-                            : surveyed.open ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes,
-                                                                      surveyed.box, window)
-                                            : s.fill.claim_solid(s.tile, s.layer, interior);
+        const Claim claim =
+            !fill_      ? s.fill.claim_shell(s.tile, s.layer)
+            : has_holes ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes, surveyed.box, window)
+                        : s.fill.claim_solid(s.tile, s.layer, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.complex[index] |= !claim.simple;
+        (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
     template <bool Cross>
@@ -105,10 +116,19 @@ private:
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
-            if (open != nullptr && open->is_sheet(t))
-                cover_triangle<false>(a, b, c, window, false, layer);
-            else
-                cover_triangle<Cross>(a, b, c, window, surveyed.inverted, layer);
+            auto add_to = [&](auto& sink) {
+                if (open != nullptr && open->is_shell_only(t))
+                    cover_triangle<false>(a, b, c, window, false, sink);
+                else
+                    cover_triangle<Cross>(a, b, c, window, surveyed.inverted, sink);
+            };
+            if (part.material != 0 || !mesh.tints.covers(t)) {
+                add_to(layer);
+            } else {
+                const TintedTriangle triangle(a, b, c, mesh.tints, t);
+                TintedLayer tinted(layer, triangle);
+                add_to(tinted);
+            }
         };
         if (items[0].triangle != kWhole) {
             for (const Item& item : items)
@@ -217,7 +237,12 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, Workers& workers)
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, Workers& workers) {
     const int side = 1 << depth;
-    const Survey survey = survey_parts(parts, side, fill, workers);
+    Lap lap;
+    SparseVoxels out;
+    Survey survey = survey_parts(parts, side, fill, workers);
+
+    out.seconds.bin = survey.bin_seconds;
+    out.seconds.survey = lap() - survey.bin_seconds;
 
     std::vector<uint32_t> occupied;
     for (uint32_t t = 0; t + 1 < survey.starts.size(); ++t)
@@ -232,7 +257,12 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
         worker.work(occupied[job], *scratch[thread], results[occupied[job]]);
     });
 
-    SparseVoxels out;
+    StageSeconds sum;
+    for (const auto& s : scratch)
+        if (s)
+            sum.add_tiles(s->seconds, 1);
+    if (sum.of_tiles() > 0)
+        out.seconds.add_tiles(sum, lap() / sum.of_tiles());
     out.object_voxels.allocate(objects);
     out.object_modes.allocate(objects);
     std::fill_n(out.object_voxels.data.get(), objects, 0);
@@ -249,8 +279,13 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
     for (size_t p = 0; fill && p < parts.size(); ++p)
         if (parts[p].kind == PartKind::mesh && !survey.meshes[p].closed)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::winding);
+    for (size_t p = 0; fill && p < parts.size(); ++p)
+        if (parts[p].kind == PartKind::mesh && survey.meshes[p].open && survey.meshes[p].open->boundary->stands_open)
+            out.object_modes.data[parts[p].object] = uint8_t(Mode::open);
     scratch.clear();
+    survey = {}; // memory stands highest in what follows
     gather(results, out, workers);
+    out.seconds.gather = lap();
     return out;
 }
 

@@ -4,15 +4,22 @@
 // triangles alone, so tiles are independent: threads take tiles, need no atomics, and the result does not depend on
 // who took which. Steps and what bounds them:
 //
-//   survey   vertices snapped, triangles counted into tiles, closure tested     triangles; memory bandwidth
-//   tiles    per tile: cover, sweep, compete, order                             surface bricks; L2 cache
-//   gather   tiles' bricks laid out in Morton order                             surface bricks; memory bandwidth
+//   survey    vertices snapped, closure tested, holes capped                     triangles; memory bandwidth
+//   bin       triangles listed by tile                                           triangles; one thread
+// then tile by tile
+//   coverage  triangles to shell bricks and crossings; boxes and balls           columns under triangles; L2 cache
+//   fill      brick columns swept, the inside claimed                            surface bricks; L2 cache
+//   holes     the same for open surfaces, their holes looked at                  surface bricks, voxels near holes
+//   order     bricks put in Morton order                                         surface bricks; L2 cache
+// and at last
+//   gather    tiles' bricks laid out one after another                           surface bricks; memory bandwidth
 //
 // Parts that touch few tiles are not expanded: the tile takes the part as a whole and snaps its vertices again.
 #pragma once
 
 #include "parallel.h"
 #include "parts.h"
+#include "stage_seconds.h"
 
 #include <array>
 #include <memory>
@@ -39,9 +46,11 @@ struct SparseVoxels {
     Array<uint8_t> octant_materials;
     Array<int64_t> object_voxels;
     Array<uint8_t> object_modes; // Mode
+    StageSeconds seconds;
 };
 
-enum class Mode : uint8_t { surface = 0, exact = 1, winding = 2 };
+/// open: what it encloses stands open, like a room without a front, and was not filled.
+enum class Mode : uint8_t { surface = 0, exact = 1, winding = 2, open = 3 };
 
 /// Voxelizes parts (ascending by object) on a grid of 2^depth voxels a side, depth 1 … 16.
 ///

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.companions import Companions
     from voxrt.voxelize.notes import Notes
     from voxrt.voxelize.scene import Collider
     from voxrt.voxelize.usd.looks import Look
@@ -53,6 +54,7 @@ class Drawing:
 
     path: Path
     stage: Usd.Stage
+    companions: Companions
     notes: Notes
     time: Usd.TimeCode
     materials: Materials = field(init=False)
@@ -65,7 +67,7 @@ class Drawing:
     _count: int = 0
 
     def __post_init__(self) -> None:
-        self.materials = Materials(self.path, MaterialTable(), self.notes, self.time)
+        self.materials = Materials(self.path, self.companions, MaterialTable(), self.notes, self.time)
         self._placed = UsdGeom.XformCache(self.time)
         self._deformed = deformed_meshes(self.stage, self.time, self.notes)
 

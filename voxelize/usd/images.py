@@ -9,12 +9,16 @@ import numpy as np
 from pxr import Ar
 
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8, srgb_from_linear
+from voxrt.voxelize.companions import ALLOW_OUTSIDE
+from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.images import decode_image
-from voxrt.voxelize.paint import Texture
+from voxrt.voxelize.texture import Texture
+from voxrt.voxelize.usd.layers import found_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.companions import Companions
     from voxrt.voxelize.notes import Notes
     from voxrt.voxelize.usd.looks import ImageSource, Look
 
@@ -24,8 +28,9 @@ _READABLE = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", 
 class Images:
     """Decoded images by asset path; textures by look."""
 
-    def __init__(self, path: Path, notes: Notes) -> None:
+    def __init__(self, path: Path, companions: Companions, notes: Notes) -> None:
         self._path = path
+        self._companions = companions
         self._notes = notes
         self._pixels: dict[str, NDArray[np.uint8] | None] = {}
         self._textures: dict[Look, Texture | None] = {}
@@ -80,6 +85,10 @@ class Images:
         if file not in self._pixels:
             self._pixels[file] = None
             if file and Path(file.rstrip("]")).suffix.lower() in _READABLE:
+                found = found_at(file, self._companions)
+                if found is not None and not self._companions.allows(found):
+                    problem = f"texture {Path(file).name!r} lies outside the file's folder"
+                    raise AssetError(self._path, problem, fix=ALLOW_OUTSIDE)
                 opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file))
                 if opened:
                     self._pixels[file] = decode_image(bytes(opened.GetBuffer()), self._path, Path(file).name)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from voxrt.voxelize.companions import Companions
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
 from voxrt.voxelize.notes import Notes
 from voxrt.voxelize.scene import Scene
 from voxrt.voxelize.usd.diagnostics import caught
 from voxrt.voxelize.usd.drawing import Drawing
+from voxrt.voxelize.usd.layers import refuse_layers_outside, refuse_layers_used_outside
 from voxrt.voxelize.usd.stage import (
     metres_per_unit,
     note_animation,
@@ -24,7 +26,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-def load_usd(path: str | Path, *, variants: Sequence[str] = (), time: float | None = None) -> Scene:
+def load_usd(
+    path: str | Path, *, variants: Sequence[str] = (), time: float | None = None, allow_outside: bool = False
+) -> Scene:
     """Read a USD stage.
 
     Drawn are the active, visible prims of purpose ``default`` and ``render``, with instances and the copies of point
@@ -39,6 +43,8 @@ def load_usd(path: str | Path, *, variants: Sequence[str] = (), time: float | No
         Variants to select, in this order: ``"/prim/path:set=name"``.
     time
         Seconds after the stage's start; None for the start.
+    allow_outside
+        Whether layers and textures may stand outside the file's folder.
 
     Returns
     -------
@@ -54,13 +60,16 @@ def load_usd(path: str | Path, *, variants: Sequence[str] = (), time: float | No
     """
     path = Path(path)
     notes = Notes()
+    companions = Companions.of(path, allow_outside=allow_outside)
     with caught(path, notes):
+        refuse_layers_outside(path, companions)
         stage = open_stage(path, variants)
+        refuse_layers_used_outside(path, stage, companions)
         note_layers_that_disagree(stage, notes)
         if time is None:
             note_animation(stage, notes)
         to_scene = scene_transform(up_axis(stage, notes), metres_per_unit(stage, path))
-        drawing = Drawing(path, stage, notes, time_code(stage, time))
+        drawing = Drawing(path, stage, companions, notes, time_code(stage, time))
         objects = drawing.objects(to_scene)
     if not objects:
         said = "; ".join(one.message for one in notes.warnings())

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.companions import Companions
     from voxrt.voxelize.material_table import MaterialTable
     from voxrt.voxelize.notes import Notes
     from voxrt.voxelize.usd.geometry import Surface
@@ -31,6 +32,7 @@ class Materials:
     """The materials of one stage; each is read once."""
 
     path: Path
+    companions: Companions
     table: MaterialTable
     notes: Notes
     time: Usd.TimeCode
@@ -38,7 +40,7 @@ class Materials:
     _looks: dict[str, Look] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._images = Images(self.path, self.notes)
+        self._images = Images(self.path, self.companions, self.notes)
 
     def looks_of_faces(self, prim: Usd.Prim, surface: Surface) -> tuple[list[Look], NDArray[np.int32]]:
         """Find the looks of a prim, and which of them each of its faces has (int32, shape (F,); -1 for holes).

@@ -77,8 +77,13 @@ _add_command(
 )
 _add_command(
     "view",
-    "Show the octants of a memory, or of an asset, in a window or as a picture.",
-    "voxrt view courtyard.mem --by level --screenshot octants.png",
+    "Show the octants of a memory, or of an asset, in a window, as a picture, or in a file for other programs.",
+    "voxrt view courtyard.mem --ray 320,240 --screenshot ray.png",
+)
+_add_command(
+    "trace",
+    "Tell the way of one pixel's ray through the octree, word by word.",
+    "voxrt trace courtyard.mem --pixel 320,240",
 )
 _add_command(
     "serve",
@@ -134,7 +139,7 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
         case cyclopts.CycloptsError() | UsageError():
             command = [name for name in arguments[:1] if name in app]
             problem, code = f"{problem.rstrip('.')}; see {' '.join(['voxrt', *command, '--help'])}", ExitCode.USAGE
-        case voxrt.OutputError() | voxrt.ViewpointError():
+        case voxrt.OutputError() | voxrt.ViewpointError() | voxrt.NoSuchConfigurationError():
             code = ExitCode.USAGE
         case voxrt.AssetError() | voxrt.RomError():
             code = ExitCode.ASSET

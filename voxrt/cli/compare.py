@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path  # noqa: TC003 - cyclopts reads the signature
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Pixels, Reporting, png
 from voxrt.cli.memory_results import compare_result
-from voxrt.cli.messages import summarize, warn
+from voxrt.cli.messages import complain, summarize, tabulate, warn
 from voxrt.cli.results import print_json
+
+if TYPE_CHECKING:
+    from voxrt.likeness_curve import LikenessAtDepth
+    from voxrt.octree import Rom
+    from voxrt.sim import Camera, EngineCheck
+
+_COARSEST = 3
+"""Depth at which the curve begins."""
 
 
 def compare(
@@ -21,7 +29,9 @@ def compare(
     /,
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
+    curve: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     size: Pixels = (640, 480),
+    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Compare a memory with the meshes that it was built from, as the default camera sees both.
@@ -33,24 +43,60 @@ def compare(
     asset
         What it was built from.
     output
-        A .png of the meshes, the memory and their difference, side by side.
+        A .png: the meshes, the memory as the simulated hardware and as the exact model show it, and the difference,
+        side by side.
+    curve
+        A .png of likeness against depth and against words: the asset is built at each depth up to the memory's.
     size
         Width and height, pixels. [default: 640x480]
+    allow_outside
+        Open files that the asset names outside its folder and the folders in it, too.
     reporting
         How to tell it.
     """
-    if output is not None:
-        png(output)
+    for picture in (output, curve):
+        if picture is not None:
+            png(picture)
     blob, warnings = voxrt.read_any(rom)
     memory = blob.rom
-    scene = voxrt.load(asset)
+    scene = voxrt.load(asset, allow_outside=allow_outside)
     warn((*warnings, *scene.warnings))
-    found = voxrt.compare(scene, memory, voxrt.aim_camera(memory, size), size)
+    camera = voxrt.aim_camera(memory, size)
+    found = voxrt.compare(scene, memory, camera, size)
+    hardware = _hardware(memory, camera, size)
+    outputs = {}
     if output is not None:
-        voxrt.save_picture(voxrt.comparison_sheet(found), output)
+        voxrt.save_picture(voxrt.comparison_sheet(found, None if hardware is None else hardware.rtl.colour), output)
+        outputs["picture"] = output
+    points: tuple[LikenessAtDepth, ...] = ()
+    if curve is not None:
+        lowest = min(_COARSEST, memory.octree.depth)
+        points = voxrt.likeness_curve(scene, range(lowest, memory.octree.depth + 1), size)
+        voxrt.save_picture(voxrt.draw_likeness_curve(points), curve)
+        outputs["curve"] = curve
+    wrong = None if hardware is None else hardware.wrong_pixels
     if reporting.json:
-        print_json(compare_result(found.likeness, output))
+        print_json(compare_result(found.likeness, wrong, points, outputs))
         return
-    likeness = asdict(found.likeness)
-    rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in likeness.items()]
-    summarize(f"{rom.name} and {asset.name}:", rows + ([("wrote", str(output))] if output else []))
+    rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in asdict(found.likeness).items()]
+    if wrong is not None:
+        rows.append(("hardware", f"{wrong} pixels differ from the exact model"))
+    summarize(f"{rom.name} and {asset.name}:", rows + [("wrote", str(path)) for path in outputs.values()])
+    if points:
+        heads = ("depth", "words", "silhouette IoU", "mean depth error, voxels", "SSIM", "PSNR, dB")
+        tabulate(heads, [_row(point) for point in points])
+
+
+def _hardware(memory: Rom, camera: Camera, size: tuple[int, int]) -> EngineCheck | None:
+    """Render by both engines; None where the simulated hardware is missing or cannot hold the memory."""
+    try:
+        return voxrt.check(memory, camera, size)
+    except voxrt.SimulatorError as error:
+        complain(f"without the hardware's picture: {error}")
+        return None
+
+
+def _row(point: LikenessAtDepth) -> tuple[str, ...]:
+    told = point.likeness
+    figures = (told.silhouette_iou, told.depth_mean, told.ssim, told.psnr)
+    return (str(point.depth), f"{point.words:,}", *(f"{figure:.4g}" for figure in figures))

@@ -52,10 +52,10 @@ def convert(
     blob, warnings = voxrt.read_any(source, depth=depth, dialect=from_dialect, colours=_colours(material))
     with writing(target), uninterrupted():
         target.parent.mkdir(parents=True, exist_ok=True)
-        files, lost = voxrt.convert(blob, target, dialect=dialect)
-    warn((*warnings, *lost))
+        files = voxrt.convert(blob, target, dialect=dialect)
+    warn(warnings)
     if reporting.json:
-        print_json(ConvertResult([name_file(file) for file in files], warning_entries((*warnings, *lost))))
+        print_json(ConvertResult([name_file(file) for file in files], warning_entries(warnings)))
     else:
         summarize(f"{source.name}:", [("wrote", str(file)) for file in files])
 

@@ -9,9 +9,12 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError
-from voxrt.cli.memory_results import DiffResult
+from voxrt.cli.memory_results import DiffResult, RegionEntry
 from voxrt.cli.messages import summarize, warn
 from voxrt.cli.results import print_json
+
+SHOWN = 5
+"""The most regions that people are told of."""
 
 
 def diff(
@@ -21,7 +24,7 @@ def diff(
     *,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Compare the voxels of two memories, however their words are arranged.
+    """Compare the voxels of two memories, however their words are arranged, and say where they differ.
 
     Parameters
     ----------
@@ -41,15 +44,28 @@ def diff(
     if depths[0] != depths[1]:
         raise UsageError(f"{first} has depth {depths[0]} and {second} {depths[1]}: only equal depths can be compared")
     found = voxrt.diff(roms[0].octree, roms[1].octree)
+    regions = voxrt.differing_regions(roms[0].octree, roms[1].octree)
     if reporting.json:
-        print_json(DiffResult(found.voxels, found.appeared, found.vanished, found.recoloured, found.bounds))
+        entries = [RegionEntry(part.bounds, part.appeared, part.vanished, part.recoloured) for part in regions]
+        print_json(
+            DiffResult(found.voxels, found.appeared, found.vanished, found.recoloured, found.bounds, entries),
+        )
         return
     rows = [
         ("differ", f"{found.voxels:,} voxels"),
         ("appeared", f"{found.appeared:,}"),
         ("vanished", f"{found.vanished:,}"),
         ("recoloured", f"{found.recoloured:,}"),
+        *(("region", _described(region)) for region in regions[:SHOWN]),
     ]
-    if found.bounds:
-        rows.append(("within", "{} up to {}".format(*found.bounds)))
+    if len(regions) > SHOWN:
+        rest = sum(region.voxels for region in regions[SHOWN:])
+        rows.append(("regions", f"{len(regions):,} in all; {rest:,} voxels in those not shown (--json tells all)"))
     summarize(f"{first.name} to {second.name}:", rows if found.voxels else rows[:1])
+
+
+def _described(region: voxrt.Region) -> str:
+    counts = (("appeared", region.appeared), ("vanished", region.vanished), ("recoloured", region.recoloured))
+    kinds = ", ".join(f"{count:,} {kind}" for kind, count in counts if count)
+    low, high = (",".join(map(str, corner)) for corner in region.bounds)
+    return f"{low} up to {high}: {kinds}"

@@ -10,14 +10,22 @@ import msgspec
 
 import voxrt
 from voxrt.cli.messages import name_file
-from voxrt.cli.results import WarningEntry  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.cli.results import (  # msgspec resolves the annotations of this module
+    CameraEntry,
+    WarningEntry,
+    camera_entry,
+)
 from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from voxrt.likeness_curve import LikenessAtDepth
     from voxrt.octree import Rom
-    from voxrt.sim import Likeness
+    from voxrt.sim import Camera, Likeness, RayPath
+
+_AXES = ("x", "y", "z", None)
+"""By the numbers of axes; the last is :data:`voxrt.sim.FACE_NONE`."""
 
 
 class ConvertResult(msgspec.Struct, frozen=True):
@@ -58,6 +66,16 @@ class InfoResult(msgspec.Struct, frozen=True):
     """Null for a memory that does not say."""
 
 
+class RegionEntry(msgspec.Struct, frozen=True):
+    """Voxels that differ and hang together."""
+
+    bounds: tuple[tuple[int, int, int], tuple[int, int, int]]
+    """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+    appeared: int
+    vanished: int
+    recoloured: int
+
+
 class DiffResult(msgspec.Struct, frozen=True):
     """``voxrt diff --json``: voxels that differ."""
 
@@ -70,6 +88,20 @@ class DiffResult(msgspec.Struct, frozen=True):
     """Solid in both, of different materials."""
     bounds: tuple[tuple[int, int, int], tuple[int, int, int]] | None
     """The smallest box that holds them: its lowest voxel, and one behind its highest."""
+    regions: list[RegionEntry]
+    """The pieces that hang together, those with most voxels first."""
+
+
+class CurveEntry(msgspec.Struct, frozen=True):
+    """A point of the curve; figures as in :class:`CompareResult`."""
+
+    depth: int
+    words: int
+    silhouette_iou: float | None
+    depth_mean: float | None
+    normal_agreement: float | None
+    psnr: float | None
+    ssim: float | None
 
 
 class CompareResult(msgspec.Struct, frozen=True):
@@ -84,7 +116,78 @@ class CompareResult(msgspec.Struct, frozen=True):
     normal_agreement: float | None
     psnr: float | None
     ssim: float | None
+    wrong_pixels: int | None
+    """On which hardware and model differ; null where the hardware could not be run."""
+    curve: list[CurveEntry]
     outputs: dict[str, str]
+
+
+class ReadingEntry(msgspec.Struct, frozen=True):
+    """A word that a ray read."""
+
+    address: int
+    word: int
+    leaf: bool
+    """False: the word is a pointer."""
+    level: int
+    """log2 of the octant's side, voxels."""
+    low: tuple[int, int, int]
+    """The octant's lowest voxel."""
+    high: tuple[int, int, int]
+    """One behind its highest."""
+    axis: str | None
+    """Across which the ray entered: the axis of the plane crossed last; null where it has crossed none."""
+    t: int
+    """The integer T of that crossing."""
+    point: tuple[float, float, float]
+    """Where that was, voxels."""
+
+
+class TraceResult(msgspec.Struct, frozen=True):
+    """``voxrt trace --json``."""
+
+    pixel: tuple[int, int]
+    size: tuple[int, int]
+    camera: CameraEntry
+    direction: tuple[int, int, int]
+    root: int
+    """Word 0, which is kept from ray to ray."""
+    readings: list[ReadingEntry]
+    """In order."""
+    material: int
+    """What was hit; 0 for nothing."""
+    face: str | None
+    """The axis of the side hit; null at a miss, and from within a solid."""
+    voxel: tuple[int, int, int] | None
+    """Null at a miss."""
+
+
+def trace_result(camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath) -> TraceResult:
+    """Tell programs the way of a ray."""
+    return TraceResult(
+        pixel=pixel,
+        size=size,
+        camera=camera_entry(camera),
+        direction=path.direction,
+        root=path.root,
+        readings=[
+            ReadingEntry(
+                address=reading.address,
+                word=reading.word,
+                leaf=reading.is_leaf,
+                level=reading.level,
+                low=reading.corner,
+                high=reading.end,
+                axis=_AXES[reading.axis],
+                t=reading.time,
+                point=path.point(reading.time),
+            )
+            for reading in path.readings
+        ],
+        material=path.material,
+        face=_AXES[path.face],
+        voxel=path.cell,
+    )
 
 
 def info_result(rom: Rom) -> InfoResult:
@@ -106,7 +209,18 @@ def info_result(rom: Rom) -> InfoResult:
     )
 
 
-def compare_result(likeness: Likeness, file: Path | None) -> CompareResult:
+def compare_result(
+    likeness: Likeness, wrong_pixels: int | None, curve: tuple[LikenessAtDepth, ...], files: dict[str, Path]
+) -> CompareResult:
     """Tell programs how like two pictures are."""
-    figures = {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}
-    return CompareResult(**figures, outputs={} if file is None else {"picture": name_file(file)})
+    points = []
+    for point in curve:
+        told = _figures(point.likeness)
+        shown = {name: told[name] for name in CurveEntry.__struct_fields__ if name in told}
+        points.append(CurveEntry(depth=point.depth, words=point.words, **shown))
+    outputs = {kind: name_file(path) for kind, path in files.items()}
+    return CompareResult(**_figures(likeness), wrong_pixels=wrong_pixels, curve=points, outputs=outputs)
+
+
+def _figures(likeness: Likeness) -> dict[str, float | None]:
+    return {name: value if math.isfinite(value) else None for name, value in asdict(likeness).items()}

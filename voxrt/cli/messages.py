@@ -66,7 +66,8 @@ def picture_cost(frame: Frame, engine: str) -> str:
     height, width = frame.material.shape
     cost = frame.cost
     cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles a pixel, "
-    return f"{width}x{height} by {engine}: {cycles}{cost.words_read / cost.rays:.2f} words a ray, {cost.seconds:.2f} s"
+    words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words a ray, "
+    return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
 
 
 def name_file(path: Path) -> str:

@@ -8,12 +8,10 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register
+from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, png
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
-
-Triple = tuple[int, int, int]
-_register = Parameter(converter=register, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
+from voxrt.cli.source import aim
 
 
 def render(
@@ -24,13 +22,8 @@ def render(
     engine: Literal["rtl", "model"] = "rtl",
     config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
     size: Pixels = (640, 480),
-    position: Annotated[
-        Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
-    ] = None,
-    look: Annotated[Triple | None, _register] = None,
-    right: Annotated[Triple | None, _register] = None,
-    up: Annotated[Triple | None, _register] = None,
-    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
+    sight: Annotated[Sight, Parameter(name="*")] = Sight(),  # noqa: B008
+    depth: Depth = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
@@ -50,16 +43,8 @@ def render(
         The configuration of the hardware: how many lanes, which memory.
     size
         Width and height, pixels. [default: 640x480]
-    position
-        Where the camera stands, voxels, in steps of 1/16; may be outside the scene. Not given, it stands where the
-        whole scene is in the picture.
-    look
-        Register: the direction of the picture's middle. Given without --right and --up it is a direction of any length;
-        not given, the camera looks at the scene.
-    right
-        Register: the step of direction from a pixel to the one on its right. Not given: right = look x up.
-    up
-        Register: the step of direction from a pixel to the one above it. Not given: upright.
+    sight
+        Where the camera stands.
     depth
         Levels of the octree, where no manifest says.
     dialect
@@ -72,17 +57,18 @@ def render(
     file = png(Path(f"{rom.stem}.png") if output is None else output)
     blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
-    memory, view = blob.rom, blob.view
-    if view is not None and (position, look, right, up) == (None, None, None, None):
-        camera = voxrt.Camera(view.position, view.look, view.right, view.up)
-    else:
-        camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
+    memory = blob.rom
+    camera = aim(memory, blob.view, size, sight)
     wrong_pixels = None
     if check:
         checked = voxrt.check(memory, camera, size, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
+        lighting = blob.lighting
+        if engine == "rtl" and lighting is not None and lighting.on:
+            warn((voxrt.SceneWarning("light", "the memory's light is left out: --engine model casts it"),))
+            lighting = None
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.pipeline import BudgetFit, BuildResult, Picture
+    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.pipeline import BuildResult, Picture
+    from voxrt.sim import Camera
     from voxrt.voxelize import SceneWarning
 
 
@@ -60,9 +62,10 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     rays: int
     cycles: int | None
     """Clocks of the ray tracer; null from the model, which has no clock."""
-    words_read: int
+    words_read: int | None
+    """Octree words; null from the model, which reads one word for many rays."""
     cycles_per_pixel: float | None
-    words_per_ray: float
+    words_per_ray: float | None
     seconds: float
     camera: CameraEntry
     outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
@@ -89,6 +92,17 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     ssim: float
 
 
+class InteriorEntry(msgspec.Struct, frozen=True):
+    """What became of voxels that no ray from outside can reach."""
+
+    material: int | None
+    """What they are made of now; null where each took whatever lets most blocks be shared."""
+    hidden: int
+    """How many they are."""
+    words_before: int
+    """What the memory takes when they keep their materials."""
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -106,6 +120,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """The preview; null when none was asked for."""
     budget: BudgetEntry | None = None
     """Null when there was none."""
+    interior: InteriorEntry | None = None
+    """Null when they keep their materials."""
 
 
 def build_report(result: BuildResult) -> BuildReport:
@@ -125,7 +141,12 @@ def build_report(result: BuildResult) -> BuildReport:
         seconds=result.seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
+        interior=None if result.interior is None else _interior_entry(result.interior),
     )
+
+
+def _interior_entry(interior: InteriorFit) -> InteriorEntry:
+    return InteriorEntry(interior.material, interior.hidden, interior.words_before)
 
 
 def _budget_entry(budget: BudgetFit) -> BudgetEntry:
@@ -150,7 +171,6 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
     """Tell programs what a picture shows and cost."""
     cost, camera = picture.frame.cost, picture.camera
     height, width = picture.frame.material.shape
-    x, y, z = camera.position
     return RenderResult(
         engine=picture.engine,
         size=(width, height),
@@ -158,12 +178,18 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         cycles=cost.cycles,
         words_read=cost.words_read,
         cycles_per_pixel=None if cost.cycles is None else cost.cycles / cost.rays,
-        words_per_ray=cost.words_read / cost.rays,
+        words_per_ray=None if cost.words_read is None else cost.words_read / cost.rays,
         seconds=cost.seconds,
-        camera=CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up),
+        camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
     )
+
+
+def camera_entry(camera: Camera) -> CameraEntry:
+    """Tell programs where a camera stands."""
+    x, y, z = camera.position
+    return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
 def print_json(result: msgspec.Struct) -> None:

@@ -91,12 +91,13 @@ def open_device(name: str, config: str, bitstream: Path | None = None) -> Device
     """Open a device of this machine: ``model``, ``sim`` or ``pynq``."""
     from voxrt.board.errors import DeviceError  # noqa: PLC0415 - NumPy comes with it
     from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
-    from voxrt.sim.device import ModelDevice, RtlDevice  # noqa: PLC0415
+    from voxrt.sim.device import ModelDevice  # noqa: PLC0415
+    from voxrt.sim.rtl_device import open_rtl  # noqa: PLC0415
 
     if name == "model":
         return ModelDevice()
     if name == "sim":
-        return RtlDevice(config)
+        return open_rtl(config)
     if bitstream is None:
         raise UsageError("--device pynq wants the ray tracer's --bitstream")
     try:

@@ -18,8 +18,12 @@
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
 //                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
 //
+//   CORES, PixelGenerator     the whole core: core_module.cpp
+//
 // ValueError: a name, size or register out of range.
+#include "core_module.h"
 #include "design.h"
+#include "one_call.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -95,7 +99,7 @@ public:
         if (words.size() < 1 || words.size() > memory_words())
             throw std::invalid_argument(std::to_string(words.size()) + " words do not fit this memory of " +
                                         range(1, static_cast<long>(memory_words())));
-        Busy busy(*this);
+        OneCall call(busy_);
         nb::gil_scoped_release released;
         design_->load({words.data(), words.size()}, through_port);
     }
@@ -107,7 +111,7 @@ public:
         auto* words = new std::vector<uint32_t>;
         nb::capsule owner(words, [](void* p) noexcept { delete static_cast<std::vector<uint32_t>*>(p); });
         {
-            Busy busy(*this);
+            OneCall call(busy_);
             nb::gil_scoped_release released;
             *words = design_->read_back(count);
         }
@@ -143,7 +147,7 @@ public:
 
         FrameCost cost;
         {
-            Busy busy(*this);
+            OneCall call(busy_);
             nb::gil_scoped_release released;
             cost = design_->render(request, image, [] {
                 nb::gil_scoped_acquire acquired;
@@ -165,17 +169,6 @@ public:
     }
 
 private:
-    // One call at a time: the GIL, held here, guards the flag.
-    struct Busy {
-        explicit Busy(Tracer& tracer) : tracer(tracer) {
-            if (tracer.busy_)
-                throw std::runtime_error("this Tracer is at work in another thread: make one Tracer a thread");
-            tracer.busy_ = true;
-        }
-        ~Busy() { tracer.busy_ = false; }
-        Tracer& tracer;
-    };
-
     std::unique_ptr<Design> design_;
     bool busy_ = false;
 };
@@ -198,4 +191,5 @@ NB_MODULE(_rtl, m) {
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "stall_seed"_a = 0);
+    voxrt::rtl::bind_pixel_generator(m);
 }

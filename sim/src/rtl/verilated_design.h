@@ -2,6 +2,7 @@
 #pragma once
 
 #include "design.h"
+#include "stall_pattern.h"
 
 #include <verilated.h>
 #include <verilated_syms.h>
@@ -128,31 +129,6 @@ private:
     void enter() { Verilated::threadContextp(&context_); }
 
     static constexpr uint64_t poll_interval = 1 << 16;
-
-    // Runs of random length, stalled or not, so that queues fill and drain.
-    class StallPattern {
-    public:
-        explicit StallPattern(uint32_t seed) : state_(seed) {}
-
-        bool next() {
-            if (state_ == 0)
-                return false;
-            if (run_ == 0) {
-                state_ ^= state_ << 13; // xorshift32 (Marsaglia 2003)
-                state_ ^= state_ >> 17;
-                state_ ^= state_ << 5;
-                stalled_ = !stalled_;
-                run_ = 1 + (state_ % 8 == 0 ? state_ / 8 % 200 : state_ / 8 % 4);
-            }
-            --run_;
-            return stalled_;
-        }
-
-    private:
-        uint32_t state_;
-        unsigned run_ = 0;
-        bool stalled_ = false;
-    };
 
     void clock() {
         model_->clk_i = 0;

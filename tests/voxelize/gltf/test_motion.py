@@ -218,7 +218,7 @@ def test_broken_animations_are_refused(keys, values, path, message, tmp_path):
 def test_a_time_without_animation_is_refused(tmp_path):
     writer = GltfWriter()
     writer.show(mesh=writer.mesh(TRIANGLE))
-    with pytest.raises(AssetError, match=r"a time was asked for and the file has no animation; leave the time out"):
+    with pytest.raises(AssetError, match=r"a time was asked for and the file has no animation; leave it out"):
         load(writer.save(tmp_path / "a.glb"), time=0.0)
 
 
@@ -279,7 +279,7 @@ def test_what_is_not_played_is_counted(tmp_path):
     writer.json["animations"].append(writer.json["animations"][0])
     scene = load(writer.save(tmp_path / "a.glb"), time=0.5)
     assert [warning.message for warning in scene.warnings if warning.kind == "animation"] == [
-        "animations after the first were not played",
+        "animations after the first were not played: --animation chooses another",
         "animations of 'pointer' were not played",
         "animations of 'colour' were not played",
     ]
@@ -303,3 +303,20 @@ def test_instances_that_are_not_placed_are_shown_once(tmp_path):
     scene = load(writer.save(tmp_path / "a.glb"))
     assert [thing.name for thing in scene.objects] == ["tree"]
     assert "instancing" in {warning.kind for warning in scene.warnings}
+
+
+@pytest.mark.parametrize(
+    ("asked", "x"), [({"time": 1.0}, 1), ({"time": 1.0, "animation": "jump"}, 5), ({"animation": "1"}, 3)]
+)
+def test_an_animation_is_chosen_by_name_or_number(asked, x, tmp_path):
+    writer = GltfWriter()
+    writer.show(mesh=writer.mesh(TRIANGLE))
+    for name, start in (("walk", 0), ("jump", 3)):
+        output = writer.accessor([[start, 0, 0], [start + 2, 0, 0]])
+        sampler = {"input": writer.accessor([0.0, 1.0 if name == "jump" else 2.0]), "output": output}
+        channel = {"sampler": 0, "target": {"node": 0, "path": "translation"}}
+        writer.add("animations", {"name": name, "samplers": [sampler], "channels": [channel]})
+    path = tmp_path / "a.glb"
+    assert positions(writer, path, **asked)[0].tolist() == [x, 0, 0]
+    with pytest.raises(AssetError, match=r"no animation 'swim' in the file; it has 'walk', 'jump'"):
+        load(path, animation="swim")

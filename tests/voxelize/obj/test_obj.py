@@ -120,7 +120,16 @@ def test_libraries_outside_the_folder_are_not_opened(tmp_path):
     (tmp_path / "inner").mkdir()
     path = tmp_path / "inner" / "model.obj"
     path.write_text(f"mtllib ../secret.mtl\nusemtl red\n{CUBE}")
-    assert kinds(load_obj(path))["missing-library"] == 1
+    scene = load_obj(path)
+    assert kinds(scene)["outside"] == 1
+    assert "--allow-outside" in next(one.message for one in scene.warnings if one.kind == "outside")
+    assert load_obj(path, allow_outside=True).materials[1].colour == (255, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["a\0b", "n" * 5000, "/" * 5000])
+def test_names_that_no_file_can_have(obj, name):
+    scene = obj(f"mtllib model.mtl\nmtllib {name}.mtl\nusemtl a\n{CUBE}", f"newmtl a\nKd 1 0 0\nmap_Kd {name}\n")
+    assert kinds(scene) == {"missing-library": 1, "missing-texture": 6}
 
 
 @pytest.mark.parametrize("opacity", ["d 0.2", "Tr 0.8", "d -halo 0.1"])
@@ -176,7 +185,6 @@ def test_what_is_not_honoured_is_counted(obj):
         "free-form": 1,
         "unknown-statement": 1,
         "missing-texture": 1,
-        "opacity-texture": 1,
     }
     assert scene.materials[1].colour == (255, 0, 0)
 

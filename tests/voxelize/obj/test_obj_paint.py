@@ -52,15 +52,12 @@ def test_v_points_up_in_the_image(obj):
     assert srgb_from_linear(top[:3]).tolist() == list(RED)
 
 
-def test_the_texture_stands_in_for_kd_and_a_palette_for_the_texture(obj):
+def test_the_texture_stands_in_for_kd(obj):
     scene = obj(QUADS, "newmtl cloth\nKd 0.5 0.5 0.5\nmap_Kd map.png\n", pixels=[[RED, RED, BLUE, BLUE]])
     (mesh,) = [one.mesh for one in scene.objects]
     named = [scene.materials[number] for number in mesh.materials]
-    assert [material.name.split()[0] for material in named] == ["cloth"] * 4
-    left, right = named[0].colour, named[2].colour
-    assert left[0] > 2 * left[2]
-    assert right[2] > 2 * right[0]
-    assert {one.kind: one.count for one in scene.warnings} == {"painted": 4}
+    assert [(material.name, material.colour) for material in named] == [("cloth", (188, 0, 188))] * 4
+    assert not scene.warnings
 
 
 @pytest.mark.parametrize(
@@ -89,7 +86,7 @@ def test_vertex_colours_are_srgb_and_multiplied_with_kd(obj):
     half = int(srgb_from_linear(LINEAR_OF_SRGB8[128] ** 2))
     dyed = obj(text.replace("f 1", "usemtl dye\nf 1"), "newmtl dye\nKd 1 0 0.502\n").materials[1]
     assert dyed.colour == (128, 0, half)
-    assert dyed.name.startswith("dye #")
+    assert dyed.name == "dye"
 
 
 def test_vertex_colours_of_0_to_255_and_beside_a_weight(obj):
@@ -102,11 +99,11 @@ def test_faces_without_colour_keep_their_material(obj):
     scene = obj("mtllib model.mtl\n" + text, "newmtl plain\nKd 0 1 0\n")
     assert {(one.name, one.colour) for one in scene.materials[1:]} == {
         ("plain", GREEN),
-        ("vertex colours #0000ff", BLUE),
+        ("vertex colours", BLUE),
     }
     (one,) = scene.objects
     assert [scene.materials[number].colour for number in one.mesh.materials] == [BLUE, GREEN]
-    assert one.mesh.coat.rows.tolist() == [0, -1]
+    assert one.mesh.coat is None
 
 
 def test_negative_texture_numbers(obj):
@@ -118,7 +115,7 @@ def test_negative_texture_numbers(obj):
 
 def test_faces_without_texture_coordinates_are_counted(obj):
     scene = obj(QUADS.replace("f 1/1 2/2", "f 1 2//4"), "newmtl cloth\nmap_Kd map.png\n")
-    assert {one.kind: one.count for one in scene.warnings} == {"texture": 1, "painted": 4}
+    assert {one.kind: one.count for one in scene.warnings} == {"texture": 1}
 
 
 @pytest.mark.parametrize(
@@ -150,3 +147,31 @@ def test_an_image_that_promises_too_much(obj, tmp_path):
     (tmp_path / "map.png").write_bytes(header)
     with pytest.raises(AssetError, match="more than 67,108,864 pixels"):
         load_obj(tmp_path / "model.obj")
+
+
+def test_opacity_maps_cut_away_what_lies_below_a_half(obj, tmp_path):
+    grey = np.array([[0, 255], [0, 255]], np.uint8)
+    Image.fromarray(grey).save(tmp_path / "grey.png")
+    clear = np.dstack([np.full((2, 2, 3), 9, np.uint8), grey])
+    Image.fromarray(clear).save(tmp_path / "clear.png")
+    for name in ("grey.png", "clear.png"):
+        for lines, colour in ((f"map_Kd map.png\nmap_d {name}", GREEN), (f"map_d -s 1 1 {name}", RED)):
+            scene = obj(QUADS, f"newmtl cloth\nKd 1 0 0\n{lines}\n", pixels=[[BLUE, BLUE, GREEN, GREEN]])
+            (mesh,) = [one.mesh for one in scene.objects]
+            assert len(mesh.triangles) == 2, "the left half is air"
+            assert [mesh.positions[row].min(axis=0)[0] for row in mesh.triangles] == [1, 1]
+            assert colours_at(mesh) == [colour] * 2
+
+
+def test_an_opacity_map_of_another_layout_is_counted(obj, tmp_path):
+    Image.fromarray(np.full((2, 2), 255, np.uint8)).save(tmp_path / "white.png")
+    scene = obj(QUADS, "newmtl cloth\nmap_Kd -S 2 2 -O 0.5 map.png\nmap_d white.png\n")
+    assert [one.kind for one in scene.warnings if one.kind != "painted"] == ["texture"]
+
+
+def test_opacity_without_colour_of_other_sizes(obj, tmp_path):
+    Image.fromarray(np.array([[0, 255, 255, 255]], np.uint8)).save(tmp_path / "wide.png")
+    scene = obj(QUADS, "newmtl cloth\nmap_Kd map.png\nmap_d wide.png\n", pixels=[[RED], [BLUE]])
+    (mesh,) = [one.mesh for one in scene.objects]
+    assert mesh.coat.paints[0].texture.pixels[:, :, 3].tolist() == [[0, 255, 255, 255]] * 2
+    assert mesh.coat.paints[0].texture.pixels[:, 3, :3].tolist() == [list(RED), list(BLUE)]

@@ -54,15 +54,49 @@ def test_attributes_and_trailing_bytes_are_counted(stl):
     scene = stl(binary(ONE, attribute=7, tail=b"more"))
     assert {one.kind: one.count for one in scene.warnings} == {
         "trailing-bytes": 4,
-        "stl-colour": 1,
+        "stl-attribute": 1,
         "default-material": 1,
     }
+
+
+@pytest.mark.parametrize(
+    ("header", "attribute", "colour"),
+    [
+        (b"", 0x8000 | 31 << 10, (255, 0, 0)),  # VisCAM: red in the highest bits
+        (b"", 0x8000 | 16, (0, 0, 131)),
+        (b"COLOR=\x01\x02\x03\xff", 31, (255, 0, 0)),  # Materialise: red in the lowest
+        (b"xCOLOR=\x01\x02\x03\xff,MATERIAL=", 0x801F, (1, 2, 3)),
+    ],
+)
+def test_colours_of_both_kinds(stl, header, attribute, colour):
+    scene = stl(binary(ONE, header=header, attribute=attribute))
+    (mesh,) = [one.mesh for one in scene.objects]
+    assert scene.materials[mesh.materials[0]].colour == colour
+    assert "default-material" not in [one.kind for one in scene.warnings]
+
+
+def test_some_facets_with_colours(stl):
+    plain, red = (binary(ONE, attribute=attribute)[84:] for attribute in (0, 0x8000 | 31 << 10))
+    scene = stl(bytes(80) + (2).to_bytes(4, "little") + plain + red)
+    (mesh,) = [one.mesh for one in scene.objects]
+    assert [scene.materials[number].colour for number in mesh.materials] == [(200, 200, 200), (255, 0, 0)]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\n\n \t"])
+def test_by_lines_and_by_words_the_same(stl, end):
+    text = f"solid a#b\n{FACET}{FACET.replace('1', '-2.5e-1')}endsolid a#b\n solid\n{FACET}endsolid"
+    laid_out = stl(text.replace("\n", end))
+    run_together = stl(text.replace("vertex 0 0 0\nvertex", "vertex 0 0 0 vertex"))
+    assert [one.name for one in laid_out.objects] == [one.name for one in run_together.objects] == ["a#b", "part"]
+    for one, other in zip(laid_out.objects, run_together.objects, strict=True):
+        assert np.array_equal(one.mesh.positions[one.mesh.triangles], other.mesh.positions[other.mesh.triangles])
 
 
 @pytest.mark.parametrize(
     ("data", "message"),
     [
         (b"", "is empty"),
+        (b"solidarity", "has no triangles"),
         (b"abc", "too short"),
         (binary([]), "has no triangles"),
         (binary(ONE)[:-1], "is cut short: 0 of 1 triangles"),

@@ -1,0 +1,41 @@
+"""
+Cycles against lanes
+====================
+
+The report's figure 38: clocks a frame against ray processors, simulated. Theirs fell as 1/n plus an offset, since the
+pixel buffer polled the processors in turn. Ours has a bound: each lane reads one octree word a clock, and one pixel a
+clock leaves the shader.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[1]))
+from rtl import LANES, scenes
+from voxrt import octree, sim
+
+size = (192, 192)
+configurations = sorted((name for name in LANES if name != "banked"), key=LANES.get)
+lanes = np.array([LANES[name] for name in configurations])
+plt.figure(figsize=(7, 4.5))
+print(f"{'cycles a pixel':24s}" + "".join(f"{count:>8d}" for count in lanes) + "  lanes")
+for scene in scenes(Path(), size):
+    rom = octree.Rom(scene.name, octree.Octree(scene.depth, scene.words), ())
+    camera = sim.Camera(*(tuple(map(int, row)) for row in scene.camera))
+    costs = [sim.render(rom, camera, size, engine="rtl", config=name).cost for name in configurations]
+    cycles = np.array([cost.cycles / cost.rays for cost in costs])
+    words = costs[0].words_read / costs[0].rays
+    print(f"{scene.name:24s}" + "".join(f"{value:8.2f}" for value in cycles))
+    (line,) = plt.loglog(lanes, cycles, "o-", label=f"{scene.name}: {words:.1f} words a ray")
+    plt.loglog(lanes, np.maximum(1, words / lanes), ":", color=line.get_color())
+plt.loglog((1, 2), (338, 169.6), "ks-", label="the original on its house, simulated")
+plt.xticks(lanes, map(str, lanes))
+plt.xlabel("lanes")
+plt.ylabel("clocks a pixel; dotted: the bound")
+plt.legend(fontsize=8)
+plt.grid(visible=True, which="major", alpha=0.3)
+plt.tight_layout()
+plt.show()

@@ -1,0 +1,64 @@
+"""Take the manual's pictures of the page, docs/pictures/page*.png: ``python docs/make_page_pictures.py``.
+
+Headless Chromium shows ``voxrt serve``'s page on the exact model with the example scenes: wide and dark with the
+courtyard, narrow and light with the dog. Wants Debian's chromium and chromium-driver, and a machine that does nothing
+else, for the times that the page shows.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import threading
+from pathlib import Path
+
+from voxrt.board.server import FrameServer, Listening
+from voxrt.board.show import Program
+from voxrt.sim.device import ModelDevice
+from voxrt.staging import BuildingReader, load_scene
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+PICTURES = REPOSITORY / "docs" / "pictures"
+EXAMPLES = ("courtyard.glb", "dog.usda", "house.obj", "planet.glb")
+SCENES = {Path(name).stem: REPOSITORY / "examples" / name for name in EXAMPLES}
+DEPTH = 7
+SHOTS = (("page", "courtyard", (1280, 800), True), ("page-phone", "dog", (500, 840), False))
+
+sys.path.append(str(REPOSITORY / "tests"))
+from stand_ins.browser import chromium  # noqa: E402 - the tests' own browser
+
+
+async def serve(ready: threading.Event, finished: threading.Event, told: dict[str, str]) -> None:
+    """Serve until the pictures are taken."""
+    library = {name: (lambda path=path: load_scene(path, DEPTH)) for name, path in SCENES.items()}
+    async with FrameServer(ModelDevice(), Program(BuildingReader(DEPTH), library), Listening()) as server:
+        told["url"] = server.url
+        ready.set()
+        await asyncio.to_thread(finished.wait)
+
+
+def main() -> None:
+    """Take all pictures."""
+    ready, finished, told = threading.Event(), threading.Event(), {}
+    serving = threading.Thread(target=lambda: asyncio.run(serve(ready, finished, told)))
+    serving.start()
+    ready.wait()
+    try:
+        for name, scene, size, dark in SHOTS:
+            with chromium(size, dark) as browser:
+                browser.open(told["url"])
+                browser.until("document.querySelector('#steering').innerText === 'you steer'")
+                browser.run("document.querySelector(arguments[0]).click()", f"[data-scene={scene}]")
+                browser.until(f"document.querySelector('#scene').innerText.startsWith('{scene}')")
+                browser.keys(["\ue012"], 0.5)  # turns, so that there is a latency to show, and back
+                browser.keys(["\ue014"], 0.5)
+                browser.run("document.querySelector('#reset').click()")
+                browser.until("document.querySelector('#overlay').innerText.includes('still')")
+                (PICTURES / f"{name}.png").write_bytes(browser.screenshot())
+    finally:
+        finished.set()
+        serving.join()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+"""
+MagicaVoxel art
+===============
+
+Voxel art needs no voxelizing: a ``.vox`` file becomes an octree memory as it stands, in the artist's colours, and so
+does any NumPy array of material numbers.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import voxrt
+from voxrt import octree
+
+EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
+art, warnings = octree.read_vox(EXAMPLES / "toadstool.vox")
+names = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in (material.colour for material in art.materials[1:])]
+print(f"{art.octree.size} voxels a side, {octree.census(art.octree).solid_voxels:,} solid; colours {', '.join(names)}")
+
+# %%
+# The same memory as a cube of numbers, and a field of copies made of it: equal blocks are stored once.
+cube = octree.to_dense(art.octree)
+field = np.tile(cube, (4, 1, 4))
+world = np.zeros((4 * art.octree.size,) * 3, np.uint8)
+world[: field.shape[0], : field.shape[1], : field.shape[2]] = field
+copies = octree.Rom("field", octree.from_dense(world), art.materials)
+print(f"one takes {len(art.octree.words):,} words, sixteen take {len(copies.octree.words):,}")
+
+# %%
+picture = np.concatenate([voxrt.render(rom, size=(360, 360)).colour for rom in (art, copies)], axis=1)
+plt.figure(figsize=(7.2, 3.6))
+plt.imshow(picture)
+plt.axis("off")
+plt.tight_layout()
+plt.show()

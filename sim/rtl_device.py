@@ -1,0 +1,84 @@
+"""The verilated core as a device, driven as a board's is: by its registers, its memory port and its video stream."""
+
+from __future__ import annotations
+
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from voxrt.board.errors import DeviceError
+from voxrt.board.register_device import RegisterDevice
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_FRAME_LIMIT = 4095
+_PAUSE_CLOCKS = 1 << 15
+
+
+def open_rtl(config: str = "tiny") -> RegisterDevice:
+    """Open a simulated core of this configuration.
+
+    Raises
+    ------
+    NoSuchConfigurationError
+        The installation has no such core.
+    SimulatorError
+        The verilated core is not in this installation.
+    """
+    try:
+        module: Any = import_module("voxrt.sim._rtl")
+    except ImportError as error:
+        raise SimulatorError(
+            "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
+            "use --device model"
+        ) from error
+    if config not in module.CORES:
+        raise NoSuchConfigurationError(config, module.CORES)
+    core = module.PixelGenerator(config)
+    pause = partial(core.run, _PAUSE_CLOCKS)
+    return RegisterDevice(f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause)
+
+
+class _MemoryPort:
+    """The words behind the memory port, as a board's processor has them mapped."""
+
+    def __init__(self, core: Any) -> None:  # noqa: ANN401 - the native module may be absent
+        self._core = core
+
+    def __len__(self) -> int:
+        return int(self._core.memory_words)
+
+    def __getitem__(self, words: slice) -> NDArray[np.uint32]:
+        start, stop, _ = words.indices(len(self))
+        found: NDArray[np.uint32] = self._core.read_memory(start, stop - start)
+        return found
+
+    def __setitem__(self, words: slice, values: NDArray[np.uint32]) -> None:
+        self._core.write_memory(words.start, values)
+
+
+class _Stream:
+    """The stream's consumer, which takes whatever the core can send."""
+
+    size = (_FRAME_LIMIT, _FRAME_LIMIT)
+    width_step = 1
+
+    def __init__(self, core: Any) -> None:  # noqa: ANN401
+        self._core = core
+
+    def expect(self, size: tuple[int, int]) -> None:
+        self._core.expect(*size)
+
+    def take(self) -> NDArray[np.uint8]:
+        self._core.run(_PAUSE_CLOCKS)
+        try:
+            frame: NDArray[np.uint8] = self._core.frame()
+        except RuntimeError as error:
+            raise DeviceError(f"the simulated ray tracer: {error}") from error
+        return frame
+
+    def close(self) -> None:
+        """Nothing to stop."""

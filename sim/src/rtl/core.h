@@ -1,0 +1,30 @@
+// A voxrt_pixel_generator with a board around it: a master on its AXI4-Lite registers, a controller on its memory port,
+// and a sink for its AXI4-Stream video. Time passes by clocks, and only in these calls.
+#pragma once
+
+#include "design.h"
+#include "frame_sink.h"
+
+namespace voxrt::rtl {
+
+class Core {
+public:
+    virtual ~Core() = default;
+    virtual const Limits& limits() const = 0;
+
+    // Byte addresses. std::runtime_error: the core refuses the access or does not answer.
+    virtual uint32_t read(uint32_t address) = 0;
+    virtual void write(uint32_t address, uint32_t value) = 0;
+
+    // Word addresses, a word a clock; all words are in the memory, which the caller checks.
+    virtual void read_memory(std::size_t address, std::span<uint32_t> words) = 0;
+    virtual void write_memory(std::size_t address, std::span<const uint32_t> words) = 0;
+
+    // Takes the stream from now on, until a frame is complete; stalls as StallPattern says. Before, the stream waits.
+    virtual void expect(unsigned width, unsigned height, uint32_t stall_seed) = 0;
+    // Lets clocks pass, at most so many, until the frame is complete: whether it is. Calls poll now and then.
+    virtual bool run(uint64_t clocks, const std::function<void()>& poll) = 0;
+    virtual const FrameSink& sink() const = 0;
+};
+
+} // namespace voxrt::rtl

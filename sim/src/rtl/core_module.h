@@ -1,0 +1,10 @@
+// The Python class PixelGenerator and the list CORES; core_module.cpp documents them.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace voxrt::rtl {
+
+void bind_pixel_generator(nanobind::module_& m);
+
+} // namespace voxrt::rtl

@@ -1,0 +1,184 @@
+"""Surfaces with holes are filled where the generalized winding number says so; what stands open is not."""
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracles.meshes import box_mesh, icosphere, one_object, scene_of
+from oracles.voxels import dense, snap, winding_at
+
+from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
+
+UNIT = 4096
+
+
+def without(mesh, drop):
+    keep = np.ones(len(mesh.triangles), bool)
+    keep[drop] = False
+    return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
+
+
+def joined(*meshes):
+    firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes[:-1])])
+    return Mesh(
+        np.concatenate([mesh.positions for mesh in meshes]),
+        np.concatenate([mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]).astype(np.int32),
+        np.concatenate([mesh.materials for mesh in meshes]),
+    )
+
+
+def asked(cells):
+    """Where voxels are asked: 1/8192 voxel beside their centres, in 1/4096 voxel."""
+    return cells * float(UNIT) + UNIT / 2 + 0.5
+
+
+def disagreements(mesh, depth, cells=None):
+    """Voxels without surface that are not as the sum over all triangles has them, ties apart."""
+    side = 2**depth
+    scene, grid = one_object(mesh), Grid(depth, (0.0, 0.0, 0.0), 1.0)
+    filled = dense(voxelize(scene, grid).voxels) != 0
+    covered = dense(voxelize(scene, grid, fill="surface").voxels) != 0
+    if cells is None:
+        cells = np.argwhere(~covered)
+    cells = cells[~covered[tuple(cells.T)]]
+    vertices = snap(mesh.positions, np.eye(4), (0, 0, 0), 1)
+    low, high = vertices.min(axis=0) // UNIT, -(-vertices.max(axis=0) // UNIT)
+    cells = cells[((cells >= low) & (cells < np.minimum(high, side))).all(axis=1)]
+    number = np.abs(winding_at(asked(cells), vertices, mesh.triangles))
+    clear = np.abs(number - 0.5) > 2e-6
+    return int((filled[tuple(cells.T)] != (number > 0.5))[clear].sum()), len(cells)
+
+
+@settings(max_examples=12)
+@given(st.integers(0, 10**6), st.sampled_from([(0, 1), (1, 5), (2, 40)]))
+def test_every_voxel_is_as_the_sum_over_all_triangles_has_it(seed, removed):
+    rng = np.random.default_rng(seed)
+    level, count = removed
+    ball = icosphere(level, rng.uniform(6, 10, 3), rng.uniform(3, 7))
+    mesh = without(ball, rng.choice(len(ball.triangles), count, replace=False))
+    if rng.random() < 0.5:  # a hole that is not flat
+        mesh.positions[mesh.triangles[0, 0]] *= 0.8
+    wrong, _ = disagreements(mesh, 4)
+    assert wrong == 0
+
+
+def test_voxels_of_a_scan_with_very_many_holes():
+    rng = np.random.default_rng(5)
+    ball = icosphere(4, (63.3, 64.1, 64.7), 61)
+    mesh = without(ball, rng.choice(len(ball.triangles), len(ball.triangles) // 10, replace=False))
+    at = rng.choice(len(mesh.triangles), 1500)
+    near = mesh.positions[mesh.triangles[at]].mean(axis=1) + rng.normal(size=(1500, 3)) * 2
+    cells = np.unique(np.concatenate([near.astype(int), rng.integers(0, 128, (300, 3))]), axis=0)
+    wrong, looked_at = disagreements(mesh, 7, cells[((cells >= 0) & (cells < 128)).all(axis=1)])
+    assert looked_at > 700
+    assert wrong == 0
+
+
+def test_a_scan_with_very_many_holes_keeps_its_volume():
+    grid = Grid(7, (-64.0, -64.0, -64.0), 1.0)
+    ball = icosphere(5, radius=60)
+    rng = np.random.default_rng(3)
+    holed = without(ball, rng.choice(len(ball.triangles), len(ball.triangles) // 10, replace=False))
+    whole, left = (voxelize(one_object(mesh), grid).objects[0].voxels for mesh in (ball, holed))
+    assert abs(left / whole - 1) < 0.001
+
+
+def room(*, inverted=False):
+    """A box from 2 to 14 without its side at x = 2."""
+    box = box_mesh([2, 2, 2], [14, 14, 14], inverted=inverted)
+    front = (box.positions[box.triangles][:, :, 0] == 2).all(axis=1)
+    assert front.sum() == 2
+    return without(box, front), Mesh(box.positions, box.triangles[front], box.materials[front])
+
+
+GRID = Grid(4, (0.0, 0.0, 0.0), 1.0)
+
+
+@pytest.mark.parametrize("inverted", [False, True])
+def test_a_room_without_a_front_stays_a_room(inverted):
+    mesh, _ = room(inverted=inverted)
+    result = voxelize(one_object(mesh), GRID)
+    assert result.objects[0].mode == "open"
+    assert [(warning.kind, warning.count) for warning in result.warnings] == [("open-surface", 1)]
+    np.testing.assert_array_equal(dense(result.voxels), dense(voxelize(one_object(mesh), GRID, fill="surface").voxels))
+
+
+def test_a_room_of_loose_walls_stays_a_room():
+    mesh, _ = room()
+    loose = Mesh(
+        mesh.positions[mesh.triangles].reshape(-1, 3),
+        np.arange(3 * len(mesh.triangles), dtype=np.int32).reshape(-1, 3),
+        mesh.materials,
+    )
+    assert not dense(voxelize(one_object(loose), GRID).voxels)[4:12, 4:12, 4:12].any()
+
+
+def test_a_side_wound_against_the_others_is_no_opening():
+    mesh, side = room()
+    turned = Mesh(side.positions, side.triangles[:, ::-1].copy(), side.materials)
+    result = voxelize(one_object(joined(mesh, turned)), GRID)
+    assert result.objects[0].mode == "winding"
+    assert dense(result.voxels)[7:14, 2:14, 2:14].all()
+
+
+def test_a_lid_closes_a_box():
+    mesh, lid = room()
+    lid = Mesh(lid.positions - [0.1, 0, 0], lid.triangles, lid.materials)
+    result = voxelize(one_object(joined(mesh, lid)), GRID)
+    assert result.objects[0].mode == "winding"
+    assert result.warnings == ()
+    assert dense(result.voxels)[2:14, 2:14, 2:14].all()
+
+
+def test_a_closed_piece_is_filled_beside_an_open_one():
+    mesh, _ = room()
+    block = box_mesh([6, 6, 6], [11, 11, 11])
+    result = voxelize(one_object(joined(mesh, block)), GRID)
+    assert result.objects[0].mode == "open"
+    filled = dense(result.voxels) != 0
+    assert filled[6:11, 6:11, 6:11].all()
+    assert filled[4:12, 4:12, 4:12].sum() == 125
+
+
+def test_sheets_and_bowls_have_a_shell_alone():
+    flat = Mesh(
+        np.array([[1, 1, 5.5], [9, 1, 5.5], [9, 9, 5.5], [1, 9, 5.5]]),
+        np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        np.ones(2, np.uint8),
+    )
+    ball = icosphere(2, (8, 8, 8), 6.0)
+    bowl = without(ball, ball.positions[ball.triangles].mean(axis=1)[:, 2] > 8)
+    result = voxelize(scene_of(SceneObject("flat", flat), SceneObject("bowl", bowl)), GRID)
+    assert not dense(result.voxels)[8, 8, 7]
+    assert result.objects[0].voxels == 64
+
+
+def test_open_surfaces_are_the_same_for_every_thread_count():
+    rng = np.random.default_rng(9)
+    ball = icosphere(3, (64, 64, 64), 60)
+    mesh = without(ball, rng.choice(len(ball.triangles), 100, replace=False))
+    grid = Grid(7, (0.0, 0.0, 0.0), 1.0)
+    first, second = (voxelize(one_object(mesh), grid, threads=threads).voxels for threads in (1, 3))
+    np.testing.assert_array_equal(first.brick_masks, second.brick_masks)
+    np.testing.assert_array_equal(first.octant_codes, second.octant_codes)
+
+
+def test_a_thin_hull_has_no_gaps():
+    plate = box_mesh([1, 1, 4.25], [15, 15, 4.25 + 1e-3])
+    tilted = Mesh(plate.positions + plate.positions[:, :1] * [0, 0, 0.37], plate.triangles, plate.materials)
+    assert (dense(voxelize(one_object(tilted), GRID).voxels)[1:15, 1:15] != 0).any(axis=2).all()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no signals between threads")
+def test_ctrl_c_ends_a_long_run():
+    mesh = icosphere(6, radius=1.0)
+    grid = Grid(13, (-1.0, -1.0, -1.0), 2 / 2**13)  # takes seconds
+    main = threading.main_thread().ident
+    timer = threading.Timer(0.2, lambda: signal.pthread_kill(main, signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        voxelize(one_object(mesh), grid)

@@ -1,0 +1,112 @@
+"""How like its meshes a scene is at each depth, and for how many words: what a finer grid buys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt import octree, sim, voxelize
+from voxrt.viewpoint import aim_camera
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from voxrt.sim import Likeness
+    from voxrt.voxelize import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class LikenessAtDepth:
+    """A scene at one depth, as :func:`likeness_curve` finds it.
+
+    Attributes
+    ----------
+    depth
+        Levels of the octree.
+    words
+        What its memory takes.
+    likeness
+        How like its picture is to that of the meshes; depths in voxels of this grid.
+    """
+
+    depth: int
+    words: int
+    likeness: Likeness
+
+
+def likeness_curve(
+    scene: Scene, depths: Iterable[int], size: tuple[int, int], *, threads: int = 0
+) -> tuple[LikenessAtDepth, ...]:
+    """Hold a scene's voxels against its meshes at several depths, from one camera.
+
+    Parameters
+    ----------
+    scene
+        The source.
+    depths
+        Which, ascending, each 1 … 16; the camera frames the scene at the last.
+    size
+        Columns and rows of the pictures.
+    threads
+        Threads of the native stages, 0 for one a core.
+
+    Raises
+    ------
+    SimulatorError
+        Open3D is not installed.
+    """
+    roms = [_rom(scene, depth, threads) for depth in depths]
+    finest = roms[-1].octree.depth
+    camera = aim_camera(roms[-1], size)
+    curve = []
+    for rom in roms:
+        x, y, z = (int(place) for place in np.rint(np.ldexp(camera.position, rom.octree.depth - finest)))
+        found = sim.compare(scene, rom, replace(camera, position=(x, y, z)), size)
+        curve.append(LikenessAtDepth(rom.octree.depth, len(rom.octree.words), found.likeness))
+    return tuple(curve)
+
+
+def draw_likeness_curve(curve: tuple[LikenessAtDepth, ...]) -> NDArray[np.uint8]:
+    """Draw what a curve says, against depth and against words: uint8, shape (H, W, 3).
+
+    Raises
+    ------
+    SimulatorError
+        Matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure  # noqa: PLC0415 - slow to load, optional
+    except ImportError as error:
+        raise sim.SimulatorError(
+            "drawing a curve needs matplotlib, which is not installed; pip install 'voxrt[compare]'"
+        ) from error
+    figure = Figure(figsize=(9, 6), dpi=100, layout="constrained")
+    places = figure.subplots(2, 2, sharey="row")
+    for column, (across, label) in enumerate((("depth", "depth"), ("words", "words of memory"))):
+        at = [getattr(point, across) for point in curve]
+        worlds = [point.likeness.depth_mean / (1 << point.depth) for point in curve]
+        places[0, column].plot(at, worlds, "o-", color="tab:red", label="mean depth error, parts of the world's side")
+        places[0, column].set_yscale("log")
+        for name, what in (("silhouette_iou", "silhouette IoU"), ("ssim", "SSIM"), ("normal_agreement", "normals")):
+            places[1, column].plot(at, [getattr(point.likeness, name) for point in curve], "o-", label=what)
+        for row in (0, 1):
+            places[row, column].grid(visible=True, alpha=0.3)
+            places[row, column].legend(fontsize=8)
+            if across == "words":
+                places[row, column].set_xscale("log")
+        places[1, column].set_xlabel(label)
+    drawn = BytesIO()
+    figure.savefig(drawn, format="rgba")
+    return np.frombuffer(drawn.getvalue(), np.uint8).reshape(600, 900, 4)[..., :3].copy()
+
+
+def _rom(scene: Scene, depth: int, threads: int) -> octree.Rom:
+    grid = voxelize.fit_grid(scene, depth=depth)
+    scene = voxelize.tint(scene, grid)
+    voxels = voxelize.voxelize(scene, grid, threads=threads).voxels
+    return octree.Rom(scene.name, octree.build(voxels, threads=threads), scene.materials, grid)
