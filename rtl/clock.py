@@ -20,7 +20,7 @@ BIN = Path(sys.executable).parent
 CORE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12}
 # What is placed: a lane, and a whole core of one lane.
 PARTS = {
-    "one lane": ("voxrt_lane", {**CORE, "TagBits": 10}),
+    "one lane": ("voxrt_lane", {**CORE, "TagBits": 9}),
     "core of one lane": (TOP, {**CORE, "Lanes": 1, "Banked": 0}),
 }
 TARGET_MHZ = 150
@@ -52,8 +52,8 @@ def main() -> None:
     parser.add_argument("--speed", type=int, choices=(6, 7, 8), default=8, help="speed grade, 8 is the fastest")
     options = parser.parse_args()
     lines = [
-        f"ECP5-85, speed grade {options.speed}, yosys `synth_ecp5` and nextpnr, out of context, seed 1: the clock that the",
-        "longest path between registers allows.",
+        f"ECP5-85, speed grade {options.speed}, yosys `synth_ecp5` and nextpnr, out of context, seed 1: the clock that",
+        "the longest path between registers allows.",
         "",
         "| part | MHz | LUT4 | FF | multipliers 18 x 18 | block RAMs of 18 Kbit |",
         "|---|---|---|---|---|---|",

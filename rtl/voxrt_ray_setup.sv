@@ -72,7 +72,8 @@ module voxrt_ray_setup
   logic [2:0]                 mirrored_q [1:Stages];
   logic [2:0]                 dead_q     [1:Stages];
   logic [Stages:1]            overflow_q;
-  logic [WeightBits-1:0]      weight_q   [3:Stages] [3];
+  logic [WeightBits-1:0]      weight3    [3];
+  logic [WeightBits-1:0]      weight_q   [4:Stages] [3];
 
   always_ff @(posedge clk_i) begin
     valid_q <= rst_ni ? {valid_q[Stages-1:1], valid_i} : '0;
@@ -83,7 +84,8 @@ module voxrt_ray_setup
       overflow_q[s] <= overflow_q[s-1];
     end
     // Registers keep what they have where no ray is.
-    for (int unsigned s = 4; s <= Stages; s++) begin
+    if (valid_q[3]) weight_q[4] <= weight3;
+    for (int unsigned s = 5; s <= Stages; s++) begin
       if (valid_q[s-1]) weight_q[s] <= weight_q[s-1];
     end
     lane_q[1] <= lane_i;
@@ -117,7 +119,6 @@ module voxrt_ray_setup
   end
 
   // 2, 3: weights; from the origin to the near plane, as voxrt_lane does it.
-  logic [WeightBits-1:0]          product_q [3];
   logic signed [DistanceBits-1:0] distance_q[3], origin[3], other_origin[3];
 
   always_comb begin
@@ -127,14 +128,20 @@ module voxrt_ray_setup
     end
   end
 
+  for (genvar a = 0; a < 3; a++) begin : gen_weight
+    voxrt_multiply #(
+      .ABits(DirectionBits),
+      .BBits(DirectionBits)
+    ) u_weight (
+      .clk_i,
+      .a_i      (size_q[(a+1)%3]),
+      .b_i      (size_q[(a+2)%3]),
+      .product_o(weight3[a])
+    );
+  end
+
   always_ff @(posedge clk_i) begin
-    if (valid_q[1]) begin
-      product_q[0] <= WeightBits'(size_q[1]) * WeightBits'(size_q[2]);
-      product_q[1] <= WeightBits'(size_q[2]) * WeightBits'(size_q[0]);
-      product_q[2] <= WeightBits'(size_q[0]) * WeightBits'(size_q[1]);
-    end
     if (valid_q[2]) begin
-      weight_q[3] <= product_q;
       for (int unsigned a = 0; a < 3; a++) begin
         distance_q[a][FractionBits-1:0] <= other_origin[a][FractionBits-1:0];
         distance_q[a][DistanceBits-1:FractionBits] <= ~origin[a][DistanceBits-1:FractionBits] +
@@ -199,7 +206,7 @@ module voxrt_ray_setup
     ) u_near (
       .clk_i,
       .distance_i(distance_q[a]),
-      .weight_i  (weight_q[3][a]),
+      .weight_i  (weight3[a]),
       .time_o    (near_time[a])
     );
   end

@@ -145,7 +145,7 @@ private:
         for (int i = 0; i < 16; ++i)
             clock();
         model_->rst_ni = 1;
-        for (int i = 0; i < 512; ++i)
+        for (int i = 0; i < 256; ++i)
             clock();
     }
 
