@@ -118,6 +118,10 @@ module voxrt_ray_setup
     end
   end
 
+  // Shadow rays, in stages 2 and 7: from where, in the mirrored frame.
+  logic                           shadow2, shadow7;
+  logic signed [DistanceBits-1:0] lit2[3];
+
   // 2, 3: weights; from the origin to the near plane, as voxrt_lane does it.
   logic signed [DistanceBits-1:0] distance_q[3], origin[3], other_origin[3];
 
@@ -153,9 +157,6 @@ module voxrt_ray_setup
   end
 
   // Shadow rays.
-  logic                           shadow2, shadow7;
-  logic signed [DistanceBits-1:0] lit2[3];
-
   if (Light) begin : gen_light
     logic        [  Stages:1] shadow_q;
     logic        [TagBits-1:0] tag_q[1:Stages];
