@@ -6,13 +6,16 @@ The picture of octants needs ``voxrt[view]``, those of the comparison ``voxrt[co
 from __future__ import annotations
 
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
 from matplotlib import pyplot as plt
+from PIL import Image
 
 import voxrt
 from voxrt import octree
+from voxrt.sight import find_owners, preview_of, scene_triangles
 
 EXAMPLES = Path(__file__).resolve().parent
 PICTURES = EXAMPLES.parent / "docs" / "pictures"
@@ -26,12 +29,38 @@ def main() -> None:
         picture = PICTURES / Path(name).with_suffix(".png")
         voxrt.build(EXAMPLES / name, preview=picture, size=size)
         print(picture)
-    octants = PICTURES / "octants.png"
-    octree.plot(voxrt.build(EXAMPLES / "courtyard.glb").rom, size=(800, 600), screenshot=octants)
-    print(octants)
+    show_octants()
     compare()
     draw_gallery("physics_colliders", "rounding")
     draw_gallery("textured_gltf", "painted")
+
+
+def show_octants() -> None:
+    """Leave the viewer's pictures in docs/pictures."""
+    courtyard = voxrt.build(EXAMPLES / "courtyard.glb")
+    rom, scene, grid = courtyard.rom, courtyard.scene, courtyard.rom.grid
+    assert grid is not None
+    pruned = replace(voxrt.build(EXAMPLES / "courtyard.glb", budget=6000).rom, name="courtyard in 6,000 words")
+    house = voxrt.build(EXAMPLES / "house.obj", depth=6)
+    assert house.rom.grid is not None
+    preview = preview_of(rom, voxrt.aim_camera(rom, (640, 480)), (640, 480), (320, 240))
+    for name, panes, size, beside in (
+        ("octants", [octree.Pane(rom)], (800, 600), None),
+        ("octants-ray", [octree.Pane(rom)], (1024, 640), preview),
+        ("octants-slice", [octree.Pane(rom, high=(60, 128, 100), cut=True, by="level")], (640, 480), None),
+        ("octants-owners", [octree.Pane(rom, by="owner", owners=find_owners(scene, grid))], (640, 480), None),
+        (
+            "octants-mesh",
+            [octree.Pane(house.rom, triangles=scene_triangles(house.scene, house.rom.grid))],
+            (640, 480),
+            None,
+        ),
+        ("octants-pair", [octree.Pane(rom), octree.Pane(pruned)], (1024, 400), None),
+    ):
+        picture = Image.fromarray(octree.picture(panes, size, preview=beside))
+        file = PICTURES / f"{name}.png"
+        picture.quantize(200, dither=Image.Dither.NONE).save(file, optimize=True)
+        print(file)
 
 
 def compare() -> None:

@@ -14,13 +14,16 @@ from voxrt.octree.errors import RomError, ViewerError
 from voxrt.octree.hidden import fill_hidden, hidden_voxels, share_hidden
 from voxrt.octree.leaves import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
-from voxrt.octree.octants import octants
+from voxrt.octree.octants import octants, open_sides
 from voxrt.octree.octree import MAX_DEPTH, Octree
+from voxrt.octree.owners import Owners
+from voxrt.octree.pane import DrawnRay, Pane, Preview
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 from voxrt.octree.surface import SurfaceChange, surface_change
-from voxrt.octree.view import describe, picture, plot, show
+from voxrt.octree.view import picture, plot, turntable
 from voxrt.octree.vox import read_vox
+from voxrt.octree.window import Window
 
 __all__ = [
     "BOARDS",
@@ -29,21 +32,25 @@ __all__ = [
     "Census",
     "Dialect",
     "Difference",
+    "DrawnRay",
     "Fit",
     "Leaves",
     "Octant",
     "Octree",
+    "Owners",
+    "Pane",
+    "Preview",
     "Region",
     "Rom",
     "RomError",
     "SurfaceChange",
     "ViewerError",
+    "Window",
     "build",
     "census",
     "coarsen",
     "count_in_box",
     "decode",
-    "describe",
     "detect_dialect",
     "diff",
     "differing_regions",
@@ -57,6 +64,7 @@ __all__ = [
     "material_at",
     "octant_at",
     "octants",
+    "open_sides",
     "picture",
     "plot",
     "read_vox",
@@ -66,4 +74,5 @@ __all__ = [
     "solid_bounds",
     "surface_change",
     "to_dense",
+    "turntable",
 ]

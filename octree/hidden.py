@@ -6,39 +6,13 @@ corners count too since a camera may stand on an edge or a corner of an empty vo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-
 from voxrt.octree import _native
-from voxrt.octree.octree import MAX_DEPTH, Octree
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from voxrt.octree.leaves import Leaves
+from voxrt.octree.octree import Octree
 
 
 def hidden_voxels(octree: Octree) -> Octree:
     """Find the hidden voxels: solid, of material 1, in what is given back. Cost grows with the surface."""
     return Octree(octree.depth, _native.hidden_voxels(octree.words, octree.depth))
-
-
-def hidden_leaves(solid: Leaves) -> NDArray[np.bool_]:
-    """Tell which of some solid leaves, which are all there is, are hidden.
-
-    Parameters
-    ----------
-    solid
-        N leaves that do not overlap, in Morton order.
-
-    Returns
-    -------
-    NDArray[np.bool_]
-        Shape (N,).
-    """
-    found = _native.hidden_octants(solid.corners.astype(np.int32, order="C"), solid.levels, MAX_DEPTH)
-    return found.astype(np.bool_)
 
 
 def fill_hidden(octree: Octree, hidden: Octree, material: int) -> Octree:

@@ -5,16 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from voxrt.octree import _native
+from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
+
+
+LEAF_LIMIT = 1 << 24
+"""The most solid leaves that are taken at once."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,3 +69,24 @@ def leaves(
     walk = _native.LeafWalk(octree.words, octree.depth, low, end, solid_only)
     while len((part := Leaves(*walk.next(chunk))).levels):
         yield part
+
+
+def solid_leaves(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> Leaves:
+    """Take all solid leaves that overlap a box at once, as :func:`leaves` gives them.
+
+    Raises
+    ------
+    DoesNotFitError
+        More than :data:`LEAF_LIMIT`.
+    """
+    chunks, count = [Leaves(np.zeros((0, 3), np.int32), np.zeros(0, np.uint8), np.zeros(0, np.uint8))], 0
+    for chunk in leaves(octree, low, high, solid_only=True):
+        count += len(chunk.levels)
+        if count > LEAF_LIMIT:
+            raise DoesNotFitError(f"more than {LEAF_LIMIT} octants cannot be shown; show a part, or coarser octants")
+        chunks.append(chunk)
+    return Leaves(
+        np.concatenate([chunk.corners for chunk in chunks]),
+        np.concatenate([chunk.levels for chunk in chunks]),
+        np.concatenate([chunk.materials for chunk in chunks]),
+    )

@@ -5,7 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.octree.leaves import Leaves
     from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 
@@ -69,3 +74,13 @@ def octant_at(octree: Octree, voxel: Corner) -> Octant:
         address = word + (x >> level & 1) + 2 * (y >> level & 1) + 4 * (z >> level & 1)
         word = int(octree.words[address])
     return Octant(address, word, level, (x >> level << level, y >> level << level, z >> level << level))
+
+
+def addresses(octree: Octree, some: Leaves) -> NDArray[np.uint32]:
+    """Find the addresses of the words of some of an octree's leaves, shape (N,)."""
+    found = np.zeros(len(some.levels), np.uint32)
+    for level in reversed(range(octree.depth)):
+        below = some.levels <= level
+        octants = (some.corners[below] >> level & 1) @ np.array([1, 2, 4], np.int32)
+        found[below] = octree.words[found[below]] + octants.astype(np.uint32)
+    return found

@@ -2,6 +2,9 @@
 // different banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want
 // one bank: word {row, bank ^ lowest bits of row}.
 //
+// The first eight blocks, which is the octree's top where blocks are ordered breadth-first, are in distributed memory
+// as well, with a read port for each lane: near the root, where all rays pass, lanes do not meet.
+//
 // Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
 // Every lane that wants one of these rows gets it; the others get no ack_o and ask again at their ray's next turn.
 // A word comes five clocks after its address:
@@ -40,15 +43,35 @@ module voxrt_banked_memory
   logic [BankRowBits-1:0] row   [Lanes];
   logic [BankRowBits-1:0] row_q [1:2] [Lanes];
 
+  // Of the first blocks.
+  localparam int unsigned TopBits = 6;
+  // Public, so that a simulation can fill it.
+  logic [PayloadBits:0] top_q[2**TopBits]  /* verilator public_flat_rw */;
+  logic [    Lanes-1:0] in_top, in_top_q[1:4];
+  logic [  TopBits-1:0] place_q[1:4] [Lanes];
+
+  always_ff @(posedge clk_i) begin
+    if (access_i && access_write_i && access_row_i[RowBits-1:TopBits] == '0) begin
+      top_q[access_row_i[TopBits-1:0]] <= access_word_i;
+    end
+    in_top_q[1] <= in_top & read_i;
+    for (int unsigned i = 0; i < Lanes; i++) place_q[1][i] <= TopBits'({block_i[i], octant_i[i]});
+    for (int unsigned s = 2; s <= 4; s++) begin
+      in_top_q[s] <= in_top_q[s-1];
+      place_q[s]  <= place_q[s-1];
+    end
+  end
+
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
+      in_top[i] = block_i[i][BlockBits-1:TopBits-3] == '0;
       row[i]  = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
       bank[i] = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
     end
   end
 
   always_ff @(posedge clk_i) begin
-    read_q[1] <= rst_ni ? read_i : '0;
+    read_q[1] <= rst_ni ? read_i & ~in_top : '0;
     read_q[2] <= rst_ni ? read_q[1] : '0;
     read_q[3] <= rst_ni ? read_q[2] : '0;
     bank_q[1] <= bank;
@@ -99,7 +122,7 @@ module voxrt_banked_memory
     endfunction
 
     always_comb begin
-      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && bank[i] == BankBits'(k);
+      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && !in_top[i] && bank[i] == BankBits'(k);
       early     = asks & ~late_q;
       upwards   = early != '0 ? early : asks;
       downwards = mirror((asks & late_q) != '0 ? asks & late_q : asks);
@@ -153,11 +176,12 @@ module voxrt_banked_memory
     for (int unsigned i = 0; i < Lanes; i++) begin
       from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_row2_q[bank_q[2][i]] == row_q[2][i];
       from_b_q[3][i] <= read_q[2][i] && b_row2_q[bank_q[2][i]] == row_q[2][i];
-      word_q[i]      <= from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
+      word_q[i]      <= in_top_q[4][i] ? top_q[place_q[4][i]] :
+          from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
     end
     from_a_q[4]  <= from_a_q[3];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] : '0;
+    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | in_top_q[4] : '0;
     access_out_q <= a_word[access_bank_q[4]];
   end
 

@@ -1,4 +1,4 @@
-// When a ray crosses three planes of its cell: T, stages 1 to 4 of voxrt_lane. Far planes, or middle ones, one an axis;
+// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, or middle ones, one an axis;
 // modulo 2**KeyBits.
 //
 // Distances from origins to planes come from the camera's origin, which all rays share, or, with Light or Mirrors, from
@@ -31,15 +31,15 @@ module voxrt_cell_times
   input  logic        [  CellBits-1:0] size2_i,
   input  logic                         shadow2_i,
   input  logic                         takes_far_i,
-  // Stage 8: a new ray; or the ray is reflected by a plane of this number and axis, in its own mirrored frame.
-  input  logic        [  SlotBits-1:0] slot8_i,
+  // Stage 9: a new ray; or the ray is reflected by a plane of this number and axis, in its own mirrored frame.
+  input  logic        [  SlotBits-1:0] slot9_i,
   input  logic                         starts_i,
   input  logic        [WeightBits-1:0] weight_i          [3],
   input  logic signed [OriginBits-1:0] ray_origin_i      [3],
   input  logic                         reflects_i,
   input  face_e                        face_i,
   input  logic signed [MaxDepth+1:0]   shift_i,               // Side - 2 plane.
-  output logic        [   KeyBits-1:0] time_o            [3]  // At stage 5.
+  output logic        [   KeyBits-1:0] time_o            [3]  // At stage 6.
 );
   localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;
   localparam int unsigned TimeBits = DistanceBits + WeightBits;
@@ -69,12 +69,12 @@ module voxrt_cell_times
             DistanceBits'(dead1_i[a]);
         distance3_q[a] <= near2_q[a] + (step2 << shadow2_i);
       end
-      if (starts_i) origin_x_q[slot8_i] <= DistanceBits'(ray_origin_i[0]);
-      else if (reflects_i && face_i == FaceX) origin_x_q[slot8_i] <= origin_x_q[slot8_i] + shift;
-      if (starts_i) origin_y_q[slot8_i] <= DistanceBits'(ray_origin_i[1]);
-      else if (reflects_i && face_i == FaceY) origin_y_q[slot8_i] <= origin_y_q[slot8_i] + shift;
-      if (starts_i) origin_z_q[slot8_i] <= DistanceBits'(ray_origin_i[2]);
-      else if (reflects_i && face_i == FaceZ) origin_z_q[slot8_i] <= origin_z_q[slot8_i] + shift;
+      if (starts_i) origin_x_q[slot9_i] <= DistanceBits'(ray_origin_i[0]);
+      else if (reflects_i && face_i == FaceX) origin_x_q[slot9_i] <= origin_x_q[slot9_i] + shift;
+      if (starts_i) origin_y_q[slot9_i] <= DistanceBits'(ray_origin_i[1]);
+      else if (reflects_i && face_i == FaceY) origin_y_q[slot9_i] <= origin_y_q[slot9_i] + shift;
+      if (starts_i) origin_z_q[slot9_i] <= DistanceBits'(ray_origin_i[2]);
+      else if (reflects_i && face_i == FaceZ) origin_z_q[slot9_i] <= origin_z_q[slot9_i] + shift;
     end
   end else begin : gen_shared_origin
     localparam int unsigned WholeBits = DistanceBits - FractionBits;
@@ -100,7 +100,7 @@ module voxrt_cell_times
     end
   end
 
-  // 3, 4.
+  // 3, 4, 5.
   logic        [WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
   logic        [WeightBits-1:0] weight3_q [3];
   logic signed [  TimeBits-1:0] exact_time[3];
@@ -110,9 +110,9 @@ module voxrt_cell_times
     weight3_q[1] <= weight_y_q[slot2_i];
     weight3_q[2] <= weight_z_q[slot2_i];
     if (starts_i) begin
-      weight_x_q[slot8_i] <= weight_i[0];
-      weight_y_q[slot8_i] <= weight_i[1];
-      weight_z_q[slot8_i] <= weight_i[2];
+      weight_x_q[slot9_i] <= weight_i[0];
+      weight_y_q[slot9_i] <= weight_i[1];
+      weight_z_q[slot9_i] <= weight_i[2];
     end
   end
 

@@ -1,19 +1,20 @@
-// Follows rays through the octree: a ring of eleven stages that holds eleven rays; every clock one of them reads one
+// Follows rays through the octree: a ring of twelve stages that holds twelve rays; every clock one of them reads one
 // octree word. A memory that takes longer than two clocks adds a stage and a ray a clock, before stage 1.
 //
 //   stage     work                                                                        state of a slot, read
 //   0 fetch   the memory takes the address                                                mirrored, dead
 //   1 wait    the memory's output register; distance to the cell's near planes            -
 //   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weight
-//   3 product distance x weight, in two parts; the pointer goes onto the stack            -
-//   4 sum     T of three planes                                                           key, dead
-//   5 compare leaf: T among themselves; pointer: T with the ray's key                     corner, size
-//   6 exit    leaf: the axis that it is left by, and the corner's place on that axis      -
-//   7 add     the size to that place                                                      -
-//   8 turn    the size of the next cell; the smallest T is the new key; a new ray in the  tag
+//   3 product distance x weight, in parts; the pointer goes onto the stack                -
+//   4         parts                                                                       -
+//   5         T of three planes                                                           key, dead
+//   6 compare leaf: T among themselves; pointer: T with the ray's key                     corner, size
+//   7 exit    leaf: the axis that it is left by, and the corner's place on that axis      -
+//   8 add     the size to that place                                                      -
+//   9 turn    the size of the next cell; the smallest T is the new key; a new ray in the  tag
 //             place of one that ended
-//   9 corner  the next cell's corner and octant; the stack is read                        mirrored
-//   10 block  the block from the stack, or the root's                                     -
+//   10 corner the next cell's corner and octant; the stack is read                        mirrored
+//   11 block  the block from the stack, or the root's                                     -
 //
 // A ray's key (T, face) is the last plane that it crossed. Corner and size (one-hot) are those of the cell read; its
 // octant is the corner's bit at size. Planes of cells at that time crossed are those with keys <= the ray's key, so
@@ -107,7 +108,7 @@ module voxrt_lane
   output logic                           step_limit_o
 );
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
-  localparam int unsigned Stages = 11;
+  localparam int unsigned Stages = 12;
   localparam int unsigned Extra = MemoryClocks - 2;
   localparam int unsigned Slots = Stages + Extra;
   localparam int unsigned SlotBits = $clog2(Slots);
@@ -197,9 +198,10 @@ module voxrt_lane
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
-  action_e              action3_q, action4_q, action5_q, action6_q, action7_q;
+  action_e              action3_q, action4_q, action5_q, action6_q, action7_q, action8_q;
   logic [BlockBits-1:0] block3_q;
-  material_t            material3_q, material4_q, material5_q, material6_q, material7_q, material8_q;
+  material_t            material3_q, material4_q, material5_q, material6_q;
+  material_t            material7_q, material8_q, material9_q;
   logic [LevelBits-1:0] child_level3_q;
   logic                 bad_pointer_q, step_limit_q;
 
@@ -221,11 +223,11 @@ module voxrt_lane
   assign bad_pointer_o = bad_pointer_q;
   assign step_limit_o  = step_limit_q;
 
-  // 1 to 4: T of planes. A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
+  // 1 to 5: T of planes. A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
   logic                       starts, reflects;
-  face_e                      key_face8_q;
-  logic        [KeyBits-1:0]  time5[3];
-  logic signed [MaxDepth+1:0] shift8;
+  face_e                      key_face9_q;
+  logic        [KeyBits-1:0]  time6[3];
+  logic signed [MaxDepth+1:0] shift9;
 
   voxrt_cell_times #(
     .MaxDepth    (MaxDepth),
@@ -246,133 +248,135 @@ module voxrt_lane
     .size2_i     (size2_q),
     .shadow2_i   (shadow2),
     .takes_far_i (Light ? action == Leave : leaf),
-    .slot8_i     (slot[8]),
+    .slot9_i     (slot[9]),
     .starts_i    (starts),
     .weight_i    (ray_weight_i),
     .ray_origin_i,
     .reflects_i  (reflects),
-    .face_i      (key_face8_q),
-    .shift_i     (shift8),
-    .time_o      (time5)
+    .face_i      (key_face9_q),
+    .shift_i     (shift9),
+    .time_o      (time6)
   );
 
-  logic [KeyBits-1:0] key_time5_q;
-  face_e              key_face5_q;
-  logic [        2:0] dead5_q;
+  logic [KeyBits-1:0] key_time6_q;
+  face_e              key_face6_q;
+  logic [        2:0] dead6_q;
 
   always_ff @(posedge clk_i) begin
     action4_q   <= action3_q;
     action5_q   <= action4_q;
+    action6_q   <= action5_q;
     material4_q <= material3_q;
     material5_q <= material4_q;
-    key_time5_q <= key_time_q[slot[4]];
-    key_face5_q <= key_face_q[slot[4]];
-    dead5_q     <= dead_q[slot[4]];
+    material6_q <= material5_q;
+    key_time6_q <= key_time_q[slot[5]];
+    key_face6_q <= key_face_q[slot[5]];
+    dead6_q     <= dead_q[slot[5]];
   end
 
-  // 5 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key, on a dead
+  // 6 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key, on a dead
   // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
   logic        [ KeyBits-1:0] other    [3];
   logic        [   KeyBits:0] difference[3];
   logic        [         2:0] first;  // Of equals.
-  logic        [         2:0] before6_q;
-  logic        [ KeyBits-1:0] time6_q  [3];
-  face_e                      key_face6_q, key_face7_q;
-  logic        [CellBits-1:0] corner6_q[3], size6_q;
-  logic        [         2:0] dead6_q;
+  logic        [         2:0] before7_q;
+  logic        [ KeyBits-1:0] time7_q  [3];
+  face_e                      key_face7_q, key_face8_q;
+  logic        [CellBits-1:0] corner7_q[3], size7_q;
+  logic        [         2:0] dead7_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      other[a]      = action5_q == Leave ? time5[(a+1)%3] : key_time5_q;
-      first[a]      = action5_q == Leave ? a != 2 : 2'(a) <= key_face5_q;
-      difference[a] = {time5[a], 1'b0} - {other[a], first[a]};
+      other[a]      = action6_q == Leave ? time6[(a+1)%3] : key_time6_q;
+      first[a]      = action6_q == Leave ? a != 2 : 2'(a) <= key_face6_q;
+      difference[a] = {time6[a], 1'b0} - {other[a], first[a]};
     end
   end
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      before6_q[a] <= difference[a][KeyBits];
-      if (dead5_q[a] && action5_q != Leave) before6_q[a] <= time5[a][KeyBits-1];
+      before7_q[a] <= difference[a][KeyBits];
+      if (dead6_q[a] && action6_q != Leave) before7_q[a] <= time6[a][KeyBits-1];
     end
   end
 
   always_ff @(posedge clk_i) begin
-    time6_q      <= time5;
-    key_face6_q  <= key_face5_q;
-    corner6_q[0] <= corner_x_q[slot[5]];
-    corner6_q[1] <= corner_y_q[slot[5]];
-    corner6_q[2] <= corner_z_q[slot[5]];
-    size6_q      <= size_q[slot[5]];
-    dead6_q      <= dead5_q;
-    action6_q    <= action5_q;
-    material6_q  <= material5_q;
+    time7_q      <= time6;
+    key_face7_q  <= key_face6_q;
+    corner7_q[0] <= corner_x_q[slot[6]];
+    corner7_q[1] <= corner_y_q[slot[6]];
+    corner7_q[2] <= corner_z_q[slot[6]];
+    size7_q      <= size_q[slot[6]];
+    dead7_q      <= dead6_q;
+    action7_q    <= action6_q;
+    material7_q  <= material6_q;
   end
 
-  // 6 exit.
+  // 7 exit.
   logic                      x_before_y, y_before_z, x_before_z;
   logic       [         2:0] exit;  // One-hot.
-  face_e                     exit_face, exit_face7_q, exit_face8_q;
-  logic       [ KeyBits-1:0] time7_q  [3], time8_q[3];
-  logic       [CellBits-1:0] corner7_q[3], corner8_q[3];
-  logic       [CellBits-1:0] size7_q, place7_q;
-  logic       [         2:0] set7_q, set8_q;  // Axes on which the corner gets the next size's bit.
-  logic                      dead7_q, descends6, descends7_q;
+  face_e                     exit_face, exit_face8_q, exit_face9_q;
+  logic       [ KeyBits-1:0] time8_q  [3], time9_q[3];
+  logic       [CellBits-1:0] corner8_q[3], corner9_q[3];
+  logic       [CellBits-1:0] size8_q, place8_q;
+  logic       [         2:0] set8_q, set9_q;  // Axes on which the corner gets the next size's bit.
+  logic                      dead8_q, descends7, descends8_q;
 
-  assign x_before_y = !dead6_q[0] && (dead6_q[1] || before6_q[0]);
-  assign y_before_z = !dead6_q[1] && (dead6_q[2] || before6_q[1]);
-  assign x_before_z = !dead6_q[0] && (dead6_q[2] || !before6_q[2]);
+  assign x_before_y = !dead7_q[0] && (dead7_q[1] || before7_q[0]);
+  assign y_before_z = !dead7_q[1] && (dead7_q[2] || before7_q[1]);
+  assign x_before_z = !dead7_q[0] && (dead7_q[2] || !before7_q[2]);
   assign exit       = {!x_before_z && !y_before_z, !x_before_y && y_before_z, x_before_y && x_before_z};
   assign exit_face  = exit[0] ? FaceX : exit[1] ? FaceY : FaceZ;
-  assign descends6  = action6_q == Descend || (Light && action6_q == Finish);
+  assign descends7  = action7_q == Descend || (Light && action7_q == Finish);
 
   always_ff @(posedge clk_i) begin
     // Registers keep what they have where no ray is.
-    if (active_q[6+Extra]) begin
-      time7_q   <= time6_q;
-      corner7_q <= corner6_q;
-    end
-    action7_q    <= action6_q;
-    material7_q  <= material6_q;
-    key_face7_q  <= key_face6_q;
-    exit_face7_q <= exit_face;
-    size7_q      <= size6_q;
-    place7_q     <= corner6_q[exit_face];
-    dead7_q      <= dead6_q == '1;
-    descends7_q  <= descends6;
-    set7_q       <= action6_q == Leave ? exit : descends6 ? before6_q : '0;
-  end
-
-  // 7 add.
-  logic [CellBits:0]   sum8_q;
-  logic [CellBits-1:0] place8_q, inner_size8_q;
-  logic                leaves8_q, finished8_q;
-  face_e               face8_q;
-
-  always_ff @(posedge clk_i) begin
     if (active_q[7+Extra]) begin
       time8_q   <= time7_q;
       corner8_q <= corner7_q;
     end
-    sum8_q        <= {1'b0, place7_q} + (action7_q == Leave ? {1'b0, size7_q} : '0);
-    place8_q      <= place7_q;
-    inner_size8_q <= action7_q == Leave ? '0 : descends7_q ? size7_q >> 1 : size7_q;
-    set8_q        <= set7_q;
-    exit_face8_q  <= exit_face7_q;
-    leaves8_q     <= action7_q == Leave;
-    finished8_q   <= action7_q == Finish || (action7_q == Leave && dead7_q);
-    material8_q   <= material7_q;
-    face8_q       <= material7_q == '0 ? FaceNone : key_face7_q;
-    key_face8_q   <= key_face7_q;
+    action8_q    <= action7_q;
+    material8_q  <= material7_q;
+    key_face8_q  <= key_face7_q;
+    exit_face8_q <= exit_face;
+    size8_q      <= size7_q;
+    place8_q     <= corner7_q[exit_face];
+    dead8_q      <= dead7_q == '1;
+    descends8_q  <= descends7;
+    set8_q       <= action7_q == Leave ? exit : descends7 ? before7_q : '0;
   end
 
-  // 8 turn.
+  // 8 add.
+  logic [CellBits:0]   sum9_q;
+  logic [CellBits-1:0] place9_q, inner_size9_q;
+  logic                leaves9_q, finished9_q;
+  face_e               face9_q;
+
+  always_ff @(posedge clk_i) begin
+    if (active_q[8+Extra]) begin
+      time9_q   <= time8_q;
+      corner9_q <= corner8_q;
+    end
+    sum9_q        <= {1'b0, place8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
+    place9_q      <= place8_q;
+    inner_size9_q <= action8_q == Leave ? '0 : descends8_q ? size8_q >> 1 : size8_q;
+    set9_q        <= set8_q;
+    exit_face9_q  <= exit_face8_q;
+    leaves9_q     <= action8_q == Leave;
+    finished9_q   <= action8_q == Finish || (action8_q == Leave && dead8_q);
+    material9_q   <= material8_q;
+    face9_q       <= material8_q == '0 ? FaceNone : key_face8_q;
+    key_face9_q   <= key_face8_q;
+  end
+
+  // 9 turn.
   logic                leaves, continues, renews;
-  logic [CellBits-1:0] corner9_q[3], size9_q, cleared9_q, top_size;
-  logic [         2:0] set9_q, set8, mirrored8;
+  logic [CellBits-1:0] corner10_q[3], size10_q, cleared10_q, top_size;
+  logic [         2:0] set10_q, set9, mirrored9;
   logic [ KeyBits-1:0] keys     [4];
   face_e               key_face;
 
-  assign leaves   = (sum8_q[CellBits:SubBits] & world_i) != '0;
+  assign leaves   = (sum9_q[CellBits:SubBits] & world_i) != '0;
   assign renews   = starts || reflects;
   assign top_size = CellBits'(world_i[MaxDepth:1]) << SubBits;
 
@@ -393,24 +397,24 @@ module voxrt_lane
     .table_material_i,
     .table_row_i,
     .slot0_i      (slot_q[0]),
-    .slot_i       (slot[1:8]),
+    .slot_i       (slot[1:9]),
     .sinks0_o     (sinks0),
     .shadow1_o    (shadow1),
     .sinks2_o     (sinks2),
     .shadow2_o    (shadow2),
     .sinks3_o     (sinks3),
     .material3_i  (material3_q),
-    .corner7_i    (corner7_q),
-    .key_face7_i  (key_face7_q),
-    .active_i     (active_q[8+Extra]),
-    .finishes_i   (finished8_q || leaves),
-    .material_i   (material8_q),
-    .face_i       (face8_q),
-    .key_face_i   (key_face8_q),
-    .mirrored_i   (mirrored_q[slot[8]]),
-    .corner_i     (corner8_q),
-    .set_i        (set8_q),
-    .smallest_i   (inner_size8_q[0]),
+    .corner8_i    (corner8_q),
+    .key_face8_i  (key_face8_q),
+    .active_i     (active_q[9+Extra]),
+    .finishes_i   (finished9_q || leaves),
+    .material_i   (material9_q),
+    .face_i       (face9_q),
+    .key_face_i   (key_face9_q),
+    .mirrored_i   (mirrored_q[slot[9]]),
+    .corner_i     (corner9_q),
+    .set_i        (set9_q),
+    .smallest_i   (inner_size9_q[0]),
     .ray_valid_i,
     .ray_ready_o,
     .ray_resolved_i,
@@ -421,9 +425,9 @@ module voxrt_lane
     .starts_o     (starts),
     .reflects_o   (reflects),
     .continues_o  (continues),
-    .shift_o      (shift8),
-    .mirrored_o   (mirrored8),
-    .set_o        (set8),
+    .shift_o      (shift9),
+    .mirrored_o   (mirrored9),
+    .set_o        (set9),
     .take_o,
     .take_ready_i,
     .take_tag_i,
@@ -441,59 +445,59 @@ module voxrt_lane
   );
 
   // FaceNone stands for a new ray's time.
-  assign key_face = face_e'(exit_face8_q | {2{starts}});
-  assign keys     = '{time8_q[0], time8_q[1], time8_q[2], ray_entry_time_i};
+  assign key_face = face_e'(exit_face9_q | {2{starts}});
+  assign keys     = '{time9_q[0], time9_q[1], time9_q[2], ray_entry_time_i};
 
   always_ff @(posedge clk_i) begin
-    size9_q    <= renews ? top_size : inner_size8_q | (sum8_q[CellBits-1:0] & ~place8_q);
-    cleared9_q <= place8_q & ~sum8_q[CellBits-1:0];
-    set9_q     <= starts ? ray_octant_i : set8;
-    corner9_q  <= corner8_q;
-    if (renews) corner9_q <= '{default: '0};
+    size10_q    <= renews ? top_size : inner_size9_q | (sum9_q[CellBits-1:0] & ~place9_q);
+    cleared10_q <= place9_q & ~sum9_q[CellBits-1:0];
+    set10_q     <= starts ? ray_octant_i : set9;
+    corner10_q  <= corner9_q;
+    if (renews) corner10_q <= '{default: '0};
     active_q          <= {active_q[Slots-2:0], active_q[Slots-1]};
-    active_q[9+Extra] <= starts || continues;
+    active_q[10+Extra] <= starts || continues;
     if (!rst_ni) active_q <= '0;
-    if (starts || leaves8_q) begin
-      key_time_q[slot[8]] <= keys[key_face];
-      key_face_q[slot[8]] <= starts ? ray_entry_face_i : exit_face8_q;
+    if (starts || leaves9_q) begin
+      key_time_q[slot[9]] <= keys[key_face];
+      key_face_q[slot[9]] <= starts ? ray_entry_face_i : exit_face9_q;
     end
-    if (starts) dead_q[slot[8]] <= ray_dead_i;
-    if (renews) mirrored_q[slot[8]] <= starts ? ray_mirrored_i : mirrored8;
+    if (starts) dead_q[slot[9]] <= ray_dead_i;
+    if (renews) mirrored_q[slot[9]] <= starts ? ray_mirrored_i : mirrored9;
   end
 
-  // 9 corner. The stack has the blocks of cells by slot and size, in block RAM.
+  // 10 corner. The stack has the blocks of cells by slot and size, in block RAM.
   (* ram_style = "block" *)
   logic [BlockBits-1:0] stack_q[2 ** (SlotBits + LevelBits)];
-  logic [CellBits-1:0]  corner10_q[3], size10_q;
-  logic [BlockBits-1:0] block10_q;
-  logic [2:0]           octant10_q;
-  logic                 top10_q;
+  logic [CellBits-1:0]  corner11_q[3], size11_q;
+  logic [BlockBits-1:0] block11_q;
+  logic [2:0]           octant11_q;
+  logic                 top11_q;
 
   always_ff @(posedge clk_i) begin
     if (action3_q == Descend && !sinks3) stack_q[{slot[3], child_level3_q}] <= block3_q;
-    block10_q <= stack_q[{slot[9], level_of(size9_q)}];
+    block11_q <= stack_q[{slot[10], level_of(size10_q)}];
   end
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      corner10_q[a] <= (corner9_q[a] & ~cleared9_q) | (set9_q[a] ? size9_q : '0);
-      octant10_q[a] <= (set9_q[a] || (corner9_q[a] & size9_q) != '0) != mirrored_q[slot[9]][a];
+      corner11_q[a] <= (corner10_q[a] & ~cleared10_q) | (set10_q[a] ? size10_q : '0);
+      octant11_q[a] <= (set10_q[a] || (corner10_q[a] & size10_q) != '0) != mirrored_q[slot[10]][a];
     end
-    size10_q <= size9_q;
-    top10_q  <= (size9_q & top_size) != '0;
+    size11_q <= size10_q;
+    top11_q  <= (size10_q & top_size) != '0;
   end
 
-  // 10 block.
+  // 11 block.
   always_ff @(posedge clk_i) begin
-    block0_q     <= top10_q ? root_i[BlockBits-1:0] : block10_q;
-    octant0_q    <= octant10_q;
-    corner0_q[0] <= corner10_q;
-    size0_q[0]   <= size10_q;
+    block0_q     <= top11_q ? root_i[BlockBits-1:0] : block11_q;
+    octant0_q    <= octant11_q;
+    corner0_q[0] <= corner11_q;
+    size0_q[0]   <= size11_q;
 
-    corner_x_q[slot[10]] <= corner10_q[0];
-    corner_y_q[slot[10]] <= corner10_q[1];
-    corner_z_q[slot[10]] <= corner10_q[2];
-    size_q[slot[10]]     <= size10_q;
+    corner_x_q[slot[11]] <= corner11_q[0];
+    corner_y_q[slot[11]] <= corner11_q[1];
+    corner_z_q[slot[11]] <= corner11_q[2];
+    size_q[slot[11]]     <= size11_q;
   end
 
 endmodule

@@ -1,4 +1,4 @@
-// Who has a slot of voxrt_lane next: stage 8. A ray that finishes is reflected, goes on to its sub-cell, or ends; where one
+// Who has a slot of voxrt_lane next: stage 9. A ray that finishes is reflected, goes on to its sub-cell, or ends; where one
 // ends or asks for a shadow ray, a new ray starts.
 //
 // Mirrors: a ray that hits one starts anew at the root in its slot, with the key of the hit, the mirror bit of that axis
@@ -39,17 +39,17 @@ module voxrt_lane_turn
   input  row_t                       table_row_i,
   // Which slots are in the lane's stages, and what their rays are.
   input  logic        [SlotBits-1:0] slot0_i,
-  input  logic        [SlotBits-1:0] slot_i             [1:8],
+  input  logic        [SlotBits-1:0] slot_i             [1:9],
   output logic                       sinks0_o,
   output logic                       shadow1_o,
   output logic                       sinks2_o,
   output logic                       shadow2_o,
   output logic                       sinks3_o,
-  // Stages 3 and 7.
+  // Stages 3 and 8.
   input  material_t                  material3_i,
-  input  logic        [CellBits-1:0] corner7_i          [3],
-  input  face_e                      key_face7_i,
-  // Stage 8: the ray at hand.
+  input  logic        [CellBits-1:0] corner8_i          [3],
+  input  face_e                      key_face8_i,
+  // Stage 9: the ray at hand.
   input  logic                       active_i,
   input  logic                       finishes_i,
   input  material_t                  material_i,
@@ -92,17 +92,17 @@ module voxrt_lane_turn
 );
   logic [TagBits-1:0] tag_q[Slots];
   logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends, resolves;
-  logic               sinks8, shadow8, turned_away;
+  logic               sinks9, shadow9, turned_away;
   pixel_t             pixel;
   material_t          sinking_material;
   shade_e             shade;
   mirrors_t           met;
 
   assign finishes     = active_i && finishes_i;
-  assign meets_face   = finishes && face_i != FaceNone && !shadow8;
+  assign meets_face   = finishes && face_i != FaceNone && !shadow9;
   assign is_lightable = Light && meets_face && light_i && !reflects_o && !reflects_out && !shows_mean;
   assign sinks        = is_lightable && !turned_away;
-  assign requests     = Light && active_i && sinks8 && smallest_i &&
+  assign requests     = Light && active_i && sinks9 && smallest_i &&
       (request_ready_i || (ray_valid_i && ray_shadow_i && !ray_resolved_i));
   assign ends         = finishes && !reflects_o && !sinks;
   assign continues_o  = active_i && !ends && !requests;
@@ -113,12 +113,12 @@ module voxrt_lane_turn
   assign ray_ready_o = starts_o || resolves;
   assign take_o      = ray_ready_o && !ray_shadow_i;
 
-  always_ff @(posedge clk_i) if (starts_o) tag_q[slot_i[8]] <= ray_shadow_i ? ray_tag_i : take_tag_i;
+  always_ff @(posedge clk_i) if (starts_o) tag_q[slot_i[9]] <= ray_shadow_i ? ray_tag_i : take_tag_i;
 
   // Pixels. A shadow ray has its own stored already.
   assign fill_o     = ends || resolves;
-  assign fill_tag_o = finishes || requests ? tag_q[slot_i[8]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_o    = (ends && !shadow8) || (resolves && !ray_shadow_i) || requests;
+  assign fill_tag_o = finishes || requests ? tag_q[slot_i[9]] : ray_shadow_i ? ray_tag_i : take_tag_i;
+  assign store_o    = (ends && !shadow9) || (resolves && !ray_shadow_i) || requests;
 
   always_comb begin
     pixel = '{material: material_i, face: face_i};
@@ -142,7 +142,7 @@ module voxrt_lane_turn
     assign store_pixel_o = {shade, payload, pixel};
   end else begin : gen_no_detail
     logic unused_shade;
-    assign unused_shade  = &{shade, met, slot_i[1], slot_i[2], slot_i[3], slot_i[4], slot_i[5], slot_i[6], slot_i[7]};
+    assign unused_shade  = &{shade, met, slot_i[1], slot_i[2], slot_i[3], slot_i[4], slot_i[5], slot_i[6], slot_i[7], slot_i[8]};
     assign store_pixel_o = pixel;
   end
 
@@ -150,19 +150,19 @@ module voxrt_lane_turn
   if (Mirrors) begin : gen_mirrors
     logic                       reflects_here, outward_q;
     logic signed [MaxDepth+1:0] shift_q;
-    logic        [MaxDepth-1:0] plane7;
+    logic        [MaxDepth-1:0] plane8;
 
     always_comb begin
-      unique case (key_face7_i)
-        FaceX:   plane7 = corner7_i[0][CellBits-1:SubBits];
-        FaceY:   plane7 = corner7_i[1][CellBits-1:SubBits];
-        default: plane7 = corner7_i[2][CellBits-1:SubBits];
+      unique case (key_face8_i)
+        FaceX:   plane8 = corner8_i[0][CellBits-1:SubBits];
+        FaceY:   plane8 = corner8_i[1][CellBits-1:SubBits];
+        default: plane8 = corner8_i[2][CellBits-1:SubBits];
       endcase
     end
 
     always_ff @(posedge clk_i) begin
-      shift_q   <= {1'b0, world_i} - {1'b0, plane7, 1'b0};
-      outward_q <= plane7 == '0;  // The world's own side: back where the ray came from there is nothing.
+      shift_q   <= {1'b0, world_i} - {1'b0, plane8, 1'b0};
+      outward_q <= plane8 == '0;  // The world's own side: back where the ray came from there is nothing.
     end
 
     voxrt_reflect #(
@@ -174,8 +174,8 @@ module voxrt_lane_turn
       .table_material_i,
       .table_row_i,
       .material_i(material3_i),
-      .slot6_i   (slot_i[6]),
-      .slot8_i   (slot_i[8]),
+      .slot7_i   (slot_i[7]),
+      .slot9_i   (slot_i[9]),
       .hit_i     (meets_face),
       .starts_i  (starts_o),
       .reflects_o(reflects_here),
@@ -201,7 +201,7 @@ module voxrt_lane_turn
   end else begin : gen_no_mirrors
     logic unused_mirrors;
     assign unused_mirrors = &{table_write_i, table_material_i, table_row_i, bounces_i, met, key_face_i, material3_i,
-                              corner7_i[0], corner7_i[1], corner7_i[2], key_face7_i, world_i};
+                              corner8_i[0], corner8_i[1], corner8_i[2], key_face8_i, world_i};
     assign {reflects_o, reflects_out, shows_mean} = '0;
     assign shift_o    = '0;
     assign met        = '0;
@@ -219,18 +219,18 @@ module voxrt_lane_turn
     assign sinks0_o  = sinks_q[slot0_i];
     assign sinks2_o  = sinks_q[slot_i[2]];
     assign sinks3_o  = sinks_q[slot_i[3]];
-    assign sinks8    = sinks_q[slot_i[8]];
+    assign sinks9    = sinks_q[slot_i[9]];
     assign shadow1_o = shadow_q[slot_i[1]];
     assign shadow2_o = shadow_q[slot_i[2]];
-    assign shadow8   = shadow_q[slot_i[8]];
+    assign shadow9   = shadow_q[slot_i[9]];
 
     always_ff @(posedge clk_i) begin
-      if (starts_o || sinks) sinks_q[slot_i[8]] <= !starts_o;
-      if (starts_o) shadow_q[slot_i[8]] <= ray_shadow_i;
-      if (sinks) material_q[slot_i[8]] <= material_i;
+      if (starts_o || sinks) sinks_q[slot_i[9]] <= !starts_o;
+      if (starts_o) shadow_q[slot_i[9]] <= ray_shadow_i;
+      if (sinks) material_q[slot_i[9]] <= material_i;
     end
 
-    assign sinking_material = material_q[slot_i[8]];
+    assign sinking_material = material_q[slot_i[9]];
 
     // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
     always_comb begin
@@ -245,9 +245,9 @@ module voxrt_lane_turn
       end
     end
 
-    assign fill_lit_o         = finishes ? shadow8 && (material_i == '0 || !in_shadow) : ray_lit_i;
+    assign fill_lit_o         = finishes ? shadow9 && (material_i == '0 || !in_shadow) : ray_lit_i;
     assign request_o          = requests;
-    assign request_tag_o      = tag_q[slot_i[8]];
+    assign request_tag_o      = tag_q[slot_i[9]];
     assign request_face_o     = key_face_i;
     assign request_mirrored_o = mirrored_i;
   end else begin : gen_no_light
@@ -256,7 +256,7 @@ module voxrt_lane_turn
                             before_light_i[0][2], before_light_i[1][0], before_light_i[1][1], before_light_i[1][2],
                             to_light_i[0][0], to_light_i[0][1], to_light_i[0][2], to_light_i[1][0], to_light_i[1][1],
                             to_light_i[1][2]};
-    assign {sinks0_o, sinks2_o, sinks3_o, sinks8, shadow1_o, shadow2_o, shadow8, turned_away} = '0;
+    assign {sinks0_o, sinks2_o, sinks3_o, sinks9, shadow1_o, shadow2_o, shadow9, turned_away} = '0;
     assign sinking_material   = '0;
     assign fill_lit_o         = 1'b0;
     assign request_o          = 1'b0;

@@ -8,7 +8,7 @@
 // Without, both happen at once, and one is enough.
 module voxrt_pixel_buffer #(
   parameter  int unsigned Width       = 10,
-  parameter  int unsigned Depth       = 512,  // A power of two.
+  parameter  int unsigned Depth       = 256,  // A power of two.
   parameter  bit          StoresFirst = 1'b0,
   localparam int unsigned TagBits     = $clog2(Depth) + 1  // A place and its lap.
 ) (

@@ -17,6 +17,13 @@ package voxrt_pkg;
   // Weights: a product of two components.
   localparam int unsigned WeightBits = 2 * DirectionBits;
 
+  // The wider side of the part's multipliers: 25 for the DSP48 of 7-series parts, 18 for most others.
+`ifdef VOXRT_NARROW_MULTIPLIERS
+  localparam int unsigned MultiplierBits = 18;
+`else
+  localparam int unsigned MultiplierBits = 25;
+`endif
+
   typedef logic [7:0] material_t;
 
   // The axis of a plane; FaceNone where none was crossed. The order of the codes is the order of planes that are

@@ -73,7 +73,7 @@ module voxrt_rtu
   localparam int unsigned LitBits = MaxDepth + LitFractionBits + 2;
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
   localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
-  localparam int unsigned PixelDepth = 512;
+  localparam int unsigned PixelDepth = 256;
   localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
 
   // Frame.

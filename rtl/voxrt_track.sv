@@ -7,7 +7,7 @@ module voxrt_track
   parameter  int unsigned BlockBits    = 12,
   parameter  int unsigned MemoryClocks = 2,
   parameter  int unsigned RayDepth     = 16,   // Rays that wait, of the camera and shadow rays each.
-  parameter  int unsigned PixelDepth   = 512,  // Pixels between start and merge.
+  parameter  int unsigned PixelDepth   = 256,  // Pixels between start and merge.
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned TagBits      = $clog2(PixelDepth) + 1,

@@ -17,6 +17,7 @@ from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sh
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
+from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
 from voxrt.sim.render import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
@@ -31,6 +32,8 @@ __all__ = [
     "Light",
     "Likeness",
     "NoSuchConfigurationError",
+    "RayPath",
+    "Reading",
     "RenderCost",
     "Shading",
     "SimulatorError",
@@ -39,6 +42,8 @@ __all__ = [
     "check",
     "compare",
     "comparison_sheet",
+    "follow_pixel",
+    "follow_ray",
     "frame_points",
     "frame_scene",
     "look_at",

@@ -18,6 +18,12 @@ class TracedRays(TypedDict):
     cell: NDArray[np.int32]
     words_read: int
 
+class FollowedRay(TypedDict):
+    material: int
+    face: int
+    cell: tuple[int, int, int]
+    readings: list[tuple[int, int, int, tuple[int, int, int], int, int]]
+
 class Memory:
     def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...
     def render(
@@ -36,3 +42,4 @@ class Memory:
         mirrors: NDArray[np.uint8] | None = None,
     ) -> RenderedPixels: ...
     def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...
+    def follow(self, origin: NDArray[np.int32], direction: NDArray[np.int32]) -> FollowedRay: ...

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PIL import Image
-
 from voxrt.export.atomic import write_atomically
+from voxrt.octree.notebook import encode_png
 
 if TYPE_CHECKING:
     import os
@@ -32,6 +30,4 @@ def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
     OSError
         The file cannot be written.
     """
-    encoded = io.BytesIO()
-    Image.fromarray(colour, "RGB").save(encoded, format="PNG")
-    write_atomically(Path(path), encoded.getvalue())
+    write_atomically(Path(path), encode_png(colour))

@@ -51,6 +51,8 @@ class BuildResult:
     ----------
     rom
         The octree memory with its materials and its place in the scene.
+    scene
+        What the asset's file said.
     objects
         How each object was voxelized, in authored order.
     warnings
@@ -73,6 +75,7 @@ class BuildResult:
     """
 
     rom: Rom
+    scene: Scene
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...]
     outputs: dict[str, Path] = field(default_factory=dict)
@@ -262,6 +265,7 @@ def build(
             outputs["preview"] = picture_file
     return BuildResult(
         rom,
+        scene,
         voxelization.objects,
         warnings,
         outputs,

@@ -4,7 +4,6 @@
 #include <bit>
 #include <unordered_map>
 
-#include "ascent.h"
 #include "breadth_first.h"
 #include "brick.h"
 #include "interrupt.h"
@@ -229,41 +228,6 @@ std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, con
     for (const auto& [pair, octants] : pairs)
         if (const Word behind = static_cast<Word>(pair); is_leaf(behind) && behind != kEmpty)
             result[static_cast<Word>(pair >> 32)] += octants;
-    return result;
-}
-
-std::vector<std::uint8_t> hidden_octants(const std::int32_t* corners, const std::uint8_t* levels, std::size_t count,
-                                         unsigned depth) {
-    BlockPool pool;
-    Node root = kEmpty;
-    Ascent ascent(pool, depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
-    std::uint64_t end = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t code = 0;
-        bool aligned = levels[i] <= depth;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            const std::int32_t place = corners[3 * i + axis];
-            aligned = aligned && place >= 0 && place >> depth == 0 && (place >> levels[i]) << levels[i] == place;
-            code |= spread_bits(static_cast<std::uint32_t>(place)) << axis;
-        }
-        if (!aligned || code < end)
-            throw std::invalid_argument("octants must be aligned, disjoint, in Morton order and inside the world");
-        ascent.add(levels[i], code >> (3 * levels[i]), kSolid);
-        end = code + voxels_at(levels[i]);
-    }
-    ascent.finish();
-    const std::vector<Word> words = HiddenFinder(pool).words(root, depth);
-    std::vector<std::uint8_t> result(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        Word word = words[0];
-        for (unsigned above = depth; above > levels[i] && !is_leaf(word); --above) {
-            const auto bit = [&](unsigned axis) {
-                return static_cast<unsigned>(corners[3 * i + axis] >> (above - 1) & 1) << axis;
-            };
-            word = words[word + (bit(0) | bit(1) | bit(2))];
-        }
-        result[i] = word == kSolid;
-    }
     return result;
 }
 

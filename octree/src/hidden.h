@@ -21,10 +21,4 @@ std::vector<Word> hidden_voxels(const Memory& memory);
 /// pairs of blocks that lie in one place.
 std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, const Memory& hidden, unsigned level);
 
-/// Element i says whether nothing but solid octants is around the i-th of some that are all there is, corners (x, y, z)
-/// and levels: disjoint, in Morton order, inside a world of side 2**depth. Throws std::invalid_argument where they are
-/// not. The GIL must not be held.
-std::vector<std::uint8_t> hidden_octants(const std::int32_t* corners, const std::uint8_t* levels, std::size_t count,
-                                         unsigned depth);
-
 } // namespace voxrt::octree

@@ -290,18 +290,6 @@ auto bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
     return words_to_numpy(std::move(hidden));
 }
 
-auto bind_hidden_octants(const Rows<std::int32_t, 3>& corners, const Vector<std::uint8_t>& levels, unsigned depth) {
-    require_depth(depth);
-    const std::size_t count = corners.shape(0);
-    require(levels.shape(0) == count, "corners and levels differ in length");
-    std::vector<std::uint8_t> hidden;
-    {
-        nb::gil_scoped_release release;
-        hidden = hidden_octants(corners.data(), levels.data(), count, depth);
-    }
-    return to_numpy(std::move(hidden), count);
-}
-
 auto bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, std::uint8_t material) {
     const Memory memory = memory_of(words, depth);
     const Memory behind = memory_of(hidden, depth);
@@ -385,7 +373,6 @@ NB_MODULE(_native, m) {
           "costs"_a.noconvert(), "fine_price"_a, "coarse_price"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
-    m.def("hidden_octants", &bind_hidden_octants, "corners"_a.noconvert(), "levels"_a.noconvert(), "depth"_a);
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);
     m.def("share_hidden", &bind_share_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")

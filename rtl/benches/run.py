@@ -37,11 +37,12 @@ class Build(NamedTuple):
     parameters: dict[str, int]
     benches: tuple[str, ...]
     coverage: tuple[Path, ...] = ()  # Modules to bind.
+    narrow: bool = False  # Multipliers of 18 x 18 bits.
 
 
 BUILDS = {
     "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator",)),
-    "lit4": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",)),
+    "lit4-narrow": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",), narrow=True),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
@@ -69,6 +70,7 @@ def run(name: str) -> None:
         sources=[*sources, *build.coverage],
         hdl_toplevel=build.top,
         parameters=build.parameters,
+        defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},
         build_args=["-O3", "--x-assign", "unique", "--x-initial", "unique", "--coverage-line", "-CFLAGS", "-O1"],
         build_dir=folder,
     )

@@ -43,9 +43,10 @@ prep -top {name}_properties -flatten
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
     generated = RTL / "generated"
-    parts = [RTL / f"{part}.sv" for part in (name, *PARTS.get(name, ()))]
-    files = [RTL / "voxrt_pkg.sv", *parts, generated / f"{name}_pkg.sv", generated / f"{name}.sv"]
-    files = [path for path in files if path.exists()] + [FORMAL / f"{name}_properties.sv"]
+    own = [RTL / f"{part}.sv" for part in (name, *PARTS.get(name, ()))]
+    own = [RTL / "voxrt_pkg.sv", *own, generated / f"{name}_pkg.sv", generated / f"{name}.sv"]
+    files = [path for path in own if path.exists()]
+    files.append(FORMAL / f"{name}_properties.sv")
     sources = " ".join(path.name for path in files)
     job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
     with tempfile.TemporaryDirectory() as folder:

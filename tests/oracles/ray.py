@@ -21,46 +21,82 @@ def first_cell(coordinate: Fraction, direction: int) -> int:
     return floor(coordinate)
 
 
-def trace(voxels, position, direction):
-    """Find the first solid cell on a ray.
+def cells(side, position, direction):
+    """Walk a ray through a world, from unit voxel to unit voxel.
 
     Parameters
     ----------
-    voxels
-        Materials, indexed [x, y, z], a cube; 0 is empty.
+    side
+        Voxels a side.
     position
         Three integers, 1/16 voxel.
     direction
         Three integers.
+
+    Yields
+    ------
+    tuple
+        (cell, axis, t) of each cell in the world: the axis of the plane crossed last, 3 for none, and its t (None).
+    """
+    origin = [Fraction(int(c), 16) for c in position]
+    direction = [int(c) for c in direction]
+    cell = [first_cell(o, d) for o, d in zip(origin, direction, strict=True)]
+    face, t = FACE_NONE, None
+    while True:
+        if all(0 <= c < side for c in cell):
+            yield tuple(cell), face, t
+        crossings = []
+        for axis in range(3):
+            ahead, behind = (cell[axis] >= side), (cell[axis] < 0)
+            d = direction[axis]
+            if (ahead and d >= 0) or (behind and d <= 0):
+                return  # it never comes back into the world
+            if d:
+                plane = cell[axis] + (1 if d > 0 else 0)
+                crossings.append(((plane - origin[axis]) / d, axis))
+        if not crossings:
+            return
+        t, face = min(crossings)
+        cell[face] += 1 if direction[face] > 0 else -1
+
+
+def trace(voxels, position, direction):
+    """Find the first solid cell on a ray through materials indexed [x, y, z], a cube in which 0 is empty.
 
     Returns
     -------
     tuple
         (material, face): face is the axis of the plane crossed last, 3 for none; (0, 3) for a miss.
     """
-    side = len(voxels)
-    origin = [Fraction(int(c), 16) for c in position]
-    direction = [int(c) for c in direction]
-    cell = [first_cell(o, d) for o, d in zip(origin, direction, strict=True)]
-    face = FACE_NONE
-    while True:
-        if all(0 <= c < side for c in cell):
-            material = int(voxels[cell[0], cell[1], cell[2]])
-            if material:
-                return material, face
-        crossings = []
-        for axis in range(3):
-            ahead, behind = (cell[axis] >= side), (cell[axis] < 0)
-            d = direction[axis]
-            if (ahead and d >= 0) or (behind and d <= 0):
-                return 0, FACE_NONE  # it never comes back into the world
-            if d:
-                plane = cell[axis] + (1 if d > 0 else 0)
-                crossings.append(((plane - origin[axis]) / d, axis))
-        if not crossings:
-            return 0, FACE_NONE
-        _, face = min(crossings)
-        cell[face] += 1 if direction[face] > 0 else -1
+    for (x, y, z), face, _ in cells(len(voxels), position, direction):
+        if voxels[x, y, z]:
+            return int(voxels[x, y, z]), face
+    return 0, FACE_NONE
+
+
+def readings(words, depth, position, direction):
+    """Tell which words a ray reads, cell by cell: from a leaf to the next, those below the octants that hold both.
+
+    Returns
+    -------
+    list
+        (address, word, level, corner, axis, t) each, as :func:`cells` gives axis and t.
+    """
+    found, above = [], set()
+    for cell, axis, t in cells(1 << depth, position, direction):
+        way, word, level = {}, int(words[0]), depth
+        while word < 1 << 31:
+            level -= 1
+            address = word + sum((c >> level & 1) << n for n, c in enumerate(cell))
+            word = int(words[address])
+            way[level, *(c >> level << level for c in cell)] = address
+        for (size, *corner), address in way.items():
+            if (size, *corner) not in above:
+                found.append((address, int(words[address]), size, tuple(corner), axis, t))
+        above = set(way)
+        if word & 0xFF:
+            break
+    return found
 
 
 def shade(colour, direction, face):

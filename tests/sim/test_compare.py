@@ -43,7 +43,7 @@ BOXES = (((4, 2, 6), (20, 12, 24), 1), ((8, 12, 8), (12, 28, 12), 2))
 
 @pytest.fixture(scope="module", autouse=True)
 def _open3d():
-    pytest.importorskip("open3d", reason="Open3D, the extra 'compare', is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="Open3D, the extra 'compare', is not installed")
 
 
 def test_boxes_on_the_grid_are_seen_the_same():

@@ -77,8 +77,13 @@ _add_command(
 )
 _add_command(
     "view",
-    "Show the octants of a memory, or of an asset, in a window or as a picture.",
-    "voxrt view courtyard.mem --by level --screenshot octants.png",
+    "Show the octants of a memory, or of an asset, in a window, as a picture, or in a file for other programs.",
+    "voxrt view courtyard.mem --ray 320,240 --screenshot ray.png",
+)
+_add_command(
+    "trace",
+    "Tell the way of one pixel's ray through the octree, word by word.",
+    "voxrt trace courtyard.mem --pixel 320,240",
 )
 _add_command(
     "serve",

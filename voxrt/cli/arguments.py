@@ -138,6 +138,14 @@ def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
     return x, y, z
 
 
+def pixel(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
+    """Read a pixel's place, ``320,240``."""
+    parts = tokens[0].value.split(",")
+    if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
+        raise ValueError(f"{tokens[0].value!r} is not COLUMN,ROW, such as 320,240")
+    return int(parts[0]), int(parts[1])
+
+
 def png(path: Path) -> Path:
     """Refuse a picture's name that does not say what the file will be."""
     if path.suffix.lower() != ".png":
@@ -165,3 +173,31 @@ def _sixteenths(text: str) -> int:
 
 
 Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]
+Pixel = Annotated[tuple[int, int], Parameter(converter=pixel, n_tokens=1, metavar="X,Y", show_default=False)]
+Depth = Annotated[int | None, Parameter(converter=levels, metavar="N")]
+_Register = Annotated[
+    tuple[int, int, int] | None,
+    Parameter(converter=register, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True),
+]
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Where the camera stands and looks; what is not given frames the whole scene."""
+
+    position: Annotated[
+        tuple[int, int, int] | None,
+        Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True),
+    ] = None
+    """Where the camera stands, voxels, in steps of 1/16; may be outside the scene. Not given, it stands where the
+    whole scene is in the picture."""
+
+    look: _Register = None
+    """Register: the direction of the picture's middle. Given without --right and --up it is a direction of any length;
+    not given, the camera looks at the scene."""
+
+    right: _Register = None
+    """Register: the step of direction from a pixel to the one on its right. Not given: right = look x up."""
+
+    up: _Register = None
+    """Register: the step of direction from a pixel to the one above it. Not given: upright."""

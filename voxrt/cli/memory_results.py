@@ -10,7 +10,11 @@ import msgspec
 
 import voxrt
 from voxrt.cli.messages import name_file
-from voxrt.cli.results import WarningEntry  # noqa: TC001 - msgspec resolves the annotations of this module
+from voxrt.cli.results import (  # msgspec resolves the annotations of this module
+    CameraEntry,
+    WarningEntry,
+    camera_entry,
+)
 from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
 
 if TYPE_CHECKING:
@@ -18,7 +22,10 @@ if TYPE_CHECKING:
 
     from voxrt.likeness_curve import LikenessAtDepth
     from voxrt.octree import Rom
-    from voxrt.sim import Likeness
+    from voxrt.sim import Camera, Likeness, RayPath
+
+_AXES = ("x", "y", "z", None)
+"""By the numbers of axes; the last is :data:`voxrt.sim.FACE_NONE`."""
 
 
 class ConvertResult(msgspec.Struct, frozen=True):
@@ -113,6 +120,74 @@ class CompareResult(msgspec.Struct, frozen=True):
     """On which hardware and model differ; null where the hardware could not be run."""
     curve: list[CurveEntry]
     outputs: dict[str, str]
+
+
+class ReadingEntry(msgspec.Struct, frozen=True):
+    """A word that a ray read."""
+
+    address: int
+    word: int
+    leaf: bool
+    """False: the word is a pointer."""
+    level: int
+    """log2 of the octant's side, voxels."""
+    low: tuple[int, int, int]
+    """The octant's lowest voxel."""
+    high: tuple[int, int, int]
+    """One behind its highest."""
+    axis: str | None
+    """Across which the ray entered: the axis of the plane crossed last; null where it has crossed none."""
+    t: int
+    """The integer T of that crossing."""
+    point: tuple[float, float, float]
+    """Where that was, voxels."""
+
+
+class TraceResult(msgspec.Struct, frozen=True):
+    """``voxrt trace --json``."""
+
+    pixel: tuple[int, int]
+    size: tuple[int, int]
+    camera: CameraEntry
+    direction: tuple[int, int, int]
+    root: int
+    """Word 0, which is kept from ray to ray."""
+    readings: list[ReadingEntry]
+    """In order."""
+    material: int
+    """What was hit; 0 for nothing."""
+    face: str | None
+    """The axis of the side hit; null at a miss, and from within a solid."""
+    voxel: tuple[int, int, int] | None
+    """Null at a miss."""
+
+
+def trace_result(camera: Camera, size: tuple[int, int], pixel: tuple[int, int], path: RayPath) -> TraceResult:
+    """Tell programs the way of a ray."""
+    return TraceResult(
+        pixel=pixel,
+        size=size,
+        camera=camera_entry(camera),
+        direction=path.direction,
+        root=path.root,
+        readings=[
+            ReadingEntry(
+                address=reading.address,
+                word=reading.word,
+                leaf=reading.is_leaf,
+                level=reading.level,
+                low=reading.corner,
+                high=reading.end,
+                axis=_AXES[reading.axis],
+                t=reading.time,
+                point=path.point(reading.time),
+            )
+            for reading in path.readings
+        ],
+        material=path.material,
+        face=_AXES[path.face],
+        voxel=path.cell,
+    )
 
 
 def info_result(rom: Rom) -> InfoResult:

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register, whole
+from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, place, png, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
+from voxrt.cli.source import aim
 
 if TYPE_CHECKING:
     from voxrt import Lighting
 
 Triple = tuple[int, int, int]
-_register = Parameter(converter=register, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
 
 
 def render(
@@ -28,13 +28,8 @@ def render(
     engine: Literal["rtl", "model"] = "rtl",
     config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     size: Pixels = (640, 480),
-    position: Annotated[
-        Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
-    ] = None,
-    look: Annotated[Triple | None, _register] = None,
-    right: Annotated[Triple | None, _register] = None,
-    up: Annotated[Triple | None, _register] = None,
-    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
+    sight: Annotated[Sight, Parameter(name="*")] = Sight(),  # noqa: B008
+    depth: Depth = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     light: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
@@ -61,16 +56,8 @@ def render(
         or lit where light, mirrors or flat colours are wanted.
     size
         Width and height, pixels. [default: 640x480]
-    position
-        Where the camera stands, voxels, in steps of 1/16; may be outside the scene. Not given, it stands where the
-        whole scene is in the picture.
-    look
-        Register: the direction of the picture's middle. Given without --right and --up it is a direction of any length;
-        not given, the camera looks at the scene.
-    right
-        Register: the step of direction from a pixel to the one on its right. Not given: right = look x up.
-    up
-        Register: the step of direction from a pixel to the one above it. Not given: upright.
+    sight
+        Where the camera stands.
     depth
         Levels of the octree, where no manifest says.
     dialect
@@ -93,11 +80,8 @@ def render(
     file = png(Path(f"{rom.stem}.png") if output is None else output)
     blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
-    memory, view = blob.rom, blob.view
-    if view is not None and (position, look, right, up) == (None, None, None, None):
-        camera = voxrt.Camera(view.position, view.look, view.right, view.up)
-    else:
-        camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
+    memory = blob.rom
+    camera = aim(memory, blob.view, size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, flat=flat)
     shading = voxrt.Shading.of(lighting)
     if config is None:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.pipeline import BuildResult, Picture
+    from voxrt.sim import Camera
     from voxrt.voxelize import SceneWarning
 
 
@@ -170,7 +171,6 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
     """Tell programs what a picture shows and cost."""
     cost, camera = picture.frame.cost, picture.camera
     height, width = picture.frame.material.shape
-    x, y, z = camera.position
     return RenderResult(
         engine=picture.engine,
         size=(width, height),
@@ -180,10 +180,16 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         cycles_per_pixel=None if cost.cycles is None else cost.cycles / cost.rays,
         words_per_ray=None if cost.words_read is None else cost.words_read / cost.rays,
         seconds=cost.seconds,
-        camera=CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up),
+        camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
     )
+
+
+def camera_entry(camera: Camera) -> CameraEntry:
+    """Tell programs where a camera stands."""
+    x, y, z = camera.position
+    return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
 def print_json(result: msgspec.Struct) -> None:

@@ -7,10 +7,20 @@ from typing import Any
 import msgspec
 
 from voxrt.cli.board_results import ServeResult, UploadResult
-from voxrt.cli.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult
+from voxrt.cli.memory_results import CompareResult, ConvertResult, DiffResult, InfoResult, TraceResult
 from voxrt.cli.results import BuildReport, RenderResult
 
-_RESULTS = (BuildReport, RenderResult, CompareResult, ConvertResult, InfoResult, DiffResult, ServeResult, UploadResult)
+_RESULTS = (
+    BuildReport,
+    RenderResult,
+    CompareResult,
+    ConvertResult,
+    InfoResult,
+    DiffResult,
+    TraceResult,
+    ServeResult,
+    UploadResult,
+)
 
 
 def schema() -> dict[str, Any]:

@@ -10,18 +10,28 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt import octree
-from voxrt.cli.arguments import Pixels, UsageError, levels, png, whole
-from voxrt.cli.messages import summarize, warn
-from voxrt.export.octants import write_octants
+from voxrt.cli.arguments import Depth, Pixel, Pixels, Sight, UsageError, png, whole
+from voxrt.cli.messages import summarize
+from voxrt.cli.source import Source, read_source
+from voxrt.cli.trace import check_pixel
+from voxrt.export.octant_page import write_page
+from voxrt.export.octants import write_glb, write_octants
+from voxrt.export.turntable import ANIMATION_SUFFIXES, write_animation
+from voxrt.export.vox import write_vox
 from voxrt.outputs import check_folder, writing
-from voxrt.voxelize.load import SUFFIXES
+from voxrt.pipeline import PREVIEW_SIZE
+from voxrt.sight import find_owners, preview_of, scene_triangles
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from cyclopts import Token
 
-    from voxrt.octree import Rom
+    from voxrt.octree import Pane, Preview
+
+_SUFFIXES = (".vtu", ".glb", ".vox", ".html")
+_TURNS = 72  # pictures of a turntable
+_SIZE, _WIDE = (1024, 768), (1280, 720)
 
 
 def _level(kind: type, tokens: Sequence[Token]) -> int:
@@ -31,84 +41,181 @@ def _level(kind: type, tokens: Sequence[Token]) -> int:
     return number
 
 
+def _cuts(_type: type, tokens: Sequence[Token]) -> tuple[tuple[int, int], ...]:
+    cuts = []
+    for token in tokens:
+        axis, _, place = token.value.partition("=")
+        if axis not in {"x", "y", "z"} or not place.isdecimal() or not 1 <= int(place) <= 1 << octree.MAX_DEPTH:
+            raise ValueError(f"{token.value!r} is not AXIS=VOXEL, such as x=40")
+        cuts.append(("xyz".index(axis), int(place)))
+    return tuple(cuts)
+
+
 def view(
     scene: Annotated[Path, Parameter(metavar="ROM|ASSET")],
+    other: Annotated[Path | None, Parameter(metavar="ROM|ASSET")] = None,
     /,
     *,
-    by: Literal["material", "level"] = "material",
+    by: Literal["material", "level", "owner"] = "material",
     clip: Literal["x", "y", "z"] | None = None,
+    slice: Annotated[  # noqa: A002 - the option's name
+        tuple[tuple[int, int], ...], Parameter(converter=_cuts, n_tokens=1, metavar="AXIS=N", show_default=False)
+    ] = (),
     level_limit: Annotated[int | None, Parameter(converter=_level, metavar="N")] = None,
-    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
-    size: Pixels = (1024, 768),
+    overlay: Annotated[bool, Parameter(show_default=False)] = False,
+    ray: Pixel | None = None,
+    depth: Depth = None,
+    size: Pixels | None = None,
     screenshot: Annotated[Path | None, Parameter(metavar="FILE")] = None,
-    export: Annotated[Path | None, Parameter(metavar="FILE")] = None,
+    turntable: Annotated[Path | None, Parameter(metavar="FILE")] = None,
+    output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     debug: Annotated[bool, Parameter(show_default=False)] = False,  # noqa: ARG001 - read where errors are explained
 ) -> None:
     """Show the octants of a memory, or of an asset, in a window or as a picture.
 
     Octants that others cover on all six sides are left out. In the window a click on an octant shows its address, word,
-    level, bounds and material.
+    level, bounds and material; a slider makes small octants uniform; the key c brings a plane that cuts.
 
     Parameters
     ----------
     scene
         A .mem file or a memory in another format, or an asset, which is built on the way.
+    other
+        Another, shown beside it and turned with it.
     by
-        What the colours tell.
+        What the colours tell. Owners, the objects that voxels belong to, are known of assets alone.
     clip
-        Cut away the half of the scene that is nearer to the eye along this axis.
+        Leave out the octants of the half of the scene that is nearer to the eye along this axis.
+    slice
+        Cut through the octants at a plane, such as x=40, and leave out what is nearer to the eye. May be given for
+        each axis.
     level_limit
         Make octants of 2**N voxels a side uniform first, for fewer octants.
+    overlay
+        Draw the asset's triangles over its octants.
+    ray
+        Show the picture that the camera sees, and the way of this pixel's ray through the octants: column and row of
+        640x480. In the window a click chooses another pixel.
     depth
         Levels of the octree, for an asset and where no manifest says.
     size
-        Width and height, pixels. [default: 1024x768]
+        Width and height, pixels. [default: 1024x768, 1280x720 where something is beside it]
     screenshot
         A .png to write instead of opening a window.
-    export
-        A .vtu to write instead of opening a window, for ParaView and PyVista.
+    turntable
+        A .gif or .mp4 to write instead of opening a window: the octants from all sides.
+    output
+        A file to write instead of opening a window: .vtu for ParaView and PyVista, .glb (glTF), .vox (MagicaVoxel), or
+        .html, a page that needs nothing else.
     debug
         Show the traceback of an error.
     """
-    if export is not None and export.suffix.lower() != ".vtu":
-        raise UsageError(f"{export}: octants are exported to VTK files; give it a name that ends in .vtu")
-    for file in (export, screenshot and png(screenshot)):
+    _check_files(screenshot, turntable, output)
+    _check_company(other, ray, clip and slice, turntable, output)
+    paths = [path for path in (scene, other) if path is not None]
+    sources = [read_source(path, depth) for path in paths]
+    panes = [_pane(source, path.stem, by, overlay) for source, path in zip(sources, paths, strict=True)]
+    if level_limit is not None:
+        panes = [pane.coarsened(level_limit) for pane in panes]
+    if clip:
+        panes = [replace(pane, high=_half(pane, "xyz".index(clip))) for pane in panes]
+    elif slice:
+        panes = [replace(pane, high=_below(pane, slice), cut=True) for pane in panes]
+    size = size or (_SIZE if other is None and ray is None else _WIDE)
+    preview = None if ray is None else _preview(sources[0], panes[0], ray)
+    rows = _told(panes)
+    writers: list[tuple[Path | None, Callable[[Path], None]]] = [
+        (output, lambda file: _export(panes[0], file)),
+        (screenshot, lambda file: voxrt.save_picture(octree.picture(panes, size, preview=preview), file)),
+        (turntable, lambda file: write_animation(file, octree.turntable(panes, size, _TURNS))),
+    ]
+    for file, write in writers:
+        if file is not None:
+            with writing(file):
+                file.parent.mkdir(parents=True, exist_ok=True)
+                write(file)
+            rows.append(("wrote", str(file)))
+    summarize(f"{scene.name}:", rows)
+    if output is None and screenshot is None and turntable is None:
+        octree.Window(panes, size, preview=preview).show()
+
+
+def _check_files(screenshot: Path | None, turntable: Path | None, output: Path | None) -> None:
+    if output is not None and output.suffix.lower() not in _SUFFIXES:
+        raise UsageError(f"{output}: octants are written to files that end in {', '.join(_SUFFIXES)}")
+    if turntable is not None and turntable.suffix.lower() not in ANIMATION_SUFFIXES:
+        raise UsageError(f"{turntable}: turntables are files that end in {' or '.join(ANIMATION_SUFFIXES)}")
+    for file in (output, turntable, screenshot and png(screenshot)):
         if file is not None:
             check_folder(file.parent)
-    rom = _read(scene, depth)
-    if level_limit is not None:
-        rom = replace(rom, octree=octree.coarsen(rom.octree, min(level_limit, rom.octree.depth)))
-    grid = octree.octants(rom, high=_behind_cut(rom, clip))
-    rows = [("shown", f"{grid.n_cells:,} octants"), ("hidden", f"{int(grid.field_data['hidden'][0]):,} octants")]
-    if export is not None:
-        with writing(export):
-            export.parent.mkdir(parents=True, exist_ok=True)
-            write_octants(grid, export)
-        rows.append(("wrote", str(export)))
-    if screenshot is not None:
-        voxrt.save_picture(octree.picture(rom, grid, by=by, size=size), screenshot)
-        rows.append(("wrote", str(screenshot)))
-    summarize(f"{scene.name}:", rows)
-    if export is None and screenshot is None:
-        octree.show(rom, grid, by=by, size=size)
 
 
-def _read(scene: Path, depth: int | None) -> Rom:
-    if scene.suffix.lower() in SUFFIXES:
-        result = voxrt.build(scene, depth=depth)
-        warn(result.warnings)
-        return result.rom
-    blob, warnings = voxrt.read_any(scene, depth=depth)
-    warn(warnings)
-    return blob.rom
+def _check_company(
+    other: Path | None, ray: tuple[int, int] | None, both_cuts: object, turntable: Path | None, output: Path | None
+) -> None:
+    for first, second, excluded in (
+        ("--ray", "a second scene", ray is not None and other is not None),
+        ("--ray", "--turntable", ray is not None and turntable is not None),
+        ("--output", "--ray", output is not None and ray is not None),
+        ("--output", "a second scene", output is not None and other is not None),
+        ("--clip", "--slice", both_cuts),
+    ):
+        if excluded:
+            raise UsageError(f"{first} and {second} exclude each other")
+    if ray is not None:
+        check_pixel(ray, PREVIEW_SIZE)
 
 
-def _behind_cut(rom: Rom, axis: Literal["x", "y", "z"] | None) -> tuple[int, int, int] | None:
-    bounds = octree.solid_bounds(rom.octree)
-    if axis is None or bounds is None:
-        return None
-    high = [rom.octree.size] * 3
-    number = "xyz".index(axis)
-    high[number] = (bounds[0][number] + bounds[1][number]) // 2
+def _pane(source: Source, name: str, by: Literal["material", "level", "owner"], overlay: bool) -> Pane:
+    pane = octree.Pane(replace(source.rom, name=name), by=by)
+    if by != "owner" and not overlay:
+        return pane
+    if source.scene is None or source.rom.grid is None:
+        raise UsageError(
+            f"{name}: a memory knows no {'owners' if by == 'owner' else 'triangles'}; name the asset instead"
+        )
+    if by == "owner":
+        pane = replace(pane, owners=find_owners(source.scene, source.rom.grid))
+    if overlay:
+        pane = replace(pane, triangles=scene_triangles(source.scene, source.rom.grid))
+    return pane
+
+
+def _preview(source: Source, pane: Pane, ray: tuple[int, int]) -> Preview:
+    return preview_of(pane.rom, source.camera(PREVIEW_SIZE, Sight()), PREVIEW_SIZE, ray)
+
+
+def _told(panes: list[Pane]) -> list[tuple[str, str]]:
+    rows = []
+    for pane in panes:
+        grid = pane.grid()
+        if len(panes) > 1:
+            rows.append(("memory", pane.rom.name))
+        rows.append(("shown", f"{grid.n_cells:,} octants"))
+        rows.append(("hidden", f"{int(grid.field_data['hidden'][0]):,} octants"))
+    return rows
+
+
+def _export(pane: Pane, file: Path) -> None:
+    match file.suffix.lower():
+        case ".vox":
+            write_vox(file, pane.rom, pane.high)
+        case ".glb":
+            write_glb(file, pane.rom, pane.grid())
+        case ".html":
+            write_page(file, pane.rom, pane.grid())
+        case _:
+            write_octants(file, pane.grid())
+
+
+def _half(pane: Pane, axis: int) -> tuple[int, int, int] | None:
+    bounds = octree.solid_bounds(pane.rom.octree)
+    return bounds and _below(pane, ((axis, (bounds[0][axis] + bounds[1][axis]) // 2),))
+
+
+def _below(pane: Pane, cuts: tuple[tuple[int, int], ...]) -> tuple[int, int, int]:
+    high = [pane.rom.octree.size] * 3
+    for axis, place in cuts:
+        high[axis] = min(high[axis], place)
     x, y, z = high
     return x, y, z

@@ -147,6 +147,37 @@ nb::dict trace_rays(const OwnedMemory& memory, const Triples& origins, const Tri
     return out;
 }
 
+// An integer of any size for Python: of 128 bits there is no cast.
+nb::object whole(WideKey value) {
+    return nb::cast(static_cast<int64_t>(value >> 64)) * nb::cast(uint64_t{1} << 32) * nb::cast(uint64_t{1} << 32) +
+           nb::cast(static_cast<uint64_t>(value));
+}
+
+nb::dict follow_ray(const OwnedMemory& memory, const Position& origin, const Position& direction) {
+    Line line{};
+    for (int axis = 0; axis < 3; ++axis) {
+        line.origin[axis] = origin(axis);
+        line.direction[axis] = direction(axis);
+        if (direction(axis) <= -kDirectionLimit || direction(axis) >= kDirectionLimit)
+            throw std::invalid_argument("the direction reaches " + std::to_string(direction(axis)) + " on axis " +
+                                        "xyz"[axis] + ", which is not below 2**20");
+    }
+    nb::list readings;
+    const Hit<WideKey> hit = Ray<WideKey>(memory.view(), line).trace([&](const Reading<WideKey>& reading) {
+        if (readings.size() % 4096 == 4095 && PyErr_CheckSignals() != 0)
+            throw nb::python_error();
+        readings.append(nb::make_tuple(reading.address, reading.word, reading.level,
+                                       nb::make_tuple(reading.corner[0], reading.corner[1], reading.corner[2]),
+                                       reading.face, whole(reading.time)));
+    });
+    nb::dict out;
+    out["material"] = hit.material;
+    out["face"] = hit.face;
+    out["cell"] = nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]);
+    out["readings"] = readings;
+    return out;
+}
+
 } // namespace
 
 NB_MODULE(_model, m) {
@@ -171,5 +202,11 @@ NB_MODULE(_model, m) {
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
              "Gives material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"
-             "ValueError: a direction out of range.");
+             "ValueError: a direction out of range.")
+        .def(
+            "follow", &follow_ray, nb::arg("origin"), nb::arg("direction"),
+            "Trace one ray, as trace does, and tell what it reads: origin (3,) int32 in 1/16 voxel, direction (3,)\n"
+            "int32, components below 2**20. Gives material, face, cell and readings: for each word in order (address,\n"
+            "word, level, (x, y, z) of its octant's lowest voxel, axis of the plane crossed last or 3, the T of it).\n"
+            "Word 0 is kept between rays and not among them. ValueError: a direction out of range.");
 }

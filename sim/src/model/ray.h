@@ -45,6 +45,17 @@ inline bool key_fits_64(const Line& line) {
     return true;
 }
 
+// A word that a ray read, and where the ray stood then: behind plane `face` (kFaceNone: of none), crossed at T = time.
+// Where the ray enters the word's octant, that plane is the last of those it crosses on entering.
+template <class Key> struct Reading {
+    uint32_t address;
+    uint32_t word;
+    int level;         // the word's octant is 2^level voxels a side
+    int32_t corner[3]; // its lowest cell, grid frame
+    uint8_t face;
+    Key time;
+};
+
 template <class Key> class Ray {
 public:
     Ray(const Memory& memory, const Line& line) : memory_(&memory), unit_(line.unit), side_(1 << memory.depth) {
@@ -69,7 +80,12 @@ public:
     }
 
     // The first solid cell at or behind the place where the ray stands.
-    Hit<Key> trace();
+    Hit<Key> trace() {
+        return trace([](const Reading<Key>&) {});
+    }
+
+    // The same; calls read(Reading<Key>) for each of the hit's words_read words, in the order that they are read.
+    template <class Read> Hit<Key> trace(Read&& read);
 
     // The 1/unit voxel, on `axis`, in which the ray stood when it crossed into the hit that trace() gave.
     int64_t sub_cell(const Hit<Key>& hit, int axis) const {
@@ -113,7 +129,7 @@ private:
     uint8_t face_ = kFaceNone;
 };
 
-template <class Key> Hit<Key> Ray<Key>::trace() {
+template <class Key> template <class Read> Hit<Key> Ray<Key>::trace(Read&& read) {
     // From outside the world the ray enters across the last of its near sides.
     for (int axis = 0; axis < 3; ++axis)
         if (alive_[axis]) {
@@ -131,11 +147,19 @@ template <class Key> Hit<Key> Ray<Key>::trace() {
     uint32_t block_at[kMaxDepth + 1]; // block whose octants are 2^level a side
     uint32_t word = memory_->words[0];
     uint32_t words_read = 0;
+    const auto read_octant = [&](uint32_t octant) {
+        const uint32_t address = block_at[level] + (octant ^ mirror_);
+        word = memory_->words[address];
+        ++words_read;
+        Reading<Key> reading{address, word, level, {}, face_, time_};
+        for (int axis = 0; axis < 3; ++axis)
+            reading.corner[axis] = mirror_ >> axis & 1 ? side_ - corner[axis] - (1 << level) : corner[axis];
+        read(reading);
+    };
     for (;;) {
         while (!is_leaf(word)) {
             block_at[--level] = word;
-            word = memory_->words[word + (descend(corner, 1 << level) ^ mirror_)];
-            ++words_read;
+            read_octant(descend(corner, 1 << level));
         }
         if (material_of(word) != 0) {
             while (level > 0) // the cell of a larger leaf in which the ray stands
@@ -171,8 +195,7 @@ template <class Key> Hit<Key> Ray<Key>::trace() {
             corner[axis] &= -(1 << level);
             octant |= static_cast<uint32_t>(corner[axis] >> level & 1) << axis;
         }
-        word = memory_->words[block_at[level] + (octant ^ mirror_)];
-        ++words_read;
+        read_octant(octant);
     }
 }
 

@@ -53,6 +53,9 @@ public:
             for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
                     variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
+            uint32_t* top = variable(memory + ".gen_banked.u_memory", "top_q");
+            for (std::size_t row = 0; row + 1 < words.size() && row < 64; ++row)
+                top[row] = memory_word(words[row + 1]);
             for (std::size_t row = 0; row + 1 < words.size(); ++row)
                 banks[(row ^ row >> 4) & 15][row >> 4] = memory_word(words[row + 1]);
         } else {
@@ -142,7 +145,7 @@ private:
         for (int i = 0; i < 16; ++i)
             clock();
         model_->rst_ni = 1;
-        for (int i = 0; i < 512; ++i)
+        for (int i = 0; i < 256; ++i)
             clock();
     }
 

@@ -135,21 +135,13 @@ void exercise_grid(Random& random, unsigned depth) {
 
     LeafWalk walk(memory, {{0, 0, 0}, {end, end, end}}, false);
     std::uint64_t volume = 0;
-    std::vector<std::int32_t> corners;
-    Cells levels;
     for (std::vector<Leaf> part; !(part = walk.next(100)).empty();)
-        for (const Leaf& leaf : part) {
+        for (const Leaf& leaf : part)
             volume += voxels_at(leaf.level);
-            if (leaf.material == 0)
-                continue;
-            corners.insert(corners.end(), leaf.corner.begin(), leaf.corner.end());
-            levels.push_back(leaf.level);
-        }
     expect(volume == cells.size(), "leaves", depth);
 
     const std::vector<Word> hidden = hidden_voxels(memory);
     exercise_interior(cells, memory, hidden);
-    hidden_octants(corners.data(), levels.data(), levels.size(), depth);
     expect(surface_change(memory, memory).changed == 0, "a surface", depth);
     surface_change(memory, other);
     leaf_counts(memory);

@@ -1,0 +1,108 @@
+"""Memories as MagicaVoxel scenes: models of at most 256 voxels a side, placed by a scene graph.
+
+MagicaVoxel's z is up; ours is y. Voxel (x, y, z) goes to (x, -z, y), the way back of :func:`voxrt.octree.read_vox`.
+The format: https://github.com/ephtracy/voxel-model (MagicaVoxel-file-format-vox.txt, -extension.txt).
+"""
+
+from __future__ import annotations
+
+import struct
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.export.atomic import write_atomically
+from voxrt.octree import solid_bounds, to_dense
+from voxrt.voxelize import DoesNotFitError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from voxrt.octree import Rom
+
+_MODEL = 256  # the most voxels a side of a model
+_WORLD = 2048  # and of a scene
+_VERSION = 150
+
+
+def write_vox(path: Path, rom: Rom, high: tuple[int, int, int] | None = None) -> None:
+    """Write the solid voxels of a memory as a MagicaVoxel scene; a material's id is its place in the palette.
+
+    Parameters
+    ----------
+    path
+        The file.
+    rom
+        The memory and its materials.
+    high
+        Only voxels below this; None for all.
+
+    Raises
+    ------
+    DoesNotFitError
+        The solid voxels are more than 2048 from end to end, which MagicaVoxel has no room for.
+    OSError
+        The file cannot be written.
+    """
+    models = list(_models(rom, high))
+    nodes = [_transform(0, 1), _chunk(b"nGRP", struct.pack("<iii", 1, 0, len(models)) + _numbers(models))]
+    content = []
+    for number, (voxels, place) in enumerate(models):
+        size = voxels[:, :3].max(axis=0).astype(int) + 1
+        content.append(_chunk(b"SIZE", struct.pack("<3i", *size)))
+        content.append(_chunk(b"XYZI", struct.pack("<i", len(voxels)) + voxels.tobytes()))
+        middle = " ".join(str(int(a)) for a in place + size // 2)
+        nodes.append(_transform(2 + 2 * number, 3 + 2 * number, {"_t": middle}))
+        nodes.append(_chunk(b"nSHP", struct.pack("<iiiii", 3 + 2 * number, 0, 1, number, 0)))
+    palette = np.full((256, 4), 255, np.uint8)
+    palette[: len(rom.materials) - 1, :3] = [material.colour for material in rom.materials[1:]] or np.zeros((0, 3))
+    children = b"".join((*content, *nodes, _chunk(b"RGBA", palette.tobytes())))
+    main = b"MAIN" + struct.pack("<ii", 0, len(children)) + children
+    write_atomically(path, b"VOX " + struct.pack("<i", _VERSION) + main)
+
+
+def _models(rom: Rom, high: tuple[int, int, int] | None) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.int64]]]:
+    """Give each model's voxels (x, y, z, material; shape (N, 4)) and the place of its lowest corner, file axes."""
+    bounds = solid_bounds(rom.octree)
+    if bounds is None:
+        return
+    low, end = np.array(bounds)
+    end = end if high is None else np.minimum(end, high)
+    if (end - low).max() > _WORLD:
+        raise DoesNotFitError(
+            f"{rom.name}: {(end - low).max()} voxels from end to end do not fit MagicaVoxel's {_WORLD}; show a part"
+        )
+    steps = [range(a, b, _MODEL) for a, b in zip(low.tolist(), end.tolist(), strict=True)]
+    for corner in product(steps[0], steps[1], steps[2]):
+        last = np.minimum(np.add(corner, _MODEL), end).tolist()
+        dense = to_dense(rom.octree, corner, (last[0], last[1], last[2]))
+        x, y, z = np.nonzero(dense)
+        if not len(x):
+            continue
+        across = last[2] - corner[2] - 1 - z  # file y runs against our z
+        voxels = np.stack([x, across, y, dense[x, y, z]], axis=1)
+        least = voxels[:, :3].min(axis=0)
+        voxels[:, :3] -= least
+        yield voxels.astype(np.uint8), np.array([corner[0], -last[2] + 1, corner[1]]) + least
+
+
+def _numbers(models: list[tuple[NDArray[np.uint8], NDArray[np.int64]]]) -> bytes:
+    return struct.pack(f"<{len(models)}i", *range(2, 2 + 2 * len(models), 2))
+
+
+def _transform(node: int, child: int, frame: dict[str, str] | None = None) -> bytes:
+    said = b"".join(_text(key) + _text(value) for key, value in (frame or {}).items())
+    head = struct.pack("<iiiiii", node, 0, child, -1, -1, 1)
+    return _chunk(b"nTRN", head + struct.pack("<i", len(frame or {})) + said)
+
+
+def _text(text: str) -> bytes:
+    return struct.pack("<i", len(text)) + text.encode("ascii")
+
+
+def _chunk(name: bytes, content: bytes) -> bytes:
+    return name + struct.pack("<ii", len(content), 0) + content

@@ -1,0 +1,63 @@
+"""``voxrt trace``: the way of one pixel's ray."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from voxrt import read_rom
+from voxrt.cli.memory_results import TraceResult
+from voxrt.octree import material_at
+
+
+def test_what_a_ray_reads(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "5").code == 0
+    told = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48", "--json")
+    assert told.code == 0, told.err
+    result = msgspec.json.decode(told.out, type=TraceResult, strict=True)
+    rom = read_rom(folder / "house.mem")[0]
+    assert [rom.octree.words[reading.address] for reading in result.readings] == [r.word for r in result.readings]
+    assert result.material == material_at(rom.octree, result.voxel) != 0
+    assert result.face in {"x", "y", "z"}
+    for_people = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48")
+    assert for_people.out == ""
+    lines = for_people.err.splitlines()
+    assert f"reads      {len(result.readings)} words" in for_people.err
+    for number, reading in enumerate(result.readings, 1):
+        line = lines[len(lines) - len(result.readings) + number - 1].split()
+        assert line[:3] == [str(number), f"0x{reading.address:X}", f"0x{reading.word:08X}"]
+        assert f"{reading.axis} = " in " ".join(line)
+    assert f"leaf: material {result.material}, {rom.materials[result.material].name}" in lines[-1]
+    asset = voxrt("trace", "house.obj", "--depth", "5", "--pixel", "32,24", "--size", "64x48", "--json")
+    assert msgspec.json.decode(asset.out, type=TraceResult) == result
+
+
+def test_a_miss_and_a_camera_within_a_solid(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", "5").code == 0
+    assert "hits       nothing" in voxrt("trace", "house.mem", "--pixel", "0,0").err
+    away = ("--position", "-9,5,5", "--look", "-1,0,0")
+    missed = msgspec.json.decode(voxrt("trace", "house.mem", "--pixel", "320,240", *away, "--json").out)
+    assert (missed["readings"], missed["material"], missed["face"], missed["voxel"]) == ([], 0, None, None)
+    x, y, z = next(
+        voxel
+        for voxel in ((n % 32, n // 32 % 32, n // 1024) for n in range(32**3))
+        if material_at(read_rom(folder / "house.mem")[0].octree, voxel)
+    )
+    within = voxrt("trace", "house.mem", "--pixel", "9,9", "--position", f"{x}.5,{y}.5,{z}.5")
+    assert f"hits       voxel {x}, {y}, {z}, from within: material" in within.err
+    assert "the eye" in within.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "problem"),
+    [
+        (("--pixel", "640,0"), "pixel 640,0 lies outside the picture of 640x480; columns go to 639, rows to 479"),
+        (("--pixel", "1"), "'1' is not COLUMN,ROW"),
+        (("--pixel", "-1,2"), "--pixel requires an argument"),
+        ((), "--pixel"),
+    ],
+)
+def test_wrong_pixels(voxrt, arguments, problem):
+    finished = voxrt("trace", "house.obj", *arguments)
+    assert finished.code == 2
+    assert problem in finished.error
