@@ -1,5 +1,6 @@
-"""Rays directed so that each bin of rtl/coverage/voxrt_lane_coverage.sv is met: levels, exits, ancestors, mirrored octants.
+"""Rays directed so that every bin of rtl/coverage/voxrt_lane_coverage.sv is hit.
 
+Levels, exits, ancestors, mirrored octants.
 Every world is made in the mirrored frame, in which rays go ahead on all axes, and turned to one of the eight octants.
 What a ray must show is known from how the world was made.
 """
@@ -87,7 +88,7 @@ async def prepare(dut, depth=DEPTH):
 
 @cocotb.test()
 async def leaves_left_by_every_axis_to_every_ancestor(dut):
-    """A row of leaves of one level, each before a plane that is a power of two, out to the end of the world."""
+    """Cross a row of leaves of one level, each before a plane that is a power of two, out to the end of the world."""
     core = await prepare(dut)
     for level, axis, mirrored in itertools.product(range(DEPTH), range(3), OCTANTS):
         cells = []
@@ -104,7 +105,7 @@ async def leaves_left_by_every_axis_to_every_ancestor(dut):
 
 @cocotb.test()
 async def solid_leaves_met_by_every_face(dut):
-    """A solid leaf of each level, entered from outside the world by each of its faces, and from inside."""
+    """Meet a solid leaf of each level, entered from outside the world by each of its faces, and from inside."""
     core = await prepare(dut)
     for level, face, mirrored in itertools.product(range(DEPTH), (0, 1, 2, FACE_NONE), OCTANTS):
         await core.load(memory(around([([0, 0, 0], level)], 255), mirrored))

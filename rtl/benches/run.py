@@ -48,6 +48,10 @@ BUILDS = {
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
     "merge": Build("voxrt_merge", {"Lanes": 5}, ("bench_merge",)),
     "pixel_packer": Build("voxrt_pixel_packer", {}, ("bench_pixel_packer",)),
+    "scan": Build("voxrt_scan", {}, ("bench_scan",)),
+    "ray_generator": Build("voxrt_ray_generator", {}, ("bench_ray_generator",)),
+    "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
+    "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "traversal": Build(
         CORE,
         {"Lanes": 1, "MaxDepth": 10, "PositionBits": 17, "BlockBits": 12},

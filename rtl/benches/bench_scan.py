@@ -1,0 +1,47 @@
+"""voxrt_scan: the direction of the top left pixel and the step from line to line, for any registers."""
+
+import random
+
+import cocotb
+from cocotb.triggers import ClockCycles, RisingEdge
+from streams import drive, reset, start
+
+SIZE_BITS = 12
+
+
+def some_registers():
+    """Make look, right and up, the largest among them."""
+    return [[random.choice([-32768, 32767, random.randint(-32768, 32767)]) for _ in range(3)] for _ in range(3)]
+
+
+async def check(dut):
+    """Scan once."""
+    look, right, up = some_registers()
+    width, height = (random.choice([0, 2047, random.randrange(2048)]) for _ in range(2))
+    drive(dut, look_i=look, right_i=right, up_i=up, half_width_i=width, half_height_i=height, start_i=1)
+    await RisingEdge(dut.clk_i)
+    drive(dut, start_i=0)
+    for clock in range(2 * SIZE_BITS + 1):
+        await RisingEdge(dut.clk_i)
+        if int(dut.corner_o.value):
+            break
+    assert clock == 2 * SIZE_BITS - 1
+    corner = [value.to_signed() for value in dut.line_step_o.value]
+    assert corner == [a - b * width + c * height for a, b, c in zip(look, right, up, strict=True)]
+    await ClockCycles(dut.clk_i, 2)
+    for _ in range(3):
+        assert [value.to_signed() for value in dut.line_step_o.value] == [-c for c in up]
+        await RisingEdge(dut.clk_i)
+
+
+@cocotb.test()
+async def corners(dut):
+    """Many frames; and a reset on the way now and then."""
+    await start(dut, start_i=0)
+    for _ in range(60):
+        await check(dut)
+        drive(dut, start_i=1)
+        await RisingEdge(dut.clk_i)
+        drive(dut, start_i=0)
+        await ClockCycles(dut.clk_i, random.randrange(1, 30))
+        await reset(dut)
