@@ -21,11 +21,8 @@ async def check(dut):
     drive(dut, look_i=look, right_i=right, up_i=up, half_width_i=width, half_height_i=height, start_i=1)
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)
-    for clock in range(2 * SIZE_BITS + 1):
-        await RisingEdge(dut.clk_i)
-        if int(dut.corner_o.value):
-            break
-    assert clock == 2 * SIZE_BITS - 1
+    await ClockCycles(dut.clk_i, 2 * SIZE_BITS)
+    assert int(dut.corner_o.value)
     corner = [value.to_signed() for value in dut.line_step_o.value]
     assert corner == [a - b * width + c * height for a, b, c in zip(look, right, up, strict=True)]
     await ClockCycles(dut.clk_i, 2)

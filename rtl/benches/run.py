@@ -41,7 +41,7 @@ class Build(NamedTuple):
 
 
 BUILDS = {
-    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator",)),
+    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator", "bench_registers")),
     "lit4-narrow": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",), narrow=True),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
@@ -52,6 +52,9 @@ BUILDS = {
     "ray_generator": Build("voxrt_ray_generator", {}, ("bench_ray_generator",)),
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
+    "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
+    "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
+    "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),
     "traversal": Build(
         CORE,
         {"Lanes": 1, "MaxDepth": 10, "PositionBits": 17, "BlockBits": 12},

@@ -1,0 +1,138 @@
+"""voxrt_octree_memory: what the processor writes is what it and all lanes read, however many want the same bank."""
+
+import random
+
+import cocotb
+from cocotb.triggers import ClockCycles, RisingEdge
+from streams import drive, pace, reset, start
+
+BLOCK_BITS, REFUSED = 6, 0x7FFFFFFF
+WORDS = 1 + (8 << BLOCK_BITS)
+LEAF, ERROR = 1 << 9, 1 << 8
+
+
+def some_word():
+    """Make a word: leaves, pointers, and pointers that are wrong."""
+    block = random.randrange(1 << BLOCK_BITS)
+    return random.choice(
+        [
+            0xFFFFFF00 | random.randrange(256),
+            1 + 8 * block,
+            1 + 8 * block,
+            2 + 8 * block,
+            1 + (8 << BLOCK_BITS),
+            REFUSED,
+        ]
+    )
+
+
+def kept(word):
+    """Give a word as it is read back: pointers out of the memory or into the middle of a block are refused."""
+    return word if word >> 31 or (word % 8 == 1 and word < WORDS) else REFUSED
+
+
+def encoded(word):
+    """Give a word that was kept, as lanes read it."""
+    if word == REFUSED:
+        return LEAF | ERROR
+    return LEAF | word & 0xFF if word >> 31 else word >> 3
+
+
+class Memory:
+    """The memory and its model."""
+
+    def __init__(self, dut):
+        self.dut = dut
+        self.lanes = len(dut.read_i)
+        self.clocks = 5 if int(dut.Banked.value) else 2
+        self.words = {}
+
+    async def begin(self):
+        """Reset and fill."""
+        await start(self.dut, access_i=0, access_write_i=0, access_address_i=0, read_i=0)
+        await self.write(range(WORDS))
+
+    async def write(self, addresses):
+        """Write words, one a clock."""
+        for address in addresses:
+            word = some_word()
+            drive(self.dut, access_i=1, access_write_i=1, access_address_i=address, access_word_i=word)
+            self.words[address] = kept(word)
+            await RisingEdge(self.dut.clk_i)
+        drive(self.dut, access_i=0, access_write_i=0)
+        await ClockCycles(self.dut.clk_i, 5)
+
+    async def read(self, clocks, lanes, port):
+        """Let lanes read, and the processor's port: each at any clock, or all the time."""
+        dut, asked, answered = self.dut, [], 0
+        wants, accesses = pace(lanes), pace(port)
+        hot = random.randrange(1 << BLOCK_BITS)
+        for clock in range(clocks):
+            reads = [next(wants) for _ in range(self.lanes)]
+            blocks = [random.choice([hot, random.randrange(1 << BLOCK_BITS)]) for _ in reads]
+            octants = [random.randrange(8) for _ in reads]
+            address = random.choice([0, random.randrange(WORDS)]) if next(accesses) else None
+            drive(dut, read_i=sum(bit << lane for lane, bit in enumerate(reads)), block_i=blocks, octant_i=octants)
+            drive(dut, access_i=address is not None, access_write_i=0, access_address_i=address or 0)
+            await RisingEdge(dut.clk_i)
+            if clock >= self.clocks:
+                answered += self.check(*asked.pop(0))
+            addresses = [1 + 8 * block + octant for block, octant in zip(blocks, octants, strict=True)]
+            asked.append(([a if bit else None for a, bit in zip(addresses, reads, strict=True)], address))
+        drive(dut, read_i=0, access_i=0)
+        return answered
+
+    def check(self, addresses, accessed):
+        """Compare the answers to what was asked `clocks` ago; give how many lanes got theirs."""
+        dut = self.dut
+        assert dut.root_o.value.to_unsigned() == encoded(self.words[0])
+        assert int(dut.access_valid_o.value) == (accessed is not None)
+        if accessed is not None:
+            assert dut.access_word_o.value.to_unsigned() == self.words[accessed]
+        acknowledged = dut.ack_o.value.to_unsigned()
+        for lane, address in enumerate(addresses):
+            if acknowledged >> lane & 1:
+                assert address is not None
+                assert dut.word_o[lane].value.to_unsigned() == encoded(self.words[address])
+        if accessed is None and self.clocks == 2:
+            assert acknowledged == sum((address is not None) << lane for lane, address in enumerate(addresses))
+        assert any(address is not None for address in addresses) <= (acknowledged != 0 or accessed is not None)
+        return acknowledged.bit_count()
+
+
+@cocotb.test()
+@cocotb.parametrize(lanes=["always", "random"], port=["always", "random"])
+async def all_read_what_was_written(dut, lanes, port):
+    """Every lane gets a word sooner or later; each word it gets is right."""
+    memory = Memory(dut)
+    await memory.begin()
+    for _ in range(5):
+        await memory.write(random.sample(range(WORDS), 100))
+        assert await memory.read(300, lanes, port) > 200
+
+
+@cocotb.test()
+async def words_beyond_the_memory_are_dropped(dut):
+    """Write past the end, and read all again."""
+    memory = Memory(dut)
+    await memory.begin()
+    for address in (WORDS, WORDS + 7, 1 << 20, (1 << 32) - 1):
+        drive(dut, access_i=1, access_write_i=1, access_address_i=address, access_word_i=0xFFFFFF33)
+        await RisingEdge(dut.clk_i)
+    drive(dut, access_i=0, access_write_i=0)
+    await ClockCycles(dut.clk_i, 5)
+    await memory.read(500, "random", "random")
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """No answer to a question of before the reset; what was written stays."""
+    memory = Memory(dut)
+    await memory.begin()
+    for _ in range(10):
+        await memory.read(random.randrange(1, 30), "random", "random")
+        await reset(dut, 1)
+        for _ in range(memory.clocks + 1):
+            await RisingEdge(dut.clk_i)
+            assert not int(dut.access_valid_o.value)
+        await memory.read(100, "random", "random")

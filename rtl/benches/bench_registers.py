@@ -1,0 +1,111 @@
+"""The registers against registers.rdl's own map: resets, masks, byte strobes, and what cannot be written."""
+
+import random
+import re
+
+import cocotb
+from bench_pixel_generator import Core
+from cocotb.triggers import ClockCycles
+from run import GENERATED
+from voxrt_registers import MATERIALS, REGISTERS
+
+RESERVED = 0x7C
+# control's bits do things when written; the benches of the whole core see to them.
+ACTS = {"control"}
+
+
+def described():
+    """Give of each register its fields (low, high, access, reset or None), from the generated table."""
+    registers = {}
+    for line in (GENERATED / "registers.md").read_text().splitlines():
+        if heading := re.match(r"## 0x(\w+) ([\w\[\]]+)$", line):
+            fields = registers[heading[2]] = []
+        elif row := re.match(r"\| (\d+)(?::(\d+))? \| \w+ \| (\w+) \| (\d*) \|", line):
+            high, low, access, reset = row.groups()
+            fields.append((int(low or high), int(high), access, int(reset) if reset else None))
+    return registers
+
+
+def mask(fields, *accesses):
+    """Give the bits of fields that are accessed so."""
+    return sum((1 << (high + 1)) - (1 << low) for low, high, access, _ in fields if access in accesses)
+
+
+@cocotb.test()
+async def the_table_is_the_map(_):
+    """Two outputs of one description name the same registers and fields."""
+    table = described()
+    assert set(table) == set(REGISTERS)
+    for name, (_, fields) in REGISTERS.items():
+        assert sorted(fields.values()) == sorted((low, high - low + 1) for low, high, _, _ in table[name])
+
+
+@cocotb.test()
+async def resets(dut):
+    """All that has a reset value, and all that is reserved, which reads as 0."""
+    core = Core(dut)
+    await core.start()
+    for name, fields in described().items():
+        value = await core.axi.read_dword(REGISTERS[name][0])
+        known = sum((1 << (high + 1)) - (1 << low) for low, high, _, reset in fields if reset is not None)
+        assert value & known == sum(reset << low for low, _, _, reset in fields if reset is not None), name
+        assert value & ~mask(fields, "r", "rw", "w1c") == 0, name
+    assert await core.axi.read_dword(RESERVED) == 0
+    assert await core.axi.read_dword(MATERIALS) == 0
+
+
+@cocotb.test()
+async def masks(dut):
+    """Change what may be written, in this register alone."""
+    core = Core(dut)
+    await core.start()
+    table = {name: fields for name, fields in described().items() if name not in ACTS}
+    values = {}
+    for name, fields in table.items():
+        address, writable = REGISTERS[name][0], mask(fields, "rw")
+        before = await core.axi.read_dword(address)
+        for pattern in (0xFFFFFFFF, 0, 0xAAAAAAAA, 0x55555555, random.getrandbits(32)):
+            await core.axi.write_dword(address, pattern)
+            after = await core.axi.read_dword(address)
+            assert after & writable == pattern & writable, name
+            assert after & ~writable == before & ~writable, name
+        values[name] = after & writable
+    for name, value in values.items():
+        assert await core.axi.read_dword(REGISTERS[name][0]) & mask(table[name], "rw") == value, name
+
+
+@cocotb.test()
+async def strobes(dut):
+    """Single bytes and pairs, at every place, change no other byte."""
+    core = Core(dut)
+    await core.start()
+    for name, fields in described().items():
+        if name in ACTS or not mask(fields, "rw"):
+            continue
+        address, writable = REGISTERS[name][0], mask(fields, "rw").to_bytes(4, "little")
+        await core.axi.write_dword(address, 0)
+        expected = [0] * 4
+        for place, length in ((0, 1), (3, 1), (1, 1), (2, 1), (0, 2), (2, 2), (1, 2), (0, 3), (1, 3)):
+            data = random.randbytes(length)
+            await core.axi.write(address + place, data)
+            expected[place : place + length] = [
+                a & b for a, b in zip(data, writable[place : place + length], strict=True)
+            ]
+            got = (await core.axi.read(address, 4)).data
+            assert [a & b for a, b in zip(got, writable, strict=True)] == expected, name
+
+
+@cocotb.test()
+async def a_reset_brings_the_resets_back(dut):
+    """Reset by the pin; a soft reset leaves registers alone."""
+    core = Core(dut)
+    await core.start()
+    await core.write("size", width=7, height=9)
+    await core.write("control", soft_reset=1)
+    assert await core.read("size", "width") == 7
+    dut.rst_ni.value = 0
+    await ClockCycles(dut.clk_i, 3)
+    dut.rst_ni.value = 1
+    await ClockCycles(dut.clk_i, 3)
+    assert await core.read("size", "width") == 640
+    assert await core.read("size", "height") == 480
