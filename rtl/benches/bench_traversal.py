@@ -143,7 +143,7 @@ async def dead_axes_ties_and_depths(dut):
 
 @cocotb.test()
 async def words_that_do_not_come_and_words_that_are_wrong(dut):
-    """The processor reads while a ray is traced; pointers into the middle of a block, and below the voxels."""
+    """Let the processor read while a ray is traced; pointers into the middle of a block, and below the voxels."""
     core = await prepare(dut)
 
     async def read_all_the_time():

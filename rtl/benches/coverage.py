@@ -37,18 +37,18 @@ def possible(_: Bin) -> str:
 
 
 def above_the_root(bin_: Bin) -> str:
-    """Leaves of a level, and levels climbed."""
+    """Say why, of leaves of a level and levels climbed."""
     level, _, _, climbed = bin_
     return "the ancestor would be above the root" if level + climbed >= DEPTH else ""
 
 
 def below_the_voxels(bin_: Bin) -> str:
-    """Pointers of a level."""
+    """Say why, of pointers of a level."""
     return "a pointer of level 0 ends the ray: word, step limit" if bin_[0] == 0 else ""
 
 
 def exits_on_a_dead_axis(bin_: Bin) -> str:
-    """Exits by dead axes."""
+    """Say why, of exits by dead axes."""
     dead, axis = bin_
     if dead == ALL_DEAD:
         return "without direction no leaf is left; the ray ends, counted as z" if axis != Z else ""
@@ -56,7 +56,7 @@ def exits_on_a_dead_axis(bin_: Bin) -> str:
 
 
 def goes_last(bin_: Bin) -> str:
-    """Exits when planes are crossed at the same time."""
+    """Say why, of exits when planes are crossed at the same time."""
     ties, axis = bin_
     if ties.bit_count() == 2:
         return "equality of two pairs is equality of all"

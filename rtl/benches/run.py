@@ -38,6 +38,7 @@ class Build(NamedTuple):
     benches: tuple[str, ...]
     coverage: tuple[Path, ...] = ()  # Modules to bind.
     narrow: bool = False  # Multipliers of 18 x 18 bits.
+    lines: str = "line"  # What is counted.
 
 
 BUILDS = {
@@ -52,7 +53,8 @@ BUILDS = {
     "ray_generator": Build("voxrt_ray_generator", {}, ("bench_ray_generator",)),
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
-    "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
+    "shader": Build("voxrt_shader", {"Flat": 1, "Given": 1}, ("bench_shader",)),
+    "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",), lines="user"),
     "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
     "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),
     "traversal": Build(
@@ -78,7 +80,16 @@ def run(name: str) -> None:
         hdl_toplevel=build.top,
         parameters=build.parameters,
         defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},
-        build_args=["-O3", "--x-assign", "unique", "--x-initial", "unique", "--coverage-line", "-CFLAGS", "-O1"],
+        build_args=[
+            "-O3",
+            "--x-assign",
+            "unique",
+            "--x-initial",
+            "unique",
+            f"--coverage-{build.lines}",
+            "-CFLAGS",
+            "-O1",
+        ],
         build_dir=folder,
     )
     results = runner.test(

@@ -1,0 +1,108 @@
+"""voxrt_shader, and voxrt_divide in it, against exact fractions: pixels at any pace on both sides."""
+
+import random
+from fractions import Fraction
+from math import floor
+
+import cocotb
+from bench_ray_generator import begin
+from bench_ray_generator import expected as directions_of
+from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
+from oracles.ray import FACE_NONE, shade
+from streams import PACES, drive, exchange, reset_on_the_way, start
+
+SQUARE, SUM = 40, 12
+
+
+def packed(*fields):
+    """Pack values, each with its width, the first one highest."""
+    number = 0
+    for value, width in fields:
+        number = number << width | value
+    return number
+
+
+def some_frame():
+    """Make a frame whose directions are small enough, or steep."""
+    largest = random.choice([3, 100, 20000])
+    corner, right, line = (
+        [random.randint(-bound, bound) for _ in range(3)] for bound in (largest * 20, largest, largest)
+    )
+    return corner, right, line, random.randint(1, 9), random.randint(1, 7)
+
+
+def given(kind):
+    """Make what voxrt_brightness may say: (packed, sums or None, part or None)."""
+    whole = random.choice([1, 3, random.randint(1, 3 << SQUARE - 1)])
+    part = random.randint(0, min(whole, (1 << SQUARE) - 1))
+    if kind == "angle":
+        return 0, None, None
+    if kind == "part":
+        return packed((1, 1), (0, 1), (part, SQUARE), (whole, SQUARE + 2), (0, 3 * SUM)), None, Fraction(part, whole)
+    count = random.randint(1, 16)
+    sums = [random.randint(0, 255 * count) for _ in range(3)]
+    fields = [(1, 1), (1, 1), (1, SQUARE), (count, SQUARE + 2), *((channel, SUM) for channel in reversed(sums))]
+    return packed(*fields), sums, Fraction(1, count)
+
+
+def some_pixels(frame, colours, flat):
+    """Make a frame's pixels and what shall come of them."""
+    items, wanted = [], []
+    for direction, first, line_end, last in directions_of(*frame):
+        material = random.randrange(256)
+        face = random.choice([axis for axis in range(3) if direction[axis]] + [FACE_NONE])
+        brightness, sums, part = given(random.choice(["angle", "angle", "part", "mean"]))
+        items.append({"pixel_i": material << 2 | face, "brightness_i": brightness})
+        own = sums or colours[material]
+        if part is not None:
+            colour = tuple(floor(channel * part + Fraction(1, 2)) for channel in own)
+        else:
+            colour = tuple(own) if flat else shade(own, direction, face)
+        wanted.append((packed(*((channel, 8) for channel in colour)), material << 2 | face, first, line_end, last))
+    return items, wanted
+
+
+def seen(dut):
+    """Read a shaded pixel."""
+    colour, pixel = dut.colour_o.value.to_unsigned(), dut.pixel_o.value.to_unsigned()
+    return colour, pixel, int(dut.first_o.value), int(dut.line_end_o.value), int(dut.last_o.value)
+
+
+async def prepare(dut):
+    """Start, and fill the material table; give it."""
+    await start(dut, start_i=0, corner_i=0, valid_i=0, ready_i=0, table_write_i=0, flat_i=0)
+    colours = [tuple(random.choice([0, 255, random.randrange(256)]) for _ in range(3)) for _ in range(256)]
+    for material, colour in enumerate(colours):
+        table = packed(*((channel, 8) for channel in colour))
+        drive(dut, table_write_i=1, table_material_i=material, table_colour_i=table)
+        await RisingEdge(dut.clk_i)
+    drive(dut, table_write_i=0)
+    return colours
+
+
+@cocotb.test()
+@cocotb.parametrize(**PACES)
+async def colours(dut, sending, taking):
+    """Frames of all kinds of pixels."""
+    table = await prepare(dut)
+    for number in range(15):
+        flat = number % 3 == 2
+        frame = some_frame()
+        drive(dut, flat_i=flat)
+        items, wanted = some_pixels(frame, table, flat)
+        await begin(dut, frame)
+        assert await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking), 1, "ms") == wanted
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """Begin anew after it; the material table stays."""
+    table = await prepare(dut)
+    for _ in range(10):
+        frame = some_frame()
+        items, wanted = some_pixels(frame, table, flat=False)
+        await begin(dut, frame)
+        await reset_on_the_way(dut, items, lambda: seen(dut))
+        await ClockCycles(dut.clk_i, 2)
+        await begin(dut, frame)
+        assert await exchange(dut, items, lambda: seen(dut), "random", "random") == wanted
