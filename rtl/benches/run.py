@@ -54,6 +54,8 @@ BUILDS = {
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {"Flat": 1, "Given": 1}, ("bench_shader",)),
+    "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
+    "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",), lines="user"),
     "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
     "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),

@@ -1,0 +1,92 @@
+"""voxrt_brightness against exact fractions, pixels at any pace on both sides."""
+
+import random
+from fractions import Fraction
+
+import cocotb
+from bench_shader import packed
+from cocotb.triggers import with_timeout
+from streams import PACES, drive, exchange, reset_on_the_way, start
+
+DEPTH, PLACE, SUM, PAYLOAD = 6, 10, 12, 41
+ANGLE, MEAN, LIGHT = range(3)
+
+
+def lit_point(place, mirrored, face, side):
+    """Give the lit point of a sub-cell, 1/32 voxel, grid frame."""
+    mirrored_point = [2 * p + (axis != face) for axis, p in enumerate(place)]
+    return [32 * side - p if mirrored >> axis & 1 else p for axis, p in enumerate(mirrored_point)]
+
+
+def some_place(side, face):
+    """Make a sub-cell, 1/16 voxel, behind a face."""
+    place = [random.randrange(16 * side) for _ in range(3)]
+    place[face] -= place[face] % 16
+    return place
+
+
+def some_pixel(side, light, ambient, flat):
+    """Make a pixel and what shall be said of it: whether part and sums are given, part / whole, the sums."""
+    face, shade, lit = random.randrange(3), random.choice([ANGLE, MEAN, LIGHT, LIGHT]), random.randrange(2)
+    pixel = random.randrange(256) << 2 | face
+    item = {"pixel_i": pixel, "lit_i": lit}
+    if shade == ANGLE:
+        return item | {"detail_i": random.randrange(1 << PAYLOAD)}, (pixel, 0, 0)
+    if shade == MEAN:
+        count = random.randint(1, 16)
+        sums = packed(*((random.randint(0, 255 * count), SUM) for _ in range(3)))
+        detail = packed((MEAN, 2), (sums, 3 * SUM), (count, 5))
+        return item | {"detail_i": detail}, (pixel, 1, 1, Fraction(1, count), sums)
+    place, mirrored = some_place(side, face), random.randrange(8)
+    way = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
+    lit = item["lit_i"] = lit and any(way)
+    part = Fraction(ambient, 256)
+    if lit:
+        part = Fraction(1) if flat else max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
+    detail = packed((LIGHT, 2), (0, PAYLOAD - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
+    return item | {"detail_i": detail}, (pixel, 1, 0, part)
+
+
+def seen(dut):
+    """Read a pixel as `some_pixel` gives it."""
+    number = dut.brightness_o.value.to_unsigned()
+    sums, number = number % (1 << 3 * SUM), number >> 3 * SUM
+    whole, number = number % (1 << 42), number >> 42
+    part, number = number % (1 << 40), number >> 40
+    given = (dut.pixel_o.value.to_unsigned(), number >> 1, number & 1)
+    if not number >> 1:
+        return given
+    return (*given, Fraction(part, whole), sums) if number & 1 else (*given, Fraction(part, whole))
+
+
+def begin(dut):
+    """Set a frame's light; give what makes its pixels."""
+    side = 1 << random.randint(1, DEPTH)
+    reach = random.choice([16 * side, 1 << 18])
+    light = [random.randint(-reach, reach) for _ in range(3)]
+    ambient, flat = random.choice([0, 255, random.randrange(256)]), random.random() < 0.2
+    drive(dut, world_i=side, light_i=light, ambient_i=ambient, flat_i=flat)
+    return lambda: some_pixel(side, light, ambient, flat)
+
+
+@cocotb.test()
+@cocotb.parametrize(**PACES)
+async def fractions(dut, sending, taking):
+    """Lights near and far, all kinds of pixels."""
+    await start(dut, valid_i=0, ready_i=0)
+    for _ in range(15):
+        make = begin(dut)
+        items, wanted = zip(*(make() for _ in range(40)), strict=True)
+        got = await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking), 1, "ms")
+        assert got == list(wanted)
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """Drop what is on its way."""
+    await start(dut, valid_i=0, ready_i=0)
+    for _ in range(10):
+        make = begin(dut)
+        items, wanted = zip(*(make() for _ in range(30)), strict=True)
+        await reset_on_the_way(dut, items, lambda: seen(dut))
+        assert await exchange(dut, items, lambda: seen(dut), "random", "random") == list(wanted)

@@ -1,0 +1,98 @@
+"""voxrt_light: each lane's sub-cells become its shadow rays, in order; and where the light stands among the planes."""
+
+import random
+
+import cocotb
+from bench_brightness import lit_point, some_place
+from cocotb.triggers import ClockCycles, RisingEdge
+from streams import drive, pace, reset, start
+
+LANES, DEPTH, QUEUE = 3, 6, 16
+
+
+class Lanes:
+    """The lanes around it: they ask while they may, and start what comes at their own pace."""
+
+    def __init__(self, dut, asking, starting):
+        self.dut = dut
+        self.asks, self.starts = pace(asking), pace(starting)
+        self.wanted = [[] for _ in range(LANES)]
+        self.waiting = [0] * LANES
+        self.places = [QUEUE] * LANES
+
+    async def run(self, clocks, *, ask=True):
+        """Go on for so many clocks."""
+        dut, side, light = self.dut, self.side, self.light
+        for _ in range(clocks):
+            asks = [ask and self.places[lane] > 0 and next(self.asks) for lane in range(LANES)]
+            starts = [self.waiting[lane] > 0 and next(self.starts) for lane in range(LANES)]
+            drive(dut, request_i=sum(bool(bit) << lane for lane, bit in enumerate(asks)))
+            drive(dut, started_i=sum(bool(bit) << lane for lane, bit in enumerate(starts)))
+            for lane in range(LANES):
+                face, mirrored, tag = random.randrange(3), random.randrange(8), random.randrange(256)
+                place = some_place(side, face)
+                dut.tag_i[lane].value, dut.face_i[lane].value, dut.mirrored_i[lane].value = tag, face, mirrored
+                for axis in range(3):
+                    dut.place_i[lane][axis].value = place[axis]
+                if asks[lane]:
+                    point = lit_point(place, mirrored, face, side)
+                    way = [2 * at - own for at, own in zip(light, point, strict=True)]
+                    self.wanted[lane].append((tag, point, way))
+            await RisingEdge(dut.clk_i)
+            ready = dut.ready_o.value.to_unsigned()
+            assert ready == sum((places > 0) << lane for lane, places in enumerate(self.places))
+            for lane in range(LANES):
+                self.places[lane] += bool(starts[lane]) - bool(asks[lane])
+                self.waiting[lane] -= bool(starts[lane])
+            if int(dut.valid_o.value):
+                lane = dut.lane_o.value.to_unsigned().bit_length() - 1
+                assert dut.lane_o.value.to_unsigned() == 1 << lane
+                point = [value.to_signed() for value in dut.lit_o.value]
+                way = [value.to_signed() for value in dut.way_o.value]
+                assert (dut.tag_o.value.to_unsigned(), point, way) == self.wanted[lane].pop(0)
+                self.waiting[lane] += 1
+
+    def frame(self):
+        """Set another world and light."""
+        self.side = 1 << random.randint(1, DEPTH)
+        reach = random.choice([16 * self.side, (1 << 20) - 1])
+        self.light = [random.choice([0, 16 * random.randint(-2, 70), random.randint(-reach, reach)]) for _ in range(3)]
+        drive(self.dut, world_i=self.side, light_i=self.light)
+
+    def check_planes(self):
+        """Compare the numbers of planes before the light, and not behind it."""
+        for mirrored in range(2):
+            for axis, own in enumerate(self.light):
+                light = 16 * self.side - own if mirrored else own
+                before = sum(16 * plane < light for plane in range(self.side))
+                reached = sum(16 * plane <= light for plane in range(self.side))
+                assert self.dut.before_light_o[mirrored][axis].value.to_unsigned() == before
+                assert self.dut.to_light_o[mirrored][axis].value.to_unsigned() == reached
+
+
+@cocotb.test()
+@cocotb.parametrize(asking=["always", "random"], starting=["always", "random"])
+async def shadow_rays(dut, asking, starting):
+    """Lanes that ask as fast as they may, lanes that start late."""
+    await start(dut, request_i=0, started_i=0)
+    lanes = Lanes(dut, asking, starting)
+    for _ in range(10):
+        lanes.frame()
+        await ClockCycles(dut.clk_i, 3)
+        lanes.check_planes()
+        await lanes.run(80)
+        await lanes.run(150, ask=False)
+        assert not any(lanes.wanted)
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """Drop what is on its way; all places are free again."""
+    await start(dut, request_i=0, started_i=0)
+    for _ in range(10):
+        lanes = Lanes(dut, "random", "random")
+        lanes.frame()
+        await ClockCycles(dut.clk_i, 3)
+        await lanes.run(random.randrange(1, 60))
+        drive(dut, request_i=0, started_i=0)
+        await reset(dut)
