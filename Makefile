@@ -37,11 +37,11 @@ lint: $(VENV)/.installed $(VENV)/.tools
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
 
-# The registers as generated, the cocotb benches on two configurations, the formal proofs.
+# The registers as generated, the cocotb benches and what they cover, the formal proofs.
 hardware: $(VENV)/.hardware
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
 	git diff --exit-code -- rtl/generated board/registers.py
-	$(BIN)/python rtl/benches/run.py tiny lit4-narrow
+	$(BIN)/python rtl/benches/coverage.py
 	$(BIN)/python rtl/formal/prove.py
 
 docs: $(VENV)/.installed $(VENV)/.docs

@@ -42,7 +42,7 @@ class Build(NamedTuple):
 
 
 BUILDS = {
-    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator", "bench_registers")),
+    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator", "bench_registers", "bench_waveforms")),
     "lit4-narrow": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",), narrow=True),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
@@ -56,7 +56,7 @@ BUILDS = {
     "shader": Build("voxrt_shader", {"Flat": 1, "Given": 1}, ("bench_shader",)),
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
-    "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",), lines="user"),
+    "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
     "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),
     "traversal": Build(
@@ -110,7 +110,7 @@ def share_runtime(folder: Path) -> None:
     """Spare a build the compilation of Verilator's own files, which are the same in all."""
     folder.mkdir(parents=True, exist_ok=True)
     for other in sorted(BUILDS_FOLDER.glob("*/verilated_vpi.o")):
-        for compiled in other.parent.glob("verilat*.o"):
+        for compiled in other.parent.glob("verilated*.o"):
             if not (folder / compiled.name).exists():
                 shutil.copy2(compiled, folder)
 
