@@ -1,4 +1,4 @@
-"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default tiny and lit4-narrow.
+"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default lit and quad-narrow.
 
 A configuration's name with ``-narrow`` behind it builds it with multipliers of 18 x 18 bits.
 
@@ -60,7 +60,7 @@ def main() -> None:
     os.environ["MAKEFLAGS"] = "CFG_CXXFLAGS_PCH_I=-include"
     # The runner hands this path on to the simulator's Python.
     sys.path += [str(BENCHES), str(GENERATED), str(RTL.parent / "tests")]
-    for name in sys.argv[1:] or ["tiny", "lit4-narrow"]:
+    for name in sys.argv[1:] or ["lit", "quad-narrow"]:
         run(name)
 
 
