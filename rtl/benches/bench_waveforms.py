@@ -20,6 +20,11 @@ def show(title, rows):
     lines = [title]
     for name, values in rows.items():
         lines.append(f"{name:<{width}} |" + "|".join(f"{value:^{CELL}}" for value in values) + "|")
+    write(lines)
+
+
+def write(lines):
+    """Append lines to what is written."""
     with WRITTEN.open("a") as file:
         file.write("\n".join(lines) + "\n\n")
 
@@ -68,11 +73,11 @@ async def stream(dut):
     names = ("m_axis_tvalid", "m_axis_tready", "m_axis_tdata", "m_axis_tkeep", "m_axis_tuser", "m_axis_tlast")
     rows = {name: [] for name in names}
     for _ in range(10):
-        for name in rows:
-            valid = int(dut.m_axis_tvalid.value)
+        valid = int(dut.m_axis_tvalid.value)
+        for name, values in rows.items():
             digits = 8 if name == "m_axis_tdata" else 1
             always = name in {"m_axis_tvalid", "m_axis_tready"}
-            rows[name].append(number(getattr(dut, name), digits) if valid or always else "")
+            values.append(number(getattr(dut, name), digits) if valid or always else "")
         await RisingEdge(dut.clk_i)
     show("stream, a line of 6 pixels: 18 bytes in 5 words", rows)
 
@@ -106,8 +111,8 @@ async def frame_start(dut):
                 seen[name] = clock
     await writer
     assert list(seen) == list(events)
-    with WRITTEN.open("a") as file:
-        file.write("frame of 16 x 16 pixels, one lane\n")
-        for name, clock in seen.items():
-            file.write(f"{clock - seen['the frame is latched']:>5} {name}\n")
+    begin = seen["the frame is latched"]
+    write(
+        ["frame of 16 x 16 pixels, one lane, clocks", *(f"{clock - begin:>5} {name}" for name, clock in seen.items())]
+    )
     await ClockCycles(dut.clk_i, 2000)

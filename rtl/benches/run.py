@@ -42,8 +42,8 @@ class Build(NamedTuple):
 
 
 BUILDS = {
-    "tiny": Build(CORE, CONFIGURATIONS["tiny"], ("bench_pixel_generator", "bench_registers", "bench_waveforms")),
-    "lit4-narrow": Build(CORE, CONFIGURATIONS["lit4"], ("bench_pixel_generator",), narrow=True),
+    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_pixel_generator", "bench_registers", "bench_waveforms")),
+    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_pixel_generator",), narrow=True),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
