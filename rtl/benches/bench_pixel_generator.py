@@ -230,6 +230,43 @@ async def a_scene_is_swapped_between_frames(dut):
 
 
 @cocotb.test()
+async def scenes_are_swapped_by_their_roots_while_frames_go_on(dut):
+    """Write root at any clock, and words of the scene that is not traced; every frame shows one scene, whole."""
+    core = Core(dut)
+    await core.start()
+    worlds = [scene(9), scene(10)]
+    pictures = [render(world, CAMERA, 9, 7, COLOURS)[0] for world in worlds]
+    first, second = (words_of(world) for world in worlds)
+    base = (len(first) + 7) // 8 * 8
+    moved = [int(word) if word >> 31 else int(word) + base for word in second]
+    await core.load([*first, *[0] * (base - len(first)), *moved])
+    await core.set_frame(CAMERA, 9, 7, 3)
+    chance = random.Random(2)
+    core.ready = iter(lambda: chance.randrange(2), 2)
+    await core.write("control", continuous=1)
+    for number in range(10):
+        await core.write("root", address=base * (number % 2))
+        await core.write("status", frame_done=1)
+        for _ in range(2):
+            while not await core.read("status", "frame_done"):
+                pass
+            await core.write("status", frame_done=1)
+        if number % 2:
+            await core.load(first)
+        await ClockCycles(dut.clk_i, chance.randrange(200))
+    await core.write("control", hold=1)
+    while await core.read("status", "busy"):
+        pass
+    await ClockCycles(dut.clk_i, 100)
+    seen = []
+    while core.words:
+        picture = core.picture(9, 7)
+        seen.append([(picture == candidate).all() for candidate in pictures].index(True))
+    assert sum(a != b for a, b in itertools.pairwise(seen)) == 9
+    assert len(seen) >= 20
+
+
+@cocotb.test()
 async def a_camera_written_during_a_frame_shows_in_the_next(dut):
     """No torn frame."""
     core = Core(dut)

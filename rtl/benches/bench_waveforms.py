@@ -31,7 +31,7 @@ def write(lines):
 
 def number(signal, digits=8):
     """Read a signal as hexadecimal digits."""
-    return f"{signal.value.to_unsigned():0{digits}X}"
+    return f"{int(signal.value):0{digits}X}"
 
 
 @cocotb.test()
@@ -89,7 +89,9 @@ async def frame_start(dut):
     core.ready = itertools.repeat(1)
     await core.start()
     await core.load(words_of(scene(1)))
-    await core.set_frame(CAMERA, 16, 16, 3)
+    inside = CAMERA.copy()
+    inside[0] = [64, 64, 64]
+    await core.set_frame(inside, 16, 16, 3)
     rtu = dut.u_rtu
     events = {
         "the frame is latched": dut.start,
