@@ -38,7 +38,6 @@ class Build(NamedTuple):
     benches: tuple[str, ...]
     coverage: tuple[Path, ...] = ()  # Modules to bind.
     narrow: bool = False  # Multipliers of 18 x 18 bits.
-    lines: str = "line"  # What is counted.
 
 
 BUILDS = {
@@ -88,9 +87,9 @@ def run(name: str) -> None:
             "unique",
             "--x-initial",
             "unique",
-            f"--coverage-{build.lines}",
+            "--coverage-line",
             "-CFLAGS",
-            "-O1",
+            "-O0",
         ],
         build_dir=folder,
     )
