@@ -125,7 +125,7 @@ def lines_covered() -> list[str]:
     counts: Counter[tuple[str, int, str]] = Counter()
     for file, line, kind, count in points():
         place = file.removeprefix(f"{RTL}/")
-        if not place.startswith("coverage/"):
+        if not place.startswith("coverage/") and place != "voxrt_pkg.sv":
             counts[place, line, kind] += count
     table = [
         "| file | points | hit | | lines with a block or branch that no bench went through |",
@@ -171,7 +171,7 @@ def main() -> int:
             "Of all benches together: "
             + ", ".join(BUILDS)
             + ". `line if` and `line else` are branches, `elsif` chains count",
-            "each; what a generate block leaves out in every build has no points.",
+            "each; what a generate block leaves out in every build has no points, and voxrt_pkg.sv's functions give constants.",
             "",
             *lines_covered(),
             "",
