@@ -2,6 +2,7 @@
 
 #include "boundary_loops.h"
 #include "inside_probes.h"
+#include "vertex_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,24 +17,6 @@ constexpr double kClosed = 0.87;  // pieces close one another where this share o
 constexpr double kRoom = 0.75; // what stands open encloses something where this share does not; a plain sheet does not
 
 constexpr double kLeastOpening = 1e-300; // of a piece that does not close
-
-class Groups {
-public:
-    explicit Groups(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t of(uint32_t i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = of(a);
-        b = of(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
 
 /// Area, as a vector along the normal.
 Point area(const Point& a, const Point& b, const Point& c) {
@@ -161,7 +144,7 @@ private:
     const MeshView& mesh_;
     const std::vector<Point>& points_;
     std::vector<uint32_t> welded_;
-    Groups groups_;
+    VertexGroups groups_;
     std::vector<BoundaryLoop> loops_;
     std::vector<double> own_, opening_; // by piece: area of the surface, of its largest loop closed
 };

@@ -44,7 +44,21 @@ struct SharedMesh {
     bool closed = false;
     double volume6 = 0;
     std::shared_ptr<const Boundary> boundary; // where not closed
+    std::shared_ptr<const TurnedPieces> turned;
 };
+
+/// Points in a lattice of their own: so fine that those of a float32 file stay apart.
+std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& low, const Point& high) {
+    const double scale = double(kReach) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
+    std::vector<Vertex> vertices;
+    vertices.reserve(points.size());
+    auto whole = [scale](double v, double from) {
+        return int32_t(std::clamp(std::nearbyint((v - from) * scale), 0.0, double(kReach)));
+    };
+    for (const Point& p : points)
+        vertices.push_back({whole(p.x, low.x), whole(p.y, low.y), whole(p.z, low.z)});
+    return vertices;
+}
 
 SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     SharedMesh shared;
@@ -73,6 +87,8 @@ SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     shared.closed = sum == 0;
     if (fill && !shared.closed)
         shared.boundary = std::make_shared<const Boundary>(find_boundary(mesh, points));
+    if (shared.closed || fill)
+        shared.turned = find_turned_pieces(mesh, in_lattice(points, shared.low, shared.high), shared.boundary.get());
     return shared;
 }
 
@@ -192,7 +208,13 @@ private:
             mesh.box.low[i] = voxel_floor(sum.bounds.min[i]);
             mesh.box.high[i] = voxel_below(sum.bounds.max[i]);
         }
-        if (!fill_ || mesh.closed)
+        if (mesh.closed) {
+            mesh.turned = shared != nullptr ? shared->turned : find_turned_pieces(*part.mesh, mesh.vertices, nullptr);
+            if (mesh.turned)
+                mesh.inverted = shared != nullptr && determinant(part.frame) < 0;
+            return;
+        }
+        if (!fill_)
             return;
         auto boundary = shared != nullptr ? shared->boundary : nullptr;
         if (!boundary) {
@@ -201,6 +223,8 @@ private:
                 points[v] = in_voxels(mesh.vertices[v]);
             boundary = std::make_shared<const Boundary>(find_boundary(*part.mesh, points));
         }
+        mesh.turned =
+            shared != nullptr ? shared->turned : find_turned_pieces(*part.mesh, mesh.vertices, boundary.get());
         mesh.open = std::make_unique<OpenSurface>(std::move(boundary), at);
     }
 

@@ -107,6 +107,7 @@ private:
         const MeshView& mesh = *part.mesh;
         layer.set_material(part.material);
         const OpenSurface* open = surveyed.open.get();
+        const TurnedPieces* turned = surveyed.turned.get();
         auto close = [&](size_t cap) {
             const auto& [a, b, c] = open->caps[cap];
             cross_triangle(a, b, c, window, layer);
@@ -119,6 +120,8 @@ private:
             auto add_to = [&](auto& sink) {
                 if (open != nullptr && open->is_shell_only(t))
                     cover_triangle<false>(a, b, c, window, false, sink);
+                else if (turned != nullptr && turned->is_turned(t))
+                    cover_triangle<Cross>(a, c, b, window, surveyed.inverted, sink);
                 else
                     cover_triangle<Cross>(a, b, c, window, surveyed.inverted, sink);
             };
@@ -279,6 +282,14 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
     for (size_t p = 0; fill && p < parts.size(); ++p)
         if (parts[p].kind == PartKind::mesh && !survey.meshes[p].closed)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::winding);
+    out.object_turned.allocate(objects);
+    std::fill_n(out.object_turned.data.get(), objects, 0);
+    for (size_t p = 0; p < parts.size(); ++p)
+        if (survey.meshes[p].turned) {
+            out.object_turned.data[parts[p].object] += survey.meshes[p].turned->count;
+            if (survey.meshes[p].closed && fill)
+                out.object_modes.data[parts[p].object] = uint8_t(Mode::turned);
+        }
     for (size_t p = 0; fill && p < parts.size(); ++p)
         if (parts[p].kind == PartKind::mesh && survey.meshes[p].open && survey.meshes[p].open->boundary->stands_open)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::open);
