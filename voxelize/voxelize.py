@@ -71,9 +71,9 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what surfaces enclose, holes or not, whichever way each closed piece faces, but not what stands open: a connected piece of an object
-        of which one opening is larger than 15 % of its area, unless other pieces close it. ``"surface"`` keeps shells
-        alone.
+        ``"solid"`` fills what surfaces enclose, holes or not and whichever way each closed piece faces, but not what
+        stands open: a connected piece of an object of which one opening is larger than 15 % of its area, unless other
+        pieces close it. ``"surface"`` keeps shells alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).

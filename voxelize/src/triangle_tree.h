@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace voxrt {
@@ -35,6 +35,12 @@ struct TriangleBox {
                 return false;
         return true;
     }
+    bool holds(const TriangleBox& box) const {
+        for (int i = 0; i < 3; ++i)
+            if (low[i] > box.low[i] || high[i] < box.high[i])
+                return false;
+        return true;
+    }
     /// Its volume; no box within is larger.
     double size() const {
         double product = 1;
@@ -46,14 +52,13 @@ struct TriangleBox {
 
 class TriangleTree {
 public:
-    explicit TriangleTree(std::vector<TriangleBox> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-        for (size_t i = 0; i < order_.size(); ++i)
-            order_[i] = uint32_t(i);
-        if (!order_.empty())
-            build(0, uint32_t(order_.size()));
+    /// Takes triangles as their boxes and numbers.
+    explicit TriangleTree(std::vector<std::pair<TriangleBox, uint32_t>> triangles) : triangles_(std::move(triangles)) {
+        if (!triangles_.empty())
+            build(0, uint32_t(triangles_.size()));
     }
 
-    /// Calls visit(i) for every triangle whose box meets `box`.
+    /// Calls visit(number) for every triangle whose box meets `box`.
     template <class Visit> void find(const TriangleBox& box, Visit&& visit) const {
         uint32_t stack[64];
         int depth = 0;
@@ -69,8 +74,8 @@ public:
                 continue;
             }
             for (uint32_t i = node.first; i < node.last; ++i)
-                if (boxes_[order_[i]].meets(box))
-                    visit(order_[i]);
+                if (triangles_[i].first.meets(box))
+                    visit(triangles_[i].second);
         }
     }
 
@@ -79,7 +84,7 @@ private:
 
     struct Node {
         TriangleBox box;
-        uint32_t first, last; // of order_
+        uint32_t first, last; // of triangles_
         uint32_t right = 0;   // the left child is the next node; 0 in a leaf
     };
 
@@ -87,7 +92,7 @@ private:
         const auto index = uint32_t(nodes_.size());
         nodes_.push_back({{}, first, last});
         for (uint32_t i = first; i < last; ++i)
-            nodes_[index].box.add(boxes_[order_[i]]);
+            nodes_[index].box.add(triangles_[i].first);
         if (last - first <= kLeaf)
             return index;
         const TriangleBox& box = nodes_[index].box;
@@ -96,10 +101,10 @@ private:
             if (int64_t{box.high[i]} - box.low[i] > int64_t{box.high[axis]} - box.low[axis])
                 axis = i;
         const uint32_t half = first + (last - first) / 2;
-        std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + last,
-                         [&](uint32_t a, uint32_t b) {
-                             return int64_t{boxes_[a].low[axis]} + boxes_[a].high[axis] <
-                                    int64_t{boxes_[b].low[axis]} + boxes_[b].high[axis];
+        std::nth_element(triangles_.begin() + first, triangles_.begin() + half, triangles_.begin() + last,
+                         [axis](const auto& a, const auto& b) {
+                             return int64_t{a.first.low[axis]} + a.first.high[axis] <
+                                    int64_t{b.first.low[axis]} + b.first.high[axis];
                          });
         build(first, half);
         const uint32_t right = build(half, last);
@@ -107,8 +112,7 @@ private:
         return index;
     }
 
-    std::vector<TriangleBox> boxes_;
-    std::vector<uint32_t> order_;
+    std::vector<std::pair<TriangleBox, uint32_t>> triangles_;
     std::vector<Node> nodes_;
 };
 

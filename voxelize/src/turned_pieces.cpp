@@ -4,12 +4,14 @@
 #include "triangle_tree.h"
 #include "vertex_groups.h"
 
-#include <unordered_map>
+#include <bit>
 
 namespace voxrt {
 namespace {
 
-constexpr uint32_t kNoPiece = 0xFFFF'FFFF;
+constexpr uint32_t kNoPiece = 0xFFFF'FFFF, kNoVertex = 0xFFFF'FFFF;
+constexpr size_t kFewPieces = 512; // each looked at beside each
+constexpr size_t kRun = 16;        // triangles looked up at once
 
 using Corners = std::array<uint32_t, 3>;
 
@@ -119,10 +121,11 @@ public:
     }
 
     void settle() {
-        std::vector<TriangleBox> boxes(count());
-        for (size_t t = 0; t < count(); ++t)
-            if (counts(t))
-                boxes[t] = box_of(uint32_t(t));
+        std::vector<std::pair<TriangleBox, uint32_t>> boxes;
+        for (uint32_t i = 0; i < pieces_.size(); ++i)
+            if (may_be_around(i))
+                for (const uint32_t t : pieces_[i].triangles)
+                    boxes.push_back({box_of(t), t});
         const TriangleTree tree(std::move(boxes));
         std::vector<uint32_t> order(pieces_.size());
         for (uint32_t i = 0; i < order.size(); ++i)
@@ -184,6 +187,15 @@ private:
         const int32_t* c = mesh_.triangles.data() + 3 * t;
         return {uint32_t(c[0]), uint32_t(c[1]), uint32_t(c[2])};
     }
+    /// False where no other piece's box is in its own.
+    bool may_be_around(uint32_t own) const {
+        if (pieces_.size() > kFewPieces)
+            return true;
+        for (uint32_t i = 0; i < pieces_.size(); ++i)
+            if (i != own && pieces_[own].box.holds(pieces_[i].box))
+                return true;
+        return false;
+    }
     TriangleBox box_of(uint32_t t) const {
         TriangleBox box;
         for (const uint32_t v : corners(t))
@@ -203,13 +215,16 @@ private:
         for (uint32_t v = 0; v < vertices_.size(); ++v)
             if (sums[groups_.of(v)] != 0)
                 loose.push_back(v);
-        struct Hash {
-            size_t operator()(const Vertex& v) const { return vertex_key(v); }
-        };
-        std::unordered_map<Vertex, uint32_t, Hash> first;
-        first.reserve(loose.size());
-        for (const uint32_t v : loose)
-            groups_.join(first.try_emplace(vertices_[v], v).first->second, v);
+        std::vector<uint32_t> first(std::bit_ceil(2 * loose.size() + 1), kNoVertex); // by hash, then the next place
+        for (const uint32_t v : loose) {
+            size_t place = vertex_key(vertices_[v]) & (first.size() - 1);
+            while (first[place] != kNoVertex && !(vertices_[first[place]] == vertices_[v]))
+                place = (place + 1) & (first.size() - 1);
+            if (first[place] == kNoVertex)
+                first[place] = v;
+            else
+                groups_.join(first[place], v);
+        }
     }
 
     /// The pieces' winding numbers about a vertex, by the triangles above it.
@@ -245,27 +260,44 @@ private:
 
     std::vector<Around> find_around(uint32_t own, const TriangleTree& tree) const {
         const Piece& piece = pieces_[own];
-        std::vector<Around> around; // what is around all vertices up to here
-        for (size_t i = 0; i < piece.vertices.size(); ++i) {
-            const std::vector<Around> here = look_up(own, piece.vertices[i], tree);
-            if (i == 0)
-                around = here;
+        std::vector<Around> around = look_up(own, piece.vertices[0], tree);
+        // What is near none of a triangle is around all of it, or none of it.
+        std::vector<uint32_t> near;
+        for (size_t from = 0; from < piece.triangles.size() && !around.empty(); from += kRun) {
+            const size_t to = std::min(from + kRun, piece.triangles.size());
+            TriangleBox box;
+            for (size_t i = from; i < to; ++i)
+                box.add(box_of(piece.triangles[i]));
+            near.clear();
+            tree.find(box, [&](uint32_t t) {
+                if (std::any_of(around.begin(), around.end(),
+                                [&](const Around& one) { return one.piece == piece_of_[t]; }))
+                    near.push_back(t);
+            });
+            for (size_t i = from; i < to && !near.empty(); ++i)
+                keep_around(own, corners(piece.triangles[i]), near, tree, around);
+        }
+        return around;
+    }
+
+    /// Keeps what is around a triangle as well.
+    void keep_around(uint32_t own, const Corners& c, const std::vector<uint32_t>& near, const TriangleTree& tree,
+                     std::vector<Around>& around) const {
+        for (const uint32_t v : c) {
+            const std::vector<Around> here = look_up(own, v, tree);
             std::erase_if(around, [&](const Around& one) {
                 return std::none_of(here.begin(), here.end(), [&](const Around& other) {
                     return other.piece == one.piece && other.winding == one.winding;
                 });
             });
-            if (around.empty())
-                return around;
         }
-        for (size_t i = 0; i < piece.triangles.size() && !around.empty(); ++i) {
-            const Corners c = corners(piece.triangles[i]);
-            tree.find(box_of(piece.triangles[i]), [&](uint32_t t) {
+        TriangleBox box;
+        for (const uint32_t v : c)
+            box.add(vertices_[v]);
+        for (const uint32_t t : near)
+            if (box.meets(box_of(t)))
                 std::erase_if(around,
                               [&](const Around& one) { return one.piece == piece_of_[t] && cross(c, corners(t)); });
-            });
-        }
-        return around;
     }
 
     bool cross(const Corners& c, const Corners& d) const {
