@@ -27,6 +27,7 @@ struct Tally {
 Tally tally(const MeshView& mesh, const std::vector<Vertex>& vertices, size_t from, size_t to) {
     Tally sum;
     const Vertex& origin = vertices[mesh.triangles[0]];
+    pulse(5 * uint32_t(to - from));
     for (size_t t = from; t < to; ++t) {
         const int32_t* corner = mesh.triangles.data() + 3 * t;
         const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
@@ -75,6 +76,7 @@ SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     const Point& o = points[mesh.triangles[0]];
     uint64_t sum = 0;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        pulse(5);
         const int32_t* corner = mesh.triangles.data() + 3 * t;
         sum += boundary_key(keys[corner[0]], keys[corner[1]], keys[corner[2]]);
         shared.volume6 += volume6(points[corner[0]], points[corner[1]], points[corner[2]], o);

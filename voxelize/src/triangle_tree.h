@@ -4,6 +4,7 @@
 #pragma once
 
 #include "fixed_point.h"
+#include "parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -65,6 +66,7 @@ public:
         if (!nodes_.empty())
             stack[depth++] = 0;
         while (depth > 0) {
+            pulse(1);
             const Node& node = nodes_[stack[--depth]];
             if (!node.box.meets(box))
                 continue;
@@ -89,6 +91,7 @@ private:
     };
 
     uint32_t build(uint32_t first, uint32_t last) {
+        pulse(last - first);
         const auto index = uint32_t(nodes_.size());
         nodes_.push_back({{}, first, last});
         for (uint32_t i = first; i < last; ++i)

@@ -71,6 +71,7 @@ public:
         size_t joins = 0;
         for (size_t t = 0; t < count(); ++t)
             if (counts(t)) {
+                pulse(1);
                 const Corners c = corners(t);
                 joins += groups_.join(c[0], c[1]);
                 joins += groups_.join(c[0], c[2]);
@@ -88,6 +89,7 @@ public:
         for (size_t t = 0; t < count(); ++t) {
             if (!counts(t))
                 continue;
+            pulse(5);
             const Corners c = corners(t);
             uint32_t& piece = piece_at[groups_.of(c[0])];
             if (piece == kNoPiece) {
@@ -207,6 +209,7 @@ private:
     void weld() {
         std::vector<uint64_t> sums(vertices_.size(), 0);
         for (size_t t = 0; t < mesh_.triangle_count(); ++t) {
+            pulse(5);
             const auto [a, b, c] = corners(t);
             sums[groups_.of(a)] +=
                 boundary_key(vertex_key(vertices_[a]), vertex_key(vertices_[b]), vertex_key(vertices_[c]));
@@ -217,6 +220,7 @@ private:
                 loose.push_back(v);
         std::vector<uint32_t> first(std::bit_ceil(2 * loose.size() + 1), kNoVertex); // by hash, then the next place
         for (const uint32_t v : loose) {
+            pulse(5);
             size_t place = vertex_key(vertices_[v]) & (first.size() - 1);
             while (first[place] != kNoVertex && !(vertices_[first[place]] == vertices_[v]))
                 place = (place + 1) & (first.size() - 1);

@@ -101,6 +101,14 @@ private:
         (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
+    /// At most, in a tile.
+    static uint32_t columns_under(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const int64_t x = int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x});
+        const int64_t y = int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y});
+        auto voxels = [](int64_t extent) { return std::min<uint32_t>(uint32_t(extent >> kFractionBits), kTileSide); };
+        return voxels(x) * voxels(y);
+    }
+
     template <bool Cross>
     void cover(const PartView& part, const SurveyedMesh& surveyed, const std::vector<Vertex>& vertices,
                std::span<const Item> items, const Window& window, ObjectLayer& layer) const {
@@ -109,12 +117,14 @@ private:
         const OpenSurface* open = surveyed.open.get();
         const TurnedPieces* turned = surveyed.turned.get();
         auto close = [&](size_t cap) {
+            pulse(10);
             const auto& [a, b, c] = open->caps[cap];
             cross_triangle(a, b, c, window, layer);
         };
         auto add = [&](size_t t) {
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            pulse(10 + columns_under(a, b, c));
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
             auto add_to = [&](auto& sink) {
@@ -146,6 +156,7 @@ private:
         const int64_t x0 = window.x0 * kUnit, x1 = (window.x1 + 1) * kUnit;
         const int64_t y0 = window.y0 * kUnit, y1 = (window.y1 + 1) * kUnit;
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            pulse(1);
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (std::max({a.x, b.x, c.x}) >= x0 && std::min({a.x, b.x, c.x}) <= x1 && std::max({a.y, b.y, c.y}) >= y0 &&
