@@ -157,7 +157,7 @@ public:
             sum.boundary = shared->closed ? 0 : 1;
             sum.volume6 = shared->volume6 * determinant(part.frame);
             if (stays_whole(sum.bounds, triangle_count)) {
-                conclude(mesh, part, sum, shared, [&](uint32_t v) { return snap_vertex(part, v); });
+                conclude(mesh, part, sum, shared);
                 list_whole(emit(), sum.bounds, index);
                 return;
             }
@@ -179,7 +179,9 @@ public:
         });
         for (const Tally& t : tallies)
             sum.add(t);
-        conclude(mesh, part, sum, shared, [&](uint32_t v) { return mesh.vertices[v]; });
+        conclude(mesh, part, sum, shared);
+        if (mesh.boundary)
+            mesh.open = std::make_unique<OpenSurface>(mesh.boundary, [&](uint32_t v) { return mesh.vertices[v]; });
         if (stays_whole(sum.bounds, triangle_count)) {
             mesh.vertices = {};
             list_whole(emit(), sum.bounds, index);
@@ -202,8 +204,7 @@ private:
     }
 
     /// Draws the conclusions; an open part to be filled is looked at closely.
-    template <class At>
-    void conclude(SurveyedMesh& mesh, const PartView& part, const Tally& sum, const SharedMesh* shared, At&& at) const {
+    void conclude(SurveyedMesh& mesh, const PartView& part, const Tally& sum, const SharedMesh* shared) const {
         mesh.closed = sum.boundary == 0;
         mesh.inverted = mesh.closed && sum.volume6 < 0;
         for (int i = 0; i < 3; ++i) {
@@ -227,7 +228,7 @@ private:
         }
         mesh.turned =
             shared != nullptr ? shared->turned : find_turned_pieces(*part.mesh, mesh.vertices, boundary.get());
-        mesh.open = std::make_unique<OpenSurface>(std::move(boundary), at);
+        mesh.boundary = std::move(boundary);
     }
 
     void list_triangles(std::vector<TiledItem>& out, const MeshView& mesh, const std::vector<Vertex>& vertices,

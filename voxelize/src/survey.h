@@ -26,7 +26,8 @@ struct SurveyedMesh {
     bool closed = false;
     bool inverted = false; // closed, its normals pointing inside
     VoxelBox box{};
-    std::unique_ptr<OpenSurface> open;          // where not closed and to be filled
+    std::shared_ptr<const Boundary> boundary;   // where not closed and to be filled
+    std::unique_ptr<OpenSurface> open;          // the same; null in an instance whose tiles make it themselves
     std::shared_ptr<const TurnedPieces> turned; // null where none is; the rest is then as `inverted` says
 };
 

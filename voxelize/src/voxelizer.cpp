@@ -6,6 +6,8 @@
 #include "tile_order.h"
 #include "tint.h"
 
+#include <optional>
+
 namespace voxrt {
 namespace {
 
@@ -83,19 +85,25 @@ private:
         }
         s.layer.start(window.x0, window.y0);
         Lap lap;
+        // What every instance kept of its holes would be more than all the rest.
+        std::optional<OpenSurface> own;
+        if (!surveyed.open && surveyed.boundary)
+            own.emplace(surveyed.boundary, [vertices](uint32_t v) { return (*vertices)[v]; });
+        const OpenSurface* open = own ? &*own : surveyed.open.get();
+        s.seconds.holes += lap();
         if (fill_)
-            cover<true>(part, surveyed, *vertices, items, window, s.layer);
+            cover<true>(part, surveyed, open, *vertices, items, window, s.layer);
         else
-            cover<false>(part, surveyed, *vertices, items, window, s.layer);
+            cover<false>(part, surveyed, open, *vertices, items, window, s.layer);
         s.seconds.coverage += lap();
-        const bool has_holes = surveyed.open && !surveyed.open->holes.empty();
+        const bool has_holes = open != nullptr && !open->holes.empty();
         if (s.layer.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim =
-            !fill_      ? s.fill.claim_shell(s.tile, s.layer)
-            : has_holes ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes, surveyed.box, window)
-                        : s.fill.claim_solid(s.tile, s.layer, interior);
+        const Claim claim = !fill_ ? s.fill.claim_shell(s.tile, s.layer)
+                            : has_holes
+                                ? s.fill.claim_open_solid(s.tile, s.layer, interior, open->holes, surveyed.box, window)
+                                : s.fill.claim_solid(s.tile, s.layer, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.complex[index] |= !claim.simple;
         (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
@@ -110,11 +118,11 @@ private:
     }
 
     template <bool Cross>
-    void cover(const PartView& part, const SurveyedMesh& surveyed, const std::vector<Vertex>& vertices,
-               std::span<const Item> items, const Window& window, ObjectLayer& layer) const {
+    void cover(const PartView& part, const SurveyedMesh& surveyed, const OpenSurface* open,
+               const std::vector<Vertex>& vertices, std::span<const Item> items, const Window& window,
+               ObjectLayer& layer) const {
         const MeshView& mesh = *part.mesh;
         layer.set_material(part.material);
-        const OpenSurface* open = surveyed.open.get();
         const TurnedPieces* turned = surveyed.turned.get();
         auto close = [&](size_t cap) {
             pulse(10);
@@ -302,7 +310,7 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
                 out.object_modes.data[parts[p].object] = uint8_t(Mode::turned);
         }
     for (size_t p = 0; fill && p < parts.size(); ++p)
-        if (parts[p].kind == PartKind::mesh && survey.meshes[p].open && survey.meshes[p].open->boundary->stands_open)
+        if (parts[p].kind == PartKind::mesh && survey.meshes[p].boundary && survey.meshes[p].boundary->stands_open)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::open);
     scratch.clear();
     survey = {}; // memory stands highest in what follows
