@@ -116,7 +116,7 @@ def rtl_device():
 
 def test_every_width_of_the_stream():
     device, model = rtl_device(), ModelDevice()
-    scene = board_scene(rom_of("world", 5))
+    scene = board_scene(Blob(rom_of("world", 5)))
     for either in (device, model):
         SceneMemory(either).swap(scene, ignore)
     for columns in (1, 2, 3, 4, 5, 7, 31):
@@ -133,7 +133,7 @@ def test_an_unknown_configuration():
 
 def test_a_frame_from_another_thread_and_a_dropped_one(monkeypatch):
     device = rtl_device()
-    scene = board_scene(rom_of("world", 6))
+    scene = board_scene(Blob(rom_of("world", 6)))
     SceneMemory(device).swap(scene, ignore)
     view = View(refit(scene.camera, (640, 480), SIZE), SIZE)
     with ThreadPoolExecutor(1) as pool:
