@@ -5,8 +5,8 @@
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned DistanceBits = 18,
-  localparam int unsigned TimeBits     = DistanceBits + WeightBits
+  parameter int unsigned DistanceBits = 18,
+  parameter int unsigned TimeBits     = DistanceBits + WeightBits  // Fewer: T modulo 2**TimeBits.
 ) (
   input  logic                           clk_i,
   input  logic signed [DistanceBits-1:0] distance_i,  // Plane minus origin, 1/16 voxel.

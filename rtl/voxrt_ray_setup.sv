@@ -8,6 +8,9 @@
 // An axis on which the ray does not move is dead: its planes are crossed before the start or never. Setting the
 // fraction of its origin to 15/16 keeps planes and origin apart, so that the sign of T alone tells which.
 //
+// Shadow rays share the pipeline (Light): each has an origin of its own, in 1/32 voxel and in the world, and its entry key
+// is (0, FaceNone). A lane reads one word in four turns or so for them; one setup has time for both kinds.
+//
 // Pipeline: sign and size | multiply | weight | plane 0: multiply | sum | compare | entry key | compare | out.
 module voxrt_ray_setup
   import voxrt_pkg::*;
@@ -15,8 +18,12 @@ module voxrt_ray_setup
   parameter  int unsigned MaxDepth     = 10,
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned Lanes        = 1,
+  parameter  int unsigned TagBits      = 8,
+  parameter  bit          Light        = 1'b0,
+  localparam int unsigned LitBits      = MaxDepth + LitFractionBits + 2,
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
   localparam int unsigned TimeBits     = DistanceBits + WeightBits,
+  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
 ) (
   input  logic                           clk_i,
@@ -25,12 +32,17 @@ module voxrt_ray_setup
   input  logic signed [DistanceBits-1:0] origin_i          [3],
   input  logic signed [DistanceBits-1:0] mirrored_origin_i [3],  // 16 * side - origin.
   input  logic        [   DepthBits-1:0] depth_i,
+  input  logic        [      MaxDepth:0] world_i,                // One-hot: the world's side.
   input  logic                           root_leaf_i,            // The whole world is one leaf ...
   input  material_t                      root_material_i,        // ... of this material.
   // Directions, each for one lane (one-hot).
   input  logic                           valid_i,
   input  logic        [       Lanes-1:0] lane_i,
   input  logic signed [    ScanBits-1:0] direction_i       [3],
+  input  logic                           shadow_i,               // A shadow ray, from ...
+  input  logic signed [     LitBits-1:0] lit_i             [3],  // ... this point, 1/32 voxel, grid frame.
+  input  logic                           dark_i,                 // Not to be traced.
+  input  logic        [     TagBits-1:0] tag_i,
   // Rays, in the same order.
   output logic                           valid_o,
   output logic        [       Lanes-1:0] lane_o,
@@ -41,8 +53,12 @@ module voxrt_ray_setup
   output logic        [             2:0] dead_o,
   output logic        [             2:0] octant_o,               // First octant of the root, mirrored frame.
   output logic        [  WeightBits-1:0] weight_o          [3],
-  output logic signed [    TimeBits-1:0] entry_time_o,
-  output face_e                          entry_face_o
+  output logic        [     KeyBits-1:0] entry_time_o,            // As lanes compare it.
+  output face_e                          entry_face_o,
+  output logic signed [DistanceBits-1:0] origin_o          [3],  // Mirrored frame.
+  output logic                           shadow_o,
+  output logic                           lit_o,                  // The answer, of a shadow ray that is resolved.
+  output logic        [     TagBits-1:0] tag_o
 );
   localparam int unsigned Stages = 9;
 
@@ -66,6 +82,57 @@ module voxrt_ray_setup
       if (valid_q[s-1]) weight_q[s] <= weight_q[s-1];
     end
     lane_q[1] <= lane_i;
+  end
+
+  // Shadow rays.
+  logic signed [DistanceBits-1:0] origin2[3];
+  logic                           shadow3, dark8, dark9;
+
+  if (Light) begin : gen_light
+    logic        [  Stages:1] shadow_q, dark_q;
+    logic        [TagBits-1:0] tag_q[1:Stages];
+    logic signed [LitBits-1:0] lit_q[1:Stages][3];
+
+    always_ff @(posedge clk_i) begin
+      shadow_q <= {shadow_q[Stages-1:1], shadow_i};
+      dark_q   <= {dark_q[Stages-1:1], dark_i};
+      tag_q[1] <= tag_i;
+      lit_q[1] <= lit_i;
+      for (int unsigned s = 2; s <= Stages; s++) begin
+        tag_q[s] <= tag_q[s-1];
+        lit_q[s] <= lit_q[s-1];
+      end
+      for (int unsigned a = 0; a < 3; a++) lit_q[3][a] <= LitBits'(origin2[a]);
+    end
+
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        origin2[a]  = mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a];
+        origin_o[a] = mirrored_q[Stages][a] ? mirrored_origin_i[a] : origin_i[a];
+        if (shadow_q[2]) begin
+          origin2[a] = DistanceBits'(lit_q[2][a]);
+          if (mirrored_q[2][a]) origin2[a] = DistanceBits'({world_i, LitFractionBits'(0)}) - DistanceBits'(lit_q[2][a]);
+        end
+        if (shadow_q[Stages]) origin_o[a] = DistanceBits'(lit_q[Stages][a]);
+      end
+    end
+
+    assign shadow3  = shadow_q[3];
+    assign shadow_o = shadow_q[9];
+    assign dark8    = dark_q[8];
+    assign dark9    = dark_q[9];
+    assign tag_o    = tag_q[9];
+  end else begin : gen_no_light
+    logic unused_light;
+    assign unused_light = &{shadow_i, dark_i, tag_i, lit_i[0], lit_i[1], lit_i[2], world_i};
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        origin2[a]  = mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a];
+        origin_o[a] = mirrored_q[Stages][a] ? mirrored_origin_i[a] : origin_i[a];
+      end
+    end
+    assign {shadow3, shadow_o, dark8, dark9} = '0;
+    assign tag_o = '0;
   end
 
   // 1: sign and size.
@@ -105,8 +172,7 @@ module voxrt_ray_setup
     if (valid_q[2]) begin
       weight_q[3] <= product_q;
       for (int unsigned a = 0; a < 3; a++) begin
-        distance_q[a] <= -((mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a]) |
-                           DistanceBits'(dead_q[2][a] ? 2 ** FractionBits - 1 : 0));
+        distance_q[a] <= -(origin2[a] | DistanceBits'(dead_q[2][a] ? 2 ** FractionBits - 1 : 0));
       end
     end
   end
@@ -128,7 +194,7 @@ module voxrt_ray_setup
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      if (valid_q[3]) half_span_q[4][a] <= TimeBits'(weight_q[3][a]) << (FractionBits - 1);
+      if (valid_q[3]) half_span_q[4][a] <= TimeBits'(weight_q[3][a]) << (shadow3 ? FractionBits : FractionBits - 1);
       if (valid_q[4]) half_span_q[5][a] <= half_span_q[4][a] << depth_i;
     end
   end
@@ -160,7 +226,8 @@ module voxrt_ray_setup
   end
 
   // 7: the entry key, the last near plane that is ahead.
-  logic signed [TimeBits-1:0] entry_time_q[7:9];
+  logic signed [TimeBits-1:0] entry_time_q[7:8];
+  logic        [KeyBits-1:0]  entry_time9_q;
   face_e                      entry_face_q[7:9];
   logic [2:0]                 enters;
   logic [9:7]                 outside_q;
@@ -205,10 +272,10 @@ module voxrt_ray_setup
   // 9: out.
   always_ff @(posedge clk_i) begin
     if (valid_q[8]) begin
-      entry_time_q[9]  <= entry_time_q[8];
+      entry_time9_q    <= KeyBits'(entry_time_q[8]);
       entry_face_q[9]  <= entry_face_q[8];
       past_middle_q[9] <= past_middle_q[8];
-      outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8];
+      outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8] || dark8;
     end
   end
 
@@ -220,8 +287,9 @@ module voxrt_ray_setup
   assign dead_o       = dead_q[9];
   assign octant_o     = past_middle_q[9];
   assign weight_o     = weight_q[9];
-  assign entry_time_o = entry_time_q[9];
+  assign entry_time_o = entry_time9_q;
   assign entry_face_o = entry_face_q[9];
+  assign lit_o        = !dark9 && !overflow_q[9];
 
   always_comb begin
     pixel_o = '{material: '0, face: FaceNone};

@@ -1,6 +1,8 @@
 // From materials and faces to colours, exact to the last bit, one pixel a clock:
 //   colour = round half up (c * d_a**2 / |d|**2), a the axis crossed, d the ray's direction
-// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour.
+// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour; so have
+// all when Flat is built in and asked for. With Given, voxrt_brightness may say otherwise for a pixel: another factor, and
+// sums of colours in the place of the material's.
 //
 // Directions are made again by a second ray generator, in pixel order: nothing of the ray but material and face need
 // come through the lanes. The pipeline never stops; a pixel enters when the FIFO behind has a place for it.
@@ -8,7 +10,10 @@
 // Pipeline: direction, material | sizes | squares | sums | colour x square | dividend | 8 digits | FIFO.
 module voxrt_shader
   import voxrt_pkg::*;
-(
+#(
+  parameter bit Flat  = 1'b0,
+  parameter bit Given = 1'b0
+) (
   input  logic                         clk_i,
   input  logic                         rst_ni,
   // Frame, as voxrt_ray_generator wants it.
@@ -26,6 +31,8 @@ module voxrt_shader
   input  logic                         valid_i,
   output logic                         ready_o,
   input  pixel_t                       pixel_i,
+  input  brightness_t                  brightness_i,
+  input  logic                         flat_i,                 // Held during a frame.
   // Pixels out.
   output logic                         valid_o,
   input  logic                         ready_i,
@@ -35,7 +42,6 @@ module voxrt_shader
   output logic                         line_end_o,
   output logic                         last_o                  // Of the frame.
 );
-  localparam int unsigned SquareBits = 2 * DirectionBits;
   localparam int unsigned SumBits = SquareBits + 2;
   localparam int unsigned Setup = 7;
   localparam int unsigned Stages = Setup + 8;
@@ -92,17 +98,28 @@ module voxrt_shader
   end
 
   // 1 direction, material.
+  // Of a channel: a colour, or a sum of colours.
+  localparam int unsigned ChannelBits = Given ? ColourSumBits : 8;
+
   colour_t                    table_q[256];
-  colour_t                    colour_q[1:4];
+  colour_t                    colour1_q;
+  logic [2:0][ChannelBits-1:0] channel_q[2:4];  // Red is 0.
+  brightness_t                brightness_q[1:3];
   logic signed [ScanBits-1:0] direction1_q[3];
 
   always_ff @(posedge clk_i) begin
     if (table_write_i) table_q[table_material_i] <= table_colour_i;
     if (enters) begin
-      colour_q[1]  <= table_q[pixel_i.material];
-      direction1_q <= direction;
+      colour1_q       <= table_q[pixel_i.material];
+      brightness_q[1] <= Given ? brightness_i : '0;
+      direction1_q    <= direction;
     end
-    for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) colour_q[s] <= colour_q[s-1];
+    if (valid_q[1]) begin
+      channel_q[2] <= {ChannelBits'(colour1_q.blue), ChannelBits'(colour1_q.green), ChannelBits'(colour1_q.red)};
+      if (Given && brightness_q[1].sum_given) channel_q[2] <= $bits(channel_q[2])'(brightness_q[1].sum);
+    end
+    for (int unsigned s = 3; s <= 4; s++) if (valid_q[s-1]) channel_q[s] <= channel_q[s-1];
+    for (int unsigned s = 2; s <= 3; s++) if (valid_q[s-1]) brightness_q[s] <= brightness_q[s-1];
   end
 
   // 2 sizes, 3 squares, 4 registered for the multipliers' own output registers, 5 sums.
@@ -131,6 +148,14 @@ module voxrt_shader
           sum4_q    <= SumBits'(1);
         end
       endcase
+      if (Flat && flat_i) begin
+        square4_q <= SquareBits'(1);
+        sum4_q    <= SumBits'(1);
+      end
+      if (Given && brightness_q[3].part_given) begin
+        square4_q <= brightness_q[3].part;
+        sum4_q    <= brightness_q[3].whole;
+      end
     end
     if (valid_q[4]) sum5_q <= sum4_q;
     if (valid_q[5]) sum6_q <= sum5_q;
@@ -138,17 +163,16 @@ module voxrt_shader
   end
 
   // 5, 6 colour x square, 7 dividend, then the digits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
-  logic [7:0] channel[3];
   logic [7:0] quotient[3];
 
-  assign {channel[0], channel[1], channel[2]} = colour_q[4];
-
   for (genvar c = 0; c < 3; c++) begin : gen_channel
-    logic [SquareBits+7:0] product5_q, product6_q;
-    logic [SumBits+8:0]    dividend7_q;
+    logic [SquareBits+ChannelBits-1:0] product5_q, product6_q;
+    logic [SumBits+8:0]                dividend7_q;
 
     always_ff @(posedge clk_i) begin
-      if (valid_q[4]) product5_q <= (SquareBits + 8)'(square4_q) * (SquareBits + 8)'(channel[c]);
+      if (valid_q[4]) begin
+        product5_q <= (SquareBits + ChannelBits)'(square4_q) * (SquareBits + ChannelBits)'(channel_q[4][c]);
+      end
       if (valid_q[5]) product6_q <= product5_q;
       if (valid_q[6]) dividend7_q <= (SumBits + 9)'({product6_q, 1'b0}) + (SumBits + 9)'(sum6_q);
     end

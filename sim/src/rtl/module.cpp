@@ -5,14 +5,18 @@
 //     .memory_words           how many words the simulated memory holds
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
+//     .features               which of "flat", "light", "mirrors" are built in
+//     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, through_port=False)
 //                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
 //                             straight into the simulated memory: the outcome is the same
 //     .read_back(count)       uint32: the memory's first words, read through that port
-//     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
+//     .render(camera, width, height, depth, materials, *, flat=False, light=None, ambient=0, bounces=0, mirrors=None,
+//             stall_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
-//                             materials uint8 (256, 3), sRGB, row 0 is the background. With a stall_seed, the
+//                             materials uint8 (256, 3), sRGB, row 0 is the background; light int32 (3,), 1/16 voxel;
+//                             ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags. With a stall_seed, the
 //                             picture's consumer stalls in a pattern that depends on it.
 //                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
@@ -20,13 +24,14 @@
 //
 //   CORES, PixelGenerator     the whole core: core_module.cpp
 //
-// ValueError: a name, size or register out of range.
+// ValueError: a name, size or register out of range, or a feature that is not built in.
 #include "core_module.h"
 #include "design.h"
 #include "one_call.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -59,6 +64,8 @@ constexpr Configuration configurations[] = {
 using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using CameraRegisters = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
 using Materials = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
+using Place = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 
 std::string range(long low, long high) { return std::to_string(low) + " ... " + std::to_string(high); }
 
@@ -94,6 +101,19 @@ public:
     std::size_t memory_words() const { return design_->limits().memory_words(); }
     unsigned max_depth() const { return design_->limits().max_depth; }
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
+    int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
+
+    std::vector<std::string> features() const {
+        const Limits& limits = design_->limits();
+        std::vector<std::string> names;
+        if (limits.flat)
+            names.emplace_back("flat");
+        if (limits.light)
+            names.emplace_back("light");
+        if (limits.mirrors)
+            names.emplace_back("mirrors");
+        return names;
+    }
 
     void load(const Words& words, bool through_port) {
         if (words.size() < 1 || words.size() > memory_words())
@@ -119,7 +139,8 @@ public:
     }
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
-                    uint32_t stall_seed) {
+                    bool flat, const std::optional<Place>& light, long ambient, long bounces,
+                    const std::optional<Flags>& mirrors, uint32_t stall_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -136,6 +157,20 @@ public:
         request.height = static_cast<unsigned>(height);
         request.depth = static_cast<unsigned>(depth);
         request.materials = materials.data();
+        static constexpr uint8_t no_mirrors[256] = {};
+        request.mirrors = mirrors ? mirrors->data() : no_mirrors;
+        if ((flat && !limits.flat) || (light && !limits.light) || (bounces != 0 && !limits.mirrors))
+            throw std::invalid_argument("this configuration has not been built with that feature: see features");
+        check("ambient", ambient, 0, 255);
+        check("bounces", bounces, 0, bounce_limit);
+        request.flat = flat;
+        request.light = light.has_value();
+        request.ambient = static_cast<uint8_t>(ambient);
+        request.bounces = static_cast<uint8_t>(bounces);
+        for (std::size_t axis = 0; light && axis < 3; ++axis) {
+            check("light position", (*light)(axis), -light_limit(), light_limit() - 1);
+            request.light_position[axis] = (*light)(axis);
+        }
         request.stall_seed = stall_seed;
 
         FrameImage image{};
@@ -187,9 +222,12 @@ NB_MODULE(_rtl, m) {
         .def_prop_ro("memory_words", &Tracer::memory_words)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
+        .def_prop_ro("light_limit", &Tracer::light_limit)
+        .def_prop_ro("features", &Tracer::features)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
-             "stall_seed"_a = 0);
+             "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
+             "mirrors"_a.none() = nb::none(), "stall_seed"_a = 0);
     voxrt::rtl::bind_pixel_generator(m);
 }

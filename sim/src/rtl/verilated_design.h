@@ -150,7 +150,8 @@ private:
         for (unsigned material = 0; material < 256; ++material) {
             const uint8_t* colour = request.materials + 3 * material;
             model_->table_material_i = static_cast<uint8_t>(material);
-            model_->table_colour_i = uint32_t{colour[0]} << 16 | uint32_t{colour[1]} << 8 | colour[2];
+            model_->table_row_i = uint32_t{request.mirrors[material] != 0} << 24 | uint32_t{colour[0]} << 16 |
+                                  uint32_t{colour[1]} << 8 | colour[2];
             clock();
         }
         model_->table_write_i = 0;
@@ -160,7 +161,12 @@ private:
             model_->look_i[axis] = static_cast<uint16_t>(request.look[axis]);
             model_->right_i[axis] = static_cast<uint16_t>(request.right[axis]);
             model_->up_i[axis] = static_cast<uint16_t>(request.up[axis]);
+            model_->light_i[axis] =
+                static_cast<uint32_t>(request.light_position[axis]) & ((1u << limits_.light_bits()) - 1);
         }
+        // voxrt_pkg::shading_t.
+        model_->shading_i =
+            static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 | request.bounces);
         model_->width_i = static_cast<uint16_t>(request.width);
         model_->height_i = static_cast<uint16_t>(request.height);
         model_->depth_i = static_cast<uint8_t>(request.depth);

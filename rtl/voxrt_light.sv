@@ -1,0 +1,132 @@
+// From sub-cells that rays of the camera met to shadow rays: where from, which way, for all lanes.
+//
+// Lanes have their turns one after another: a turn every Lanes clocks is enough for a lane, whose rays read a dozen words
+// each between two requests. A lane has at most QueueDepth shadow rays under way, from its request until it starts the
+// ray (started_i); it may make a request while ready_o is high, and at a clock in which it starts a shadow ray.
+module voxrt_light
+  import voxrt_pkg::*;
+#(
+  parameter  int unsigned Lanes      = 1,
+  parameter  int unsigned MaxDepth   = 10,
+  parameter  int unsigned TagBits    = 8,
+  parameter  int unsigned QueueDepth = 16,
+  localparam int unsigned PlaceBits  = MaxDepth + FractionBits,
+  localparam int unsigned LitBits    = MaxDepth + LitFractionBits + 2,
+  localparam int unsigned LightBits  = light_bits(MaxDepth)
+) (
+  input  logic                        clk_i,
+  input  logic                        rst_ni,
+  // Held during a frame.
+  input  logic        [   MaxDepth:0] world_i,            // One-hot: the world's side.
+  input  logic signed [LightBits-1:0] light_i    [3],     // 1/16 voxel.
+  // Requests, as voxrt_lane makes them.
+  input  logic        [    Lanes-1:0] request_i,
+  output logic        [    Lanes-1:0] ready_o,
+  input  logic        [  TagBits-1:0] tag_i      [Lanes],
+  input  face_e                       face_i     [Lanes],
+  input  logic        [          2:0] mirrored_i [Lanes],
+  input  logic        [PlaceBits-1:0] place_i    [Lanes][3],
+  input  logic        [    Lanes-1:0] started_i,
+  // To voxrt_ray_setup, which always takes them.
+  output logic                        valid_o,
+  output logic        [    Lanes-1:0] lane_o,
+  output logic        [  TagBits-1:0] tag_o,
+  output logic signed [  LitBits-1:0] lit_o      [3],     // 1/32 voxel.
+  output logic signed [ ScanBits-1:0] way_o      [3],
+  output logic                        dark_o              // The face is turned away from the light.
+);
+  localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
+
+  typedef struct packed {
+    logic [TagBits-1:0]        tag;
+    face_e                     face;
+    logic [2:0]                mirrored;
+    logic [2:0][PlaceBits-1:0] place;
+  } request_t;
+
+  logic     [Lanes-1:0] waiting, turn_q;  // One-hot: whose turn it is.
+  request_t             requests[Lanes];
+  request_t             request;
+
+  always_ff @(posedge clk_i) begin
+    turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
+    if (!rst_ni) turn_q <= Lanes'(1);
+  end
+
+  for (genvar i = 0; i < Lanes; i++) begin : gen_lane
+    logic [CountBits-1:0] places_q;  // Of shadow rays that the lane may still ask for.
+    logic                 unused_ready;
+
+    assign ready_o[i] = places_q != '0;
+
+    always_ff @(posedge clk_i) begin
+      places_q <= places_q - CountBits'(request_i[i]) + CountBits'(started_i[i]);
+      if (!rst_ni) places_q <= CountBits'(QueueDepth);
+    end
+
+    voxrt_fifo #(
+      .Width($bits(request_t)),
+      .Depth(QueueDepth)
+    ) u_requests (
+      .clk_i,
+      .rst_ni,
+      .valid_i(request_i[i]),
+      .ready_o(unused_ready),
+      .data_i ({tag_i[i], face_i[i], mirrored_i[i], place_i[i][2], place_i[i][1], place_i[i][0]}),
+      .valid_o(waiting[i]),
+      .ready_i(turn_q[i]),
+      .data_o (requests[i])
+    );
+  end
+
+  always_comb begin
+    request = '0;
+    for (int unsigned i = 0; i < Lanes; i++) if (turn_q[i]) request |= requests[i];
+  end
+
+  // The request, then the lit point, then the way.
+  logic     [      2:0] valid_q;
+  logic     [Lanes-1:0] lane_q   [3];
+  request_t             request_q[3];
+  logic signed [LightBits+1:0] way[3];
+  logic [PlaceBits-1:0] place[3];
+
+  always_ff @(posedge clk_i) begin
+    valid_q      <= rst_ni ? {valid_q[1:0], (waiting & turn_q) != '0} : '0;
+    lane_q[0]    <= turn_q;
+    request_q[0] <= request;
+    for (int unsigned s = 1; s < 3; s++) begin
+      lane_q[s]    <= lane_q[s-1];
+      request_q[s] <= request_q[s-1];
+    end
+  end
+
+  always_comb for (int unsigned a = 0; a < 3; a++) place[a] = request_q[0].place[a];
+
+  voxrt_light_way #(
+    .MaxDepth(MaxDepth)
+  ) u_way (
+    .clk_i,
+    .enable_i  (1'b1),
+    .world_i,
+    .light_i,
+    .place_i   (place),
+    .mirrored_i(request_q[0].mirrored),
+    .face_i    (request_q[0].face),
+    .lit_o,
+    .way_o     (way)
+  );
+
+  assign valid_o = valid_q[2];
+  assign lane_o  = lane_q[2];
+  assign tag_o   = request_q[2].tag;
+
+  always_comb begin
+    dark_o = 1'b0;
+    for (int unsigned a = 0; a < 3; a++) begin
+      way_o[a] = ScanBits'(way[a]);
+      // The ray came down this axis where it is mirrored.
+      if (request_q[2].face == 2'(a)) dark_o = way[a] == 0 || (way[a] > 0) != request_q[2].mirrored[a];
+    end
+  end
+endmodule
