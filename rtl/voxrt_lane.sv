@@ -37,7 +37,8 @@
 // Light: a camera's ray that hits goes on with its descent, by the same compares, to the sub-cell of 1/16 voxel: no word is
 // read, corner and size have four bits more. The sub-cell leaves for voxrt_light; the slot is free. A shadow ray, in
 // 1/32 voxel, comes back with the tag. Whether what it hits is before the light is a compare of cells on the axis of
-// the face: T_hit < T_light there says that the plane is before the light's coordinate.
+// the face: T_hit < T_light there says that the plane is before the light's coordinate. Another such compare finds
+// faces that are turned away from the light, whose rays need neither sub-cell nor shadow ray.
 // A ray whose sub-cell finds voxrt_light's queue full asks again at its next turn, and changes places with a shadow ray if
 // one waits: so neither waits for the other for ever.
 module voxrt_lane
@@ -65,9 +66,9 @@ module voxrt_lane
   input  logic        [   PayloadBits:0] root_i,                 // A leaf only with Light or Mirrors.
   input  logic                           light_i,
   input  logic        [  BounceBits-1:0] bounces_i,              // 0: no material is a mirror.
-  // Planes of lower number are before the light, by axis, in the grid's frame and mirrored.
-  input  logic        [      MaxDepth:0] light_plane_i     [3],
-  input  logic        [      MaxDepth:0] mirrored_light_plane_i[3],
+  // Planes of lower number are before the light, or not behind it, by axis, in the grid's frame ([0]) and mirrored.
+  input  logic        [      MaxDepth:0] before_light_i    [2][3],
+  input  logic        [      MaxDepth:0] to_light_i        [2][3],
   // Material table, for mirrors.
   input  logic                           table_write_i,
   input  material_t                      table_material_i,
@@ -372,7 +373,8 @@ module voxrt_lane
   end
 
   // 8 turn. A ray that finishes is reflected, or goes on to the sub-cell, or ends.
-  logic                finishes, meets_face, reflects, reflects_out, shows_mean, sinks, requests;
+  logic                finishes, meets_face, reflects, reflects_out, shows_mean, is_lightable, sinks, requests;
+  logic                turned_away;
   logic                ends, starts, resolves, renews;
   logic [CellBits-1:0] corner9_q[3], size9_q, cleared9_q, top_size;
   logic [         2:0] set9_q, set8, mirrored8;
@@ -381,7 +383,8 @@ module voxrt_lane
 
   assign finishes   = active_q[8+Extra] && (finished8_q || (sum8_q[CellBits:SubBits] & world_i) != '0);
   assign meets_face = finishes && face8_q != FaceNone && !shadow8;
-  assign sinks      = Light && meets_face && light_i && !reflects && !reflects_out && !shows_mean;
+  assign is_lightable = Light && meets_face && light_i && !reflects && !reflects_out && !shows_mean;
+  assign sinks        = is_lightable && !turned_away;
   assign requests   = Light && active_q[8+Extra] && sinks8 && inner_size8_q[0] &&
       (request_ready_i || (ray_valid_i && ray_shadow_i && !ray_resolved_i));
   assign ends       = finishes && !reflects && !sinks;
@@ -583,7 +586,6 @@ module voxrt_lane
   if (Light) begin : gen_light
     logic              sinks_q [Slots];
     logic              shadow_q[Slots];
-    logic [MaxDepth:0] light_plane[3];
     logic              in_shadow;
 
     assign sinks0  = sinks_q[slot_q[0]];
@@ -599,26 +601,31 @@ module voxrt_lane
       if (starts) shadow_q[slot[8]] <= ray_shadow_i;
     end
 
-    // The hit's plane is before the light's.
+    // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
     always_comb begin
-      in_shadow = face8_q == FaceNone;
+      in_shadow   = face8_q == FaceNone;
+      turned_away = 1'b0;
       for (int unsigned a = 0; a < 3; a++) begin
-        light_plane[a] = mirrored_q[slot[8]][a] ? mirrored_light_plane_i[a] : light_plane_i[a];
-        if (face8_q == 2'(a) && {1'b0, corner8_q[a][CellBits-1:SubBits]} < light_plane[a]) in_shadow = 1'b1;
+        if (face8_q == 2'(a)) begin
+          in_shadow   = {1'b0, corner8_q[a][CellBits-1:SubBits]} < before_light_i[mirrored_q[slot[8]][a]][a];
+          turned_away = {1'b0, corner8_q[a][CellBits-1:SubBits]} < to_light_i[mirrored_q[slot[8]][a]][a];
+        end
         request_place_o[a] = corner8_q[a] | CellBits'(set8_q[a]);
       end
     end
 
-    assign fill_lit_o         = finishes ? material8_q == '0 || !in_shadow : ray_lit_i;
+    assign fill_lit_o         = finishes ? shadow8 && (material8_q == '0 || !in_shadow) : ray_lit_i;
     assign request_o          = requests;
     assign request_tag_o      = tag_q[slot[8]];
     assign request_face_o     = key_face8_q;
     assign request_mirrored_o = mirrored8;
   end else begin : gen_no_light
     logic unused_light;
-    assign unused_light = &{request_ready_i, ray_lit_i, light_i, light_plane_i[0], light_plane_i[1], light_plane_i[2],
-                            mirrored_light_plane_i[0], mirrored_light_plane_i[1], mirrored_light_plane_i[2]};
-    assign {sinks0, sinks2, sinks3, sinks8, shadow1, shadow2, shadow8} = '0;
+    assign unused_light = &{request_ready_i, ray_lit_i, light_i, before_light_i[0][0], before_light_i[0][1],
+                            before_light_i[0][2], before_light_i[1][0], before_light_i[1][1], before_light_i[1][2],
+                            to_light_i[0][0], to_light_i[0][1], to_light_i[0][2], to_light_i[1][0], to_light_i[1][1],
+                            to_light_i[1][2]};
+    assign {sinks0, sinks2, sinks3, sinks8, shadow1, shadow2, shadow8, turned_away} = '0;
     assign fill_lit_o         = 1'b0;
     assign request_o          = 1'b0;
     assign request_tag_o      = '0;
@@ -635,6 +642,6 @@ module voxrt_lane
     if (Light && requests) begin
       fill_detail_o = DetailBits'({mirrored8, request_place_o[2], request_place_o[1], request_place_o[0]});
     end
-    fill_detail_o[DetailBits-1-:2] = requests ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
+    fill_detail_o[DetailBits-1-:2] = requests || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
   end
 endmodule

@@ -32,8 +32,7 @@ module voxrt_light
   output logic        [    Lanes-1:0] lane_o,
   output logic        [  TagBits-1:0] tag_o,
   output logic signed [  LitBits-1:0] lit_o      [3],     // 1/32 voxel.
-  output logic signed [ ScanBits-1:0] way_o      [3],
-  output logic                        dark_o              // The face is turned away from the light.
+  output logic signed [ ScanBits-1:0] way_o      [3]
 );
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
 
@@ -85,23 +84,22 @@ module voxrt_light
   end
 
   // The request, then the lit point, then the way.
-  logic     [      2:0] valid_q;
-  logic     [Lanes-1:0] lane_q   [3];
-  request_t             request_q[3];
+  logic     [        2:0] valid_q;
+  logic     [  Lanes-1:0] lane_q[3];
+  logic     [TagBits-1:0] tag_q [1:2];
+  request_t               request_q;
   logic signed [LightBits+1:0] way[3];
   logic [PlaceBits-1:0] place[3];
 
   always_ff @(posedge clk_i) begin
     valid_q      <= rst_ni ? {valid_q[1:0], (waiting & turn_q) != '0} : '0;
     lane_q[0]    <= turn_q;
-    request_q[0] <= request;
-    for (int unsigned s = 1; s < 3; s++) begin
-      lane_q[s]    <= lane_q[s-1];
-      request_q[s] <= request_q[s-1];
-    end
+    request_q    <= request;
+    lane_q[1:2]  <= lane_q[0:1];
+    tag_q        <= '{request_q.tag, tag_q[1]};
   end
 
-  always_comb for (int unsigned a = 0; a < 3; a++) place[a] = request_q[0].place[a];
+  always_comb for (int unsigned a = 0; a < 3; a++) place[a] = request_q.place[a];
 
   voxrt_light_way #(
     .MaxDepth(MaxDepth)
@@ -111,22 +109,15 @@ module voxrt_light
     .world_i,
     .light_i,
     .place_i   (place),
-    .mirrored_i(request_q[0].mirrored),
-    .face_i    (request_q[0].face),
+    .mirrored_i(request_q.mirrored),
+    .face_i    (request_q.face),
     .lit_o,
     .way_o     (way)
   );
 
   assign valid_o = valid_q[2];
   assign lane_o  = lane_q[2];
-  assign tag_o   = request_q[2].tag;
+  assign tag_o   = tag_q[2];
 
-  always_comb begin
-    dark_o = 1'b0;
-    for (int unsigned a = 0; a < 3; a++) begin
-      way_o[a] = ScanBits'(way[a]);
-      // The ray came down this axis where it is mirrored.
-      if (request_q[2].face == 2'(a)) dark_o = way[a] == 0 || (way[a] > 0) != request_q[2].mirrored[a];
-    end
-  end
+  always_comb for (int unsigned a = 0; a < 3; a++) way_o[a] = ScanBits'(way[a]);
 endmodule

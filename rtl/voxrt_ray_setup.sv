@@ -41,7 +41,6 @@ module voxrt_ray_setup
   input  logic signed [    ScanBits-1:0] direction_i       [3],
   input  logic                           shadow_i,               // A shadow ray, from ...
   input  logic signed [     LitBits-1:0] lit_i             [3],  // ... this point, 1/32 voxel, grid frame.
-  input  logic                           dark_i,                 // Not to be traced.
   input  logic        [     TagBits-1:0] tag_i,
   // Rays, in the same order.
   output logic                           valid_o,
@@ -86,16 +85,15 @@ module voxrt_ray_setup
 
   // Shadow rays.
   logic signed [DistanceBits-1:0] origin2[3];
-  logic                           shadow3, dark8, dark9;
+  logic                           shadow3;
 
   if (Light) begin : gen_light
-    logic        [  Stages:1] shadow_q, dark_q;
+    logic        [  Stages:1] shadow_q;
     logic        [TagBits-1:0] tag_q[1:Stages];
     logic signed [LitBits-1:0] lit_q[1:Stages][3];
 
     always_ff @(posedge clk_i) begin
       shadow_q <= {shadow_q[Stages-1:1], shadow_i};
-      dark_q   <= {dark_q[Stages-1:1], dark_i};
       tag_q[1] <= tag_i;
       lit_q[1] <= lit_i;
       for (int unsigned s = 2; s <= Stages; s++) begin
@@ -119,19 +117,17 @@ module voxrt_ray_setup
 
     assign shadow3  = shadow_q[3];
     assign shadow_o = shadow_q[9];
-    assign dark8    = dark_q[8];
-    assign dark9    = dark_q[9];
     assign tag_o    = tag_q[9];
   end else begin : gen_no_light
     logic unused_light;
-    assign unused_light = &{shadow_i, dark_i, tag_i, lit_i[0], lit_i[1], lit_i[2], world_i};
+    assign unused_light = &{shadow_i, tag_i, lit_i[0], lit_i[1], lit_i[2], world_i};
     always_comb begin
       for (int unsigned a = 0; a < 3; a++) begin
         origin2[a]  = mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a];
         origin_o[a] = mirrored_q[Stages][a] ? mirrored_origin_i[a] : origin_i[a];
       end
     end
-    assign {shadow3, shadow_o, dark8, dark9} = '0;
+    assign {shadow3, shadow_o} = '0;
     assign tag_o = '0;
   end
 
@@ -275,7 +271,7 @@ module voxrt_ray_setup
       entry_time9_q    <= KeyBits'(entry_time_q[8]);
       entry_face_q[9]  <= entry_face_q[8];
       past_middle_q[9] <= past_middle_q[8];
-      outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8] || dark8;
+      outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8];
     end
   end
 
@@ -289,7 +285,7 @@ module voxrt_ray_setup
   assign weight_o     = weight_q[9];
   assign entry_time_o = entry_time9_q;
   assign entry_face_o = entry_face_q[9];
-  assign lit_o        = !dark9 && !overflow_q[9];
+  assign lit_o        = !overflow_q[9];
 
   always_comb begin
     pixel_o = '{material: '0, face: FaceNone};

@@ -125,7 +125,7 @@ module voxrt_rtu
   logic signed [  ScanBits-1:0] direction[3], way[3], ray_direction[3];
   logic        [     Lanes-1:0] turn_q;  // One-hot.
   logic        [     Lanes-1:0] has_place;
-  logic                         shadow_valid, shadow_dark;
+  logic                         shadow_valid;
   logic        [     Lanes-1:0] shadow_lane;
   logic        [   TagBits-1:0] shadow_tag;
   logic signed [   LitBits-1:0] lit_point[3];
@@ -190,7 +190,6 @@ module voxrt_rtu
     .direction_i      (ray_direction),
     .shadow_i         (shadow_valid),
     .lit_i            (lit_point),
-    .dark_i           (shadow_valid && shadow_dark),
     .tag_i            (shadow_tag),
     .valid_o          (ray_valid),
     .lane_o           (ray_lane),
@@ -209,19 +208,26 @@ module voxrt_rtu
     .tag_o            (ray_tag)
   );
 
-  // Planes before the light, of axis a: those of lower number than this, in the grid's frame and mirrored. Rounded up.
-  logic [MaxDepth:0] light_plane_q[3], mirrored_light_plane_q[3];
+  // Which planes are before the light, and which are not behind it: those of lower number than these. In the grid's frame,
+  // [0], and mirrored, [1].
+  logic [MaxDepth:0] before_light_q[2][3], to_light_q[2][3];
 
   function automatic logic [MaxDepth:0] plane_in_world(logic signed [LightBits-1:0] place, logic [MaxDepth:0] world);
-    logic signed [LightBits-1:0] plane = (place + LightBits'(2 ** FractionBits - 1)) >>> FractionBits;
+    logic signed [LightBits-1:0] plane = place >>> FractionBits;
     if (plane < 0) return '0;
     return plane > LightBits'(world) ? world : plane[MaxDepth:0];
   endfunction
 
+  logic signed [LightBits-1:0] mirrored_light[3];
+
+  always_comb for (int unsigned a = 0; a < 3; a++) mirrored_light[a] = LightBits'({world_q, FractionBits'(0)}) - light_q[a];
+
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      light_plane_q[a]          <= plane_in_world(light_q[a], world_q);
-      mirrored_light_plane_q[a] <= plane_in_world(LightBits'({world_q, FractionBits'(0)}) - light_q[a], world_q);
+      before_light_q[0][a] <= plane_in_world(light_q[a] + LightBits'(2 ** FractionBits - 1), world_q);
+      before_light_q[1][a] <= plane_in_world(mirrored_light[a] + LightBits'(2 ** FractionBits - 1), world_q);
+      to_light_q[0][a]     <= plane_in_world(light_q[a] + LightBits'(2 ** FractionBits), world_q);
+      to_light_q[1][a]     <= plane_in_world(mirrored_light[a] + LightBits'(2 ** FractionBits), world_q);
     end
   end
 
@@ -257,8 +263,8 @@ module voxrt_rtu
       .root_i                (root_q),
       .light_i               (shading_q.light),
       .bounces_i             (shading_q.bounces),
-      .light_plane_i         (light_plane_q),
-      .mirrored_light_plane_i(mirrored_light_plane_q),
+      .before_light_i    (before_light_q),
+      .to_light_i        (to_light_q),
       .table_write_i,
       .table_material_i,
       .table_row_i,
@@ -321,8 +327,7 @@ module voxrt_rtu
       .lane_o    (shadow_lane),
       .tag_o     (shadow_tag),
       .lit_o     (lit_point),
-      .way_o     (way),
-      .dark_o    (shadow_dark)
+      .way_o     (way)
     );
   end else begin : gen_no_light
     logic [Lanes-1:0] unused_request;
@@ -333,7 +338,7 @@ module voxrt_rtu
       end
     end
     assign request_ready = '0;
-    assign {shadow_valid, shadow_lane, shadow_tag, shadow_dark} = '0;
+    assign {shadow_valid, shadow_lane, shadow_tag} = '0;
     assign lit_point     = '{default: '0};
     assign way           = '{default: '0};
   end

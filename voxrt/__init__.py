@@ -22,7 +22,17 @@ if TYPE_CHECKING:
     from voxrt.octree import BOARDS, Octree, Rom, RomError, ViewerError, diff
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BudgetFit, BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, NoSuchConfigurationError, SimulatorError, check, compare, comparison_sheet
+    from voxrt.sim import (
+        Camera,
+        Frame,
+        Light,
+        NoSuchConfigurationError,
+        Shading,
+        SimulatorError,
+        check,
+        compare,
+        comparison_sheet,
+    )
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -41,6 +51,7 @@ __all__ = [
     "DoesNotFitError",
     "Frame",
     "Grid",
+    "Light",
     "LikenessAtDepth",
     "Material",
     "NoSuchConfigurationError",
@@ -51,6 +62,7 @@ __all__ = [
     "RomError",
     "Scene",
     "SceneWarning",
+    "Shading",
     "SimulatorError",
     "ViewerError",
     "ViewpointError",
@@ -81,7 +93,9 @@ _HOMES = {
     "voxrt.sim": (
         "Camera",
         "Frame",
+        "Light",
         "NoSuchConfigurationError",
+        "Shading",
         "SimulatorError",
         "check",
         "compare",

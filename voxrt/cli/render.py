@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register
+from voxrt.cli.arguments import Pixels, Reporting, levels, place, png, register, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 
@@ -32,6 +32,12 @@ def render(
     up: Annotated[Triple | None, _register] = None,
     depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
+    light: Annotated[
+        Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
+    ] = None,
+    ambient: Annotated[int, Parameter(converter=whole, metavar="N")] = 32,
+    bounces: Annotated[int, Parameter(converter=whole, metavar="N")] = 0,
+    flat: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -47,7 +53,7 @@ def render(
     engine
         The verilated hardware, or the exact model of it. Both give the same pixels.
     config
-        The configuration of the hardware: how many lanes, which memory.
+        The configuration of the hardware: how many lanes, which memory, which features of the shader.
     size
         Width and height, pixels. [default: 640x480]
     position
@@ -64,6 +70,14 @@ def render(
         Levels of the octree, where no manifest says.
     dialect
         How the memory spells a material, where no manifest says.
+    light
+        Where a light stands that casts shadows, voxels, in steps of 1/16. Without it the camera is the light.
+    ambient
+        The brightness of shadows, 0 to 255.
+    bounces
+        How often mirrors reflect a ray, 0 to 15; with 0 they are like all other materials.
+    flat
+        Show materials in their own colour, whatever the angle.
     check
         Render with both engines, count the pixels on which they differ, fail if there are any.
     reporting
@@ -77,12 +91,13 @@ def render(
         camera = voxrt.Camera(view.position, view.look, view.right, view.up)
     else:
         camera = voxrt.aim_camera(memory, size, position=position, look=look, right=right, up=up)
+    shading = voxrt.Shading(flat, None if light is None else voxrt.Light(light, ambient), bounces)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, config=config)
+        checked = voxrt.check(memory, camera, size, shading=shading, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config)
+        frame = voxrt.render(memory, camera, size=size, engine=engine, shading=shading, config=config)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
