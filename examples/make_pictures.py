@@ -30,7 +30,8 @@ def main() -> None:
     octree.plot(voxrt.build(EXAMPLES / "courtyard.glb").rom, size=(800, 600), screenshot=octants)
     print(octants)
     compare()
-    draw_rounding()
+    draw_gallery("physics_colliders", "rounding")
+    draw_gallery("textured_gltf", "painted")
 
 
 def compare() -> None:
@@ -45,10 +46,10 @@ def compare() -> None:
     voxrt.save_picture(voxrt.draw_likeness_curve(curve), PICTURES / "likeness.png")
 
 
-def draw_rounding() -> None:
-    """Draw the last figure of the example on colliders."""
-    runpy.run_path(str(EXAMPLES / "gallery" / "physics_colliders.py"), run_name="__main__")
-    plt.savefig(PICTURES / "rounding.png", dpi=100)
+def draw_gallery(example: str, picture: str) -> None:
+    """Draw the last figure of an example of the gallery."""
+    runpy.run_path(str(EXAMPLES / "gallery" / f"{example}.py"), run_name="__main__")
+    plt.savefig(PICTURES / f"{picture}.png", dpi=100)
 
 
 if __name__ == "__main__":

@@ -17,13 +17,15 @@ from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.render import palette_of
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
+from voxrt.voxelize.colour import srgb_from_linear
+from voxrt.voxelize.paint import sample
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
     from voxrt.sim.camera import Camera
-    from voxrt.voxelize import Grid, Scene
+    from voxrt.voxelize import Coat, Grid, Scene
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -137,8 +139,9 @@ def _view_meshes(
 ) -> View:
     open3d = _open3d()
     caster = open3d.t.geometry.RaycastingScene()
-    first_triangle, materials = [], []
+    first_triangle, colours, coats = [], [], []
     count = 0
+    palette = np.array([material.colour for material in scene.materials], dtype=np.float64)
     for item in scene.objects:
         mesh = item.mesh
         placed = mesh.positions @ item.transform[:3, :3].T + item.transform[:3, 3]
@@ -149,7 +152,8 @@ def _view_meshes(
             open3d.core.Tensor(voxels.astype(np.float32)), open3d.core.Tensor(mesh.triangles.astype(np.uint32))
         )
         first_triangle.append(count)
-        materials.append(mesh.materials)
+        colours.append(palette[mesh.materials])
+        coats.append(mesh.coat)
         count += len(mesh.triangles)
 
     length = np.linalg.norm(directions, axis=-1)
@@ -167,11 +171,28 @@ def _view_meshes(
 
     colour = np.broadcast_to(background, directions.shape).copy()
     if np.any(seen):
-        triangle = np.array(first_triangle)[cast["geometry_ids"].numpy()[seen]] + cast["primitive_ids"].numpy()[seen]
-        palette = np.array([material.colour for material in scene.materials], dtype=np.float64)
-        lit = palette[np.concatenate(materials)[triangle]] * cosine[seen][:, None] ** 2
-        colour[seen] = np.floor(lit + 0.5).astype(np.uint8)
+        part, triangle = cast["geometry_ids"].numpy()[seen], cast["primitive_ids"].numpy()[seen].astype(np.intp)
+        own = np.concatenate(colours)[np.array(first_triangle)[part] + triangle]
+        _paint(own, coats, part, triangle, cast["primitive_uvs"].numpy()[seen].astype(np.float64))
+        colour[seen] = np.floor(own * cosine[seen][:, None] ** 2 + 0.5).astype(np.uint8)
     return View(colour, depth, normal)
+
+
+def _paint(
+    colours: NDArray[np.float64],
+    coats: list[Coat | None],
+    part: NDArray[np.uint32],
+    triangle: NDArray[np.intp],
+    shares: NDArray[np.float64],
+) -> None:
+    """Replace the colours of hits on painted triangles; `shares` are those of the triangles' other two corners."""
+    for number, coat in enumerate(coats):
+        if coat is None:
+            continue
+        here = np.flatnonzero(part == number)
+        here = here[coat.rows[triangle[here]] >= 0]
+        weights = np.column_stack([1 - shares[here].sum(axis=1), shares[here]])
+        colours[here] = srgb_from_linear(sample(coat, triangle[here], weights)[:, :3])
 
 
 def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> View:

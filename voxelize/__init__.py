@@ -7,7 +7,7 @@ __path__ = extend_path(__path__, __name__)
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid, fit_grid
 from voxrt.voxelize.load import load
-from voxrt.voxelize.paint import Coat, Paint, Texture
+from voxrt.voxelize.paint import Coat, Paint
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -22,13 +22,17 @@ from voxrt.voxelize.scene import (
     Scene,
     SceneObject,
     SphereCollider,
+    Tints,
     Viewpoint,
 )
+from voxrt.voxelize.texture import Texture
+from voxrt.voxelize.tint import DEFAULT_COLOURS, tint
 from voxrt.voxelize.voxelize import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 __all__ = [
     "DEFAULT_COLOUR",
+    "DEFAULT_COLOURS",
     "EMPTY",
     "MATERIAL_LIMIT",
     "AssetError",
@@ -49,10 +53,12 @@ __all__ = [
     "SceneWarning",
     "SphereCollider",
     "Texture",
+    "Tints",
     "Viewpoint",
     "Voxelization",
     "Voxels",
     "fit_grid",
     "load",
+    "tint",
     "voxelize",
 ]

@@ -21,7 +21,16 @@ class OutOfReachError(ValueError): ...
 
 def voxelize(
     depth: int,
-    meshes: list[tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]]],
+    meshes: list[
+        tuple[
+            NDArray[np.float64],
+            NDArray[np.int32],
+            NDArray[np.uint8],
+            NDArray[np.int32],
+            NDArray[np.float32],
+            NDArray[np.uint8],
+        ]
+    ],
     kinds: NDArray[np.uint8],
     mesh_of: NDArray[np.int32],
     frames: NDArray[np.float64],

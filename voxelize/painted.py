@@ -1,14 +1,16 @@
-"""The last step of loading: a palette for painted triangles, and no triangles that are air."""
+"""The last step of loading: a material for each paint, and no triangles that are air."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from math import isqrt
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from voxrt.voxelize.colour import srgb_from_linear
 from voxrt.voxelize.errors import DoesNotFitError
-from voxrt.voxelize.paint import Coat, mean_colours
+from voxrt.voxelize.paint import Coat, centroids, remaining, shade
 from voxrt.voxelize.palette import quantize
 from voxrt.voxelize.scene import MATERIAL_LIMIT, Mesh
 
@@ -19,9 +21,12 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.material_table import MaterialTable
     from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.paint import Paint
 
-PALETTE_SIZE = 64
-"""How many colours painted surfaces get, where the materials leave as many."""
+_SAMPLED_TRIANGLES = 1 << 10
+_SAMPLES = 1 << 12
+
+_Key: TypeAlias = tuple[str, bool]  # a paint's name and whether it is a mirror
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -44,17 +49,44 @@ class Unfinished:
     coat: Coat | None = None
 
 
+@dataclass(eq=False, slots=True)
+class _Wearers:
+    """The triangles that wear paint of one name.
+
+    Attributes
+    ----------
+    faces
+        The number of a mesh, and its triangles.
+    colours
+        The sRGB colours that paint has where it is the same all over a mesh's triangles; else None among them.
+    light, area
+        The mean colour (linear) times the area; and the area.
+    """
+
+    faces: list[tuple[int, NDArray[np.intp]]] = field(default_factory=list)
+    colours: set[tuple[int, int, int] | None] = field(default_factory=set)
+    light: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    area: float = 0.0
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all of it has one colour."""
+        return len(self.colours) == 1 and None not in self.colours
+
+
 def finish(unfinished: Sequence[Unfinished], table: MaterialTable, notes: Notes) -> list[Mesh]:
-    """Give painted triangles the palette entry nearest to their mean colour and drop those that are air.
+    """Give painted triangles the material of their paint, in its mean colour, and drop those that are air.
+
+    Paint of one colour is no paint any more afterwards.
 
     Parameters
     ----------
     unfinished
-        All meshes of the scene: they share one palette.
+        All meshes of the scene.
     table
-        The scene's materials; the palette is appended.
+        The scene's materials; those of paints are appended.
     notes
-        Where painted and cut-away triangles are counted.
+        Where cut-away triangles are counted.
 
     Returns
     -------
@@ -63,100 +95,95 @@ def finish(unfinished: Sequence[Unfinished], table: MaterialTable, notes: Notes)
     Raises
     ------
     DoesNotFitError
-        The uniform materials leave no id to the palette.
+        The uniform materials leave no id to the painted surfaces.
     """
-    means = [mean_colours(one.coat) if one.coat is not None else None for one in unfinished]
-    painted = [
-        np.zeros(len(one.triangles), dtype=np.bool_)
-        if mean is None or one.coat is None
-        else mean[1] & (one.coat.rows >= 0)
-        for one, mean in zip(unfinished, means, strict=True)
+    painted: dict[_Key, _Wearers] = {}
+    materials = [one.materials.copy() for one in unfinished]
+    rows = [one.coat.rows.copy() if one.coat is not None else None for one in unfinished]
+    for at, one in enumerate(unfinished):
+        if one.coat is None:
+            continue
+        solid = remaining(one.coat)
+        cut = int(((one.coat.rows >= 0) & ~solid).sum())
+        notes.add("transparent", "painted faces that are transparent all over are air", cut)
+        for row, paint in enumerate(one.coat.paints):
+            faces = np.flatnonzero(solid & (one.coat.rows == row))
+            if len(faces):
+                wearers = painted.setdefault((paint.name, paint.mirror), _Wearers())
+                wearers.faces.append((at, faces))
+                wearers.colours.add(_only_colour(one.coat, paint, faces))
+                _add_light(wearers, one, one.coat, paint, faces)
+    for wearers, number in zip(painted.values(), _numbers(painted, table), strict=True):
+        for at, faces in wearers.faces:
+            materials[at][faces] = number
+            own = rows[at]
+            if wearers.uniform and own is not None:
+                own[faces] = -1
+    return [_mesh(*one) for one in zip(unfinished, materials, rows, strict=True)]
+
+
+def _only_colour(coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> tuple[int, int, int] | None:
+    """Return the sRGB colour of paint that is the same on all of some triangles, else None."""
+    first = coat.colours[faces[0], 0]
+    if paint.texture is not None or not (coat.colours[faces] == first).all():
+        return None
+    red, green, blue = srgb_from_linear(first[:3].astype(np.float64) * paint.factor[:3]).tolist()
+    return red, green, blue
+
+
+def _add_light(wearers: _Wearers, one: Unfinished, coat: Coat, paint: Paint, faces: NDArray[np.intp]) -> None:
+    """Add the mean colour of some triangles, from samples, by their area."""
+    some = faces[:: -(-len(faces) // _SAMPLED_TRIANGLES)]
+    weights = centroids(isqrt(_SAMPLES // len(some)))
+    uv, mixed = weights @ coat.uv[some], weights @ coat.colours[some].astype(np.float64)
+    texture = replace(paint.texture, nearest=True) if paint.texture is not None else None
+    found = shade(paint, texture, uv.reshape(-1, 2), mixed.reshape(-1, 4))
+    areas = _areas(one, some)
+    share = np.repeat(areas / (areas.max() or 1.0) + 1e-9, len(weights)) * (1e-9 + (found[:, 3] >= paint.cutoff))
+    area = float(areas.sum()) * len(faces) / len(some)
+    wearers.light += share @ found[:, :3] / share.sum() * (area + 1e-300)
+    wearers.area += area + 1e-300
+
+
+def _numbers(painted: dict[_Key, _Wearers], table: MaterialTable) -> list[int]:
+    """Append the materials of paints to `table`; return their ids. Paints that are too many share some."""
+    free = MATERIAL_LIMIT - (len(table) - 1)
+    if free < 1 and painted:
+        raise DoesNotFitError(
+            f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
+        )
+    if not all(wearers.uniform for wearers in painted.values()):
+        free = -(-free // 2)  # the rest is for shades
+    means = srgb_from_linear(np.array([one.light / one.area for one in painted.values()]).reshape(-1, 3))
+    colours = [next(iter(one.colours)) or mean for one, mean in zip(painted.values(), means.tolist(), strict=True)]
+    keys: list[object] = list(painted)
+    if len(painted) > free:
+        palette, rows = quantize(means, np.array([one.area for one in painted.values()]), free)
+        colours = palette[rows].tolist()
+        keys = [(int(row), mirror) for row, (_, mirror) in zip(rows, painted, strict=True)]
+    return [
+        table.id_of(("paint", key), name, (red, green, blue), mirror=mirror)
+        for key, (name, mirror), (red, green, blue) in zip(keys, painted, colours, strict=True)
     ]
-    ids = _palette(unfinished, means, painted, table)
-    count = int(sum(len(part) for part in ids))
-    notes.add("painted", "faces with a texture or vertex colours took the nearest palette colour to their mean", count)
-    finished = []
-    for one, faces, own in zip(unfinished, painted, ids, strict=True):
-        if one.coat is not None:
-            cut = int(((one.coat.rows >= 0) & ~faces).sum())
-            notes.add("transparent", "painted faces that are transparent all over are air", cut)
-        materials = one.materials.copy()
-        materials[faces] = own
-        solid = materials != 0
-        finished.append(_mesh(one, materials, solid))
-    return finished
 
 
-def _mesh(one: Unfinished, materials: NDArray[np.uint8], solid: NDArray[np.bool_]) -> Mesh:
+def _mesh(one: Unfinished, materials: NDArray[np.uint8], rows: NDArray[np.int32] | None) -> Mesh:
+    coat = None
+    if one.coat is not None and rows is not None and (rows[materials != 0] >= 0).any():
+        coat = replace(one.coat, rows=rows)
+    solid = materials != 0
     if solid.all():
-        return Mesh(one.positions, one.triangles, materials, one.coat)
-    coat = one.coat
+        return Mesh(one.positions, one.triangles, materials, coat)
     if coat is not None:
         coat = Coat(coat.paints, coat.rows[solid], coat.uv[solid], coat.colours[solid])
     triangles = one.triangles[solid]
     used = np.zeros(len(one.positions), dtype=np.bool_)  # a vertex of air must not stretch the scene's bounds
     used[triangles] = True
-    rows = np.cumsum(used, dtype=np.int32) - np.int32(1)
-    return Mesh(one.positions[used], rows[triangles], materials[solid], coat)
+    moved = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    return Mesh(one.positions[used], moved[triangles], materials[solid], coat)
 
 
-def _palette(
-    unfinished: Sequence[Unfinished],
-    means: list[tuple[NDArray[np.float64], NDArray[np.bool_]] | None],
-    painted: list[NDArray[np.bool_]],
-    table: MaterialTable,
-) -> list[NDArray[np.uint8]]:
-    """Append the palette to `table`; return the painted triangles' ids, mesh by mesh."""
-    sizes = [int(faces.sum()) for faces in painted]
-    if not sum(sizes):
-        return [np.zeros(0, dtype=np.uint8) for _ in sizes]
-    colours = np.concatenate([mean[0][faces] for mean, faces in zip(means, painted, strict=True) if mean is not None])
-    areas = np.concatenate([_areas(one, faces) for one, faces in zip(unfinished, painted, strict=True)])
-    labels: dict[tuple[str, bool], int] = {}
-    owners = np.concatenate(
-        [
-            np.array([labels.setdefault((paint.name, paint.mirror), len(labels)) for paint in one.coat.paints])[
-                one.coat.rows[faces]
-            ]
-            for one, faces in zip(unfinished, painted, strict=True)
-            if one.coat is not None
-        ]
-    )
-    ids = np.zeros(len(colours), dtype=np.uint8)
-    for mirror in sorted({mirror for _, mirror in labels}):
-        names = [name if kind == mirror else "" for name, kind in labels]
-        faces = np.array([kind == mirror for _, kind in labels])[owners]
-        ids[faces] = _entries(colours[faces], areas[faces], owners[faces], names, table, mirror=mirror)
-    return np.split(ids, np.cumsum(sizes)[:-1])
-
-
-def _entries(
-    colours: NDArray[np.float64],
-    areas: NDArray[np.float64],
-    owners: NDArray[np.int64],
-    names: list[str],
-    table: MaterialTable,
-    *,
-    mirror: bool,
-) -> NDArray[np.uint8]:
-    """Append a palette of `colours` to `table`, each named after the paint it covers most of; return their ids."""
-    free = MATERIAL_LIMIT - (len(table) - 1)
-    if free < 1:
-        raise DoesNotFitError(
-            f"the uniform materials leave none of the {MATERIAL_LIMIT} to the painted surfaces; merge some in the asset"
-        )
-    palette, rows = quantize(colours, areas, min(PALETTE_SIZE, free))
-    cover = np.bincount(rows.astype(np.int64) * len(names) + owners, areas, minlength=len(palette) * len(names))
-    most = cover.reshape(len(palette), len(names)).argmax(axis=1).tolist()
-    by_row = np.zeros(len(palette), dtype=np.uint8)
-    for row, (red, green, blue) in enumerate(palette.tolist()):
-        name = f"{names[most[row]]} #{red:02x}{green:02x}{blue:02x}"
-        key = ("palette", red, green, blue, mirror)
-        by_row[row] = table.id_of(key, name, (red, green, blue), mirror=mirror)
-    return by_row[rows]
-
-
-def _areas(one: Unfinished, faces: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _areas(one: Unfinished, faces: NDArray[np.intp]) -> NDArray[np.float64]:
     """Return the areas of some triangles, scaled to the mesh so that nothing leaves the range of numbers."""
     scale = float(np.abs(one.positions).max(initial=0.0)) or 1.0
     corners = one.positions[one.triangles[faces]] / scale

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image
 
-from voxrt.voxelize.colour import srgb_from_linear
+from voxrt.voxelize.colour import linear_from_srgb, srgb_from_linear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _PIXELS = 1 << 14
+_FEW = 1 << 16
 _UNTIL_CHANGES = 1
 # Beyond this many colours, k-means sees them at 5 bits a channel: it is slow, and entries lie farther apart than that.
 _DISTINCT = 1 << 13
@@ -25,16 +26,16 @@ _COARSE, _MIDDLE = np.uint32(0xF8F8F8), np.uint32(0x040404)
 
 
 def quantize(
-    colours: NDArray[np.float64], weights: NDArray[np.float64], count: int
-) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+    colours: NDArray[np.uint8], weights: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """Choose at most `count` colours that stand for `colours`, deterministically.
 
-    Where no more than `count` colours of 8 bits are in use, each keeps its own.
+    Where no more than `count` colours are in use, each keeps its own.
 
     Parameters
     ----------
     colours
-        float64, shape (N, 3): linear light.
+        uint8, shape (N, 3): sRGB.
     weights
         float64, shape (N,), not negative: how much of the surface each covers.
     count
@@ -43,20 +44,37 @@ def quantize(
     Returns
     -------
     palette, rows
-        uint8, shape (K, 3), sRGB, in ascending order; and int32, shape (N,): each colour's entry.
+        uint8, shape (K, 3), sRGB, in ascending order; and uint8, shape (N,): each colour's entry.
     """
-    every = _packed(srgb_from_linear(colours))
-    packed, inverse = np.unique(every, return_inverse=True)
+    packed, inverse = _distinct(_packed(colours))
     if len(packed) <= count:
-        return _unpacked(packed), inverse.astype(np.int32)
+        return _unpacked(packed), inverse.astype(np.uint8)
+    coarse, cells = packed, np.arange(len(packed))
     if len(packed) > _DISTINCT:
-        packed, inverse = np.unique(every & _COARSE | _MIDDLE, return_inverse=True)
-    cover = np.bincount(inverse, weights).astype(np.float64)
-    groups = _grouped(_unpacked(packed), cover, count)[inverse]
-    total = np.maximum(np.bincount(groups, weights), np.finfo(np.float64).tiny)
-    means = np.stack([np.bincount(groups, weights * colours[:, channel]) for channel in range(3)], axis=1)
-    entries, merged = np.unique(_packed(srgb_from_linear(means / total[:, None])), return_inverse=True)
-    return _unpacked(entries), merged[groups].astype(np.int32)
+        coarse, cells = np.unique(packed & _COARSE | _MIDDLE, return_inverse=True)
+    cover = np.bincount(inverse, weights, minlength=len(packed))
+    groups = _grouped(_unpacked(coarse), np.bincount(cells, cover).astype(np.float64), count)[cells]
+    total = np.bincount(groups, cover)
+    cover = np.where(total[groups] > 0, cover, 1.0)  # a group that covers nothing has a mean all the same
+    linear = linear_from_srgb(_unpacked(packed))
+    means = np.stack([np.bincount(groups, cover * linear[:, channel]) for channel in range(3)], axis=1)
+    entries, merged = np.unique(
+        _packed(srgb_from_linear(means / np.bincount(groups, cover)[:, None])), return_inverse=True
+    )
+    return _unpacked(entries), merged[groups].astype(np.uint8)[inverse]
+
+
+def _distinct(packed: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[np.int32]]:
+    """Return the distinct colours in ascending order, and the place of each among them; many are not sorted."""
+    if len(packed) < _FEW:
+        found, places = np.unique(packed, return_inverse=True)
+        return found, places.astype(np.int32)
+    seen = np.zeros(1 << 24, np.bool_)
+    seen[packed] = True
+    found = np.flatnonzero(seen).astype(np.uint32)
+    place_of = np.empty(1 << 24, np.int32)
+    place_of[found] = np.arange(len(found), dtype=np.int32)
+    return found, place_of[packed]
 
 
 def _packed(srgb: NDArray[np.uint8]) -> NDArray[np.uint32]:

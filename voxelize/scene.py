@@ -51,6 +51,29 @@ MATERIAL_LIMIT = 255
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Tints:
+    """Materials that vary over triangles, made for a grid by :func:`voxrt.voxelize.tint`.
+
+    Each tinted triangle lies in a raster of materials. Place (u, v) of a raster is in column floor(u) and row floor(v);
+    a triangle's point is at the place that its corners' places give it.
+
+    Attributes
+    ----------
+    sizes
+        int32, shape (T, 2): columns and rows of each triangle's raster, 1 … 65536; 0 and 0 where it has one material.
+    places
+        float32, shape (T, 3, 2): the places of its corners.
+    materials
+        uint8, shape (sum of columns times rows,): material ids, raster by raster, row by row; 0 where the surface is
+        cut away.
+    """
+
+    sizes: NDArray[np.int32]
+    places: NDArray[np.float32]
+    materials: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
     """Triangles in their object's frame. Instances share one mesh.
 
@@ -61,15 +84,20 @@ class Mesh:
     triangles
         int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
     materials
-        uint8, shape (T,): material ids, 1 … 255. Painted triangles have the material nearest to their mean colour.
+        uint8, shape (T,): material ids, 1 … 255. Painted triangles have that of their paint, and
+        once they are tinted that of most of the mesh's paint.
     coat
         The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
+    tints
+        Materials that vary over its painted triangles, which the voxelizer prefers to `materials`; None before it is
+        tinted.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
     coat: Coat | None = None
+    tints: Tints | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -4,8 +4,10 @@ Each object becomes parts in grid space: its mesh, or a part for each of its col
 voxel; from there on coverage is exact (see src/triangle_coverage.h), inside is told by winding numbers
 (src/solid_fill.h), and the first object keeps a voxel.
 
-Materials: a shell voxel takes the material of the first triangle, in authored order, that covers it; the inside, which
-no ray from outside can see, that of its object's first triangle.
+Materials: a shell voxel takes the material of the first triangle, in authored order, that covers it; where the triangle
+is tinted, the one of its point nearest to the voxel's centre. The inside, which no ray from outside can see, takes that
+of its object's first triangle. Surface that is cut away is still surface to the inside: it ends there, and the voxels
+that only such surface is in are empty.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ from voxrt.voxelize.colliders import (
 )
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import DEPTH_LIMIT
-from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider
+from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider, Tints
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 if TYPE_CHECKING:
@@ -37,10 +39,20 @@ if TYPE_CHECKING:
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.scene import Collider, Scene, SceneObject
 
+    _NativeMesh = tuple[
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.uint8],
+        NDArray[np.int32],
+        NDArray[np.float32],
+        NDArray[np.uint8],
+    ]
+
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MODES = ("surface", "exact", "winding")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
+_NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
 
 
 def voxelize(
@@ -113,7 +125,7 @@ class _Parts:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
-        self._meshes: list[tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]]] = []
+        self._meshes: list[_NativeMesh] = []
         self._mesh_index: dict[int, int] = {}
         self._keys: list[object] = []
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
@@ -149,6 +161,7 @@ class _Parts:
         mesh: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
         material: int,
+        tints: Tints = _NO_TINTS,
     ) -> None:
         """Add a mesh part: positions, triangles, materials. Parts whose `key` is one and the same object share them."""
         if len(mesh[1]) == 0:
@@ -161,6 +174,9 @@ class _Parts:
                     np.ascontiguousarray(mesh[0], dtype=np.float64),
                     np.ascontiguousarray(mesh[1], dtype=np.int32),
                     np.ascontiguousarray(mesh[2], dtype=np.uint8),
+                    np.ascontiguousarray(tints.sizes, dtype=np.int32),
+                    np.ascontiguousarray(tints.places, dtype=np.float32),
+                    np.ascontiguousarray(tints.materials, dtype=np.uint8),
                 )
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
@@ -191,8 +207,9 @@ def _add_object(parts: _Parts, item: SceneObject, geometry: Geometry, pow2: Pow2
     mesh = item.mesh
     if colliders is None:
         materials = np.unique(mesh.materials)
-        only = int(materials[0]) if len(materials) == 1 else 0
-        parts.add_mesh(mesh, (mesh.positions, mesh.triangles, mesh.materials), item.transform, only)
+        only = int(materials[0]) if len(materials) == 1 and mesh.tints is None else 0
+        arrays = (mesh.positions, mesh.triangles, mesh.materials)
+        parts.add_mesh(mesh, arrays, item.transform, only, mesh.tints or _NO_TINTS)
         return "mesh", _ZERO, _ZERO
     material = item.collider_material
     if not item.colliders and colliders:

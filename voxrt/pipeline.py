@@ -83,8 +83,8 @@ class BuildResult:
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"voxelize"``, ``"octree"``, ``"budget"``, ``"write"``,
-        ``"preview"``.
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"budget"``,
+        ``"write"``, ``"preview"``.
     """
 
     rom: Rom
@@ -114,6 +114,7 @@ def build(
     unit: float | None = None,
     time: float | None = None,
     variants: tuple[str, ...] = (),
+    colours: int = voxelize.DEFAULT_COLOURS,
     budget: int | str | None = None,
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
@@ -149,6 +150,8 @@ def build(
         The second of its animation at which the asset is shown.
     variants
         What to show of an asset that can be shown in several ways, as :func:`voxrt.voxelize.load` takes it.
+    colours
+        The most materials that textures and vertex colours are reduced to, 1 … 254; uniform materials keep theirs.
     budget
         Words that the memory may take, or the name of a board that knows (:data:`voxrt.octree.BOARDS`): what is seen
         least is given up until it fits.
@@ -200,6 +203,8 @@ def build(
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=voxel_size, geometry=geometry, pow2=pow2)
+    with stage("tint"):
+        scene = voxelize.tint(scene, grid, colours=colours, geometry=geometry)
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
@@ -221,6 +226,7 @@ def build(
             "unit": unit,
             "time": time,
             "variants": ", ".join(variants) or None,
+            "colours": colours,
         }
         with stage("write"), writing(Path(output)), uninterrupted():
             files = export.write_rom(

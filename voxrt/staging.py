@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from voxrt.board.scene_memory import Progress
     from voxrt.octree import Rom
 
-_STAGES = ("load", "fit", "voxelize", "octree")
+_STAGES = ("load", "fit", "tint", "voxelize", "octree")
 
 
 def board_scene(rom: Rom) -> Scene:

@@ -3,7 +3,7 @@ A textured glTF
 ===============
 
 A globe with an image around it, written as glTF by trimesh. Each voxel of its skin takes the texture's colour where it
-stands; the colours of all of them become a palette.
+stands; the colours of all of them become a palette of at most 32 (``colours=``).
 """
 
 import tempfile

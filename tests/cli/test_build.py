@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 from voxrt.cli.results import BuildReport
+from voxrt.voxelize import DEFAULT_COLOURS
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -64,7 +65,7 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
         assert result[key] == manifest[key], key
     assert report.words == 1 + 8 * report.blocks == len((folder / "out/house.mem").read_text().split())
     assert [material.name for material in report.materials[1:]] == ["timber", "glass", "brick", "plaster", "tiles"]
-    assert list(report.seconds) == ["load", "fit", "voxelize", "octree", "write", "preview"]
+    assert list(report.seconds) == ["load", "fit", "tint", "voxelize", "octree", "write", "preview"]
     assert report.render is not None
     assert report.render.rays == 640 * 480
     assert report.render.cycles is None
@@ -231,3 +232,37 @@ def test_profile_has_a_row_a_stage(voxrt):
         *json.loads(finished.out)["seconds"],
         "all",
     ]
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 0
+1 0 0 0 255 0
+0 1 0 0 0 255
+3 0 1 2
+"""
+
+
+def test_colours_bound_what_paint_is_reduced_to(voxrt, folder):
+    (folder / "rainbow.ply").write_text(PLY)
+    for asked, most in ((("--colours", "5"), 5), ((), DEFAULT_COLOURS)):
+        assert voxrt("build", "rainbow.ply", "--depth", "6", *asked).code == 0
+        manifest = json.loads((folder / "rainbow.json").read_bytes())
+        names = [material["name"] for material in manifest["materials"][1:]]
+        assert names[0] == "vertex colours"
+        assert most * 0.8 < len(names) - 1 <= most
+        assert all(name.startswith("vertex colours #") for name in names[1:])
+        assert manifest["source"]["settings"]["colours"] == most
+    finished = voxrt("build", "rainbow.ply", "--colours", "255")
+    assert finished.code == 2
+    assert "255 is not 1 to 254" in finished.error

@@ -1,13 +1,15 @@
 """Voxels against their meshes, where the answer is known."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from voxrt.octree import Rom, from_dense
 from voxrt.sim import Camera, SimulatorError, compare, comparison_sheet, frame_scene, render
-from voxrt.voxelize import EMPTY, Grid, Material, Mesh, Scene, SceneObject
+from voxrt.voxelize import EMPTY, Coat, Grid, Material, Mesh, Paint, Scene, SceneObject
+from voxrt.voxelize.colour import linear_from_srgb
 
 SIZE = (96, 72)
 MATERIALS = (EMPTY, Material("red", (220, 60, 40)), Material("blue", (40, 60, 220)))
@@ -58,6 +60,22 @@ def test_boxes_on_the_grid_are_seen_the_same():
     sheet = comparison_sheet(found)
     assert sheet.shape == (72, 288, 3)
     assert np.mean(sheet[:, 192:] == 0) > 0.98
+
+
+def test_painted_meshes_show_their_paint():
+    scene, rom = box_scene(*BOXES), box_rom(*BOXES)
+    camera = frame_scene(rom, SIZE)
+    bare = compare(scene, rom, camera, SIZE).meshes.colour
+    # Vertex colours that are the materials' own: nothing may change, where the materials say otherwise.
+    painted = []
+    for item in scene.objects:
+        linear = linear_from_srgb(np.array(MATERIALS[item.mesh.materials[0]].colour, np.uint8))
+        colours = np.broadcast_to(np.append(linear, 1.0).astype(np.float32), (12, 3, 4))
+        coat = Coat((Paint("p"),), np.zeros(12, np.int32), np.zeros((12, 3, 2)), colours)
+        painted.append(replace(item, mesh=replace(item.mesh, coat=coat)))
+    black = (EMPTY, *[Material("black", (0, 0, 0))] * 2)
+    found = compare(replace(scene, objects=tuple(painted), materials=black), rom, camera, SIZE).meshes.colour
+    np.testing.assert_array_equal(found, bare)
 
 
 def test_a_voxel_of_error_along_the_look_is_a_voxel_of_depth():

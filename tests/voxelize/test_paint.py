@@ -1,4 +1,4 @@
-"""Paint against a texture look-up written out pixel by pixel, and against means known in closed form."""
+"""Paint against a texture look-up written out pixel by pixel."""
 
 import math
 
@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8
-from voxrt.voxelize.paint import Coat, Paint, Texture, mean_colours, sample
+from voxrt.voxelize.paint import Coat, Paint, remaining, sample
+from voxrt.voxelize.texture import Texture, halved
 
 WRAPS = ("repeat", "mirror", "clamp")
 
@@ -75,48 +76,57 @@ def test_far_coordinates_stay_exact():
     assert sample(painted, np.array([0]), np.array([[1.0, 0, 0]]))[0].tolist() == [0, 1, 0, 1]
 
 
-@given(
-    st.lists(st.integers(0, 4).map(lambda n: n / 4), min_size=12, max_size=12),
-    st.lists(st.integers(0, 4).map(lambda n: n / 4), min_size=4, max_size=4),
-)
-def test_the_mean_of_vertex_colours_is_the_mean_of_the_corners(flat, factor):
-    corners = np.array(flat).reshape(1, 3, 4)
-    means, solid = mean_colours(coat(colours=corners, factor=tuple(factor)))
-    np.testing.assert_allclose(means[0], corners[0, :, :3].mean(axis=0) * factor[:3], atol=1e-7)
-    assert solid.all()
+@pytest.mark.parametrize("wrap", WRAPS)
+@pytest.mark.parametrize("nearest", [True, False])
+@pytest.mark.parametrize("beyond", [np.nan, np.inf, -np.inf, 1.7e308, -1.7e308])
+def test_coordinates_beyond_numbers_have_some_colour(wrap, nearest, beyond):
+    texture = Texture(np.full((3, 5, 4), 255, np.uint8), (wrap, wrap), nearest)
+    painted = coat(uv=[[(beyond, 0), (0, beyond), (beyond, beyond)]], texture=texture)
+    assert sample(painted, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [1, 1, 1, 1]
 
 
-def test_the_mean_of_a_texture_is_that_of_its_pixels_in_linear_light():
-    black_and_white = np.zeros((8, 8, 4), np.uint8)
-    black_and_white[::2, ::2, :3] = black_and_white[1::2, 1::2, :3] = 255
-    black_and_white[:, :, 3] = 255
-    square = [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]]
-    means, _ = mean_colours(coat(uv=square, texture=Texture(black_and_white)))
-    np.testing.assert_allclose(means, 0.5, atol=0.01)
+def encoded(linear):
+    """The nearest of 256 codes."""
+    return int(np.abs(LINEAR_OF_SRGB8 - linear).argmin())
 
 
-def test_what_is_cut_away_has_no_colour_and_does_not_tint_the_rest():
+@settings(max_examples=100, deadline=None)
+@given(st.integers(1, 5), st.integers(1, 5), st.integers(0, 2**32), st.booleans())
+def test_halving_takes_means_in_linear_light_weighed_by_alpha(height, width, seed, opaque):
+    pixels = np.random.default_rng(seed).integers(0, 256, (height, width, 4), np.uint8)
+    if opaque:
+        pixels[:, :, 3] = 255
+    found = halved(Texture(pixels, ("clamp", "repeat"))).pixels
+    assert found.shape == ((height + 1) // 2, (width + 1) // 2, 4)
+    for row, column in np.ndindex(found.shape[:2]):
+        four = [pixels[min(2 * row + i, height - 1), min(2 * column + j, width - 1)] for i in (0, 1) for j in (0, 1)]
+        weights = [int(one[3]) for one in four]
+        weights = weights if sum(weights) else [1] * 4
+        for channel in range(3):
+            mean = sum(w * LINEAR_OF_SRGB8[one[channel]] for w, one in zip(weights, four, strict=True)) / sum(weights)
+            assert abs(int(found[row, column, channel]) - encoded(mean)) <= 1
+        assert abs(int(found[row, column, 3]) - sum(int(one[3]) for one in four) / 4) <= 0.5
+
+
+def test_black_and_white_halve_to_the_grey_of_half_the_light():
+    pixels = np.zeros((8, 8, 4), np.uint8)
+    pixels[::2, ::2, :3] = pixels[1::2, 1::2, :3] = 255
+    pixels[:, :, 3] = 255
+    assert (halved(Texture(pixels)).pixels == [188, 188, 188, 255]).all()
+
+
+def test_triangles_remain_of_which_any_is_not_cut_away():
     leaf = np.zeros((4, 4, 4), np.uint8)
     leaf[:, :2] = (0, 255, 0, 255)
     leaf[:, 2:] = (255, 0, 0, 0)
     left, whole, right = [(0.05, 0), (0.2, 0), (0.2, 1)], [(0, 0), (1, 0), (1, 1)], [(0.7, 0), (0.9, 0), (0.9, 1)]
-    painted = coat(uv=[left, whole, right], texture=Texture(leaf, nearest=True), cutoff=0.5)
-    means, solid = mean_colours(painted)
-    assert solid.tolist() == [True, True, False]
-    assert means.tolist() == [[0, 1, 0], [0, 1, 0], [0, 0, 0]]
-
-
-def test_triangles_without_paint_have_no_mean():
-    painted = coat(uv=np.zeros((2, 3, 2)))
-    mixed = Coat(painted.paints, np.array([-1, 0], np.int32), painted.uv, painted.colours)
-    means, solid = mean_colours(mixed)
-    assert (means.tolist(), solid.tolist()) == ([[0, 0, 0], [1, 1, 1]], [False, True])
+    painted = coat(uv=[left, whole, right, right], texture=Texture(leaf, nearest=True), cutoff=0.5)
+    painted = Coat(painted.paints, np.array([0, 0, 0, -1], np.int32), painted.uv, painted.colours)
+    assert remaining(painted).tolist() == [True, True, False, False]
 
 
 @pytest.mark.parametrize("count", [1, 40_000])
 def test_the_number_of_samples_is_bounded(count):
-    texture = Texture(np.full((1000, 1000, 4), 255, np.uint8))
+    texture = Texture(np.full((1000, 1000, 4), 127, np.uint8))
     uv = np.tile([[(0, 0), (1, 0), (1, 1)]], (count, 1, 1))
-    means, solid = mean_colours(coat(uv=uv, texture=texture))
-    np.testing.assert_allclose(means, 1.0)
-    assert solid.all()
+    assert not remaining(coat(uv=uv, texture=texture, cutoff=0.5)).any()

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from voxrt.voxelize.gltf.extensions import read_extension
 from voxrt.voxelize.gltf.schema import Sampler, TextureSource
 from voxrt.voxelize.images import decode_image
-from voxrt.voxelize.paint import Texture
+from voxrt.voxelize.texture import Texture
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from voxrt.voxelize.gltf.document import Document
-    from voxrt.voxelize.paint import Wrap
+    from voxrt.voxelize.texture import Wrap
 
 _NEAREST = 9728
 _WRAPS: dict[int, Wrap] = {10497: "repeat", 33648: "mirror", 33071: "clamp"}

@@ -10,8 +10,9 @@ import numpy as np
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8
 from voxrt.voxelize.images import decode_image
 from voxrt.voxelize.obj.mtl import MtlMaterial, MtlTexture, find_companion, read_mtl
-from voxrt.voxelize.paint import Coat, Paint, Texture
+from voxrt.voxelize.paint import Coat, Paint
 from voxrt.voxelize.scene import DEFAULT_COLOUR
+from voxrt.voxelize.texture import Texture
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.notes import Notes
     from voxrt.voxelize.obj.statements import Statements
     from voxrt.voxelize.obj.text import Text
-    from voxrt.voxelize.paint import Wrap
+    from voxrt.voxelize.texture import Wrap
 
 OPAQUE_FROM = 0.5
 """A material of lower opacity is air."""

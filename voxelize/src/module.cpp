@@ -14,19 +14,40 @@ using namespace voxrt;
 namespace {
 
 template <typename T> using InputOf = nb::ndarray<const T, nb::numpy, nb::c_contig, nb::device::cpu>;
-using MeshArrays = std::tuple<InputOf<double>, InputOf<int32_t>, InputOf<uint8_t>>;
+using MeshArrays =
+    std::tuple<InputOf<double>, InputOf<int32_t>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<float>, InputOf<uint8_t>>;
 
 void require(bool holds, const char* what) {
     if (!holds)
         throw nb::value_error(what);
 }
 
+constexpr int32_t kLongestRaster = 1 << 16;
+
 template <typename Array> void require_rows(const Array& array, size_t columns, const char* what) {
     require(array.ndim() == 2 && array.shape(1) == columns, what);
 }
 
-MeshView view_mesh(const MeshArrays& arrays) {
-    const auto& [positions, triangles, materials] = arrays;
+/// The first cell of each triangle's raster.
+std::vector<int64_t> raster_starts(const MeshArrays& arrays) {
+    const auto& [positions, triangles, materials, sizes, places, tints] = arrays;
+    std::vector<int64_t> starts(sizes.size() / 2);
+    int64_t cells = 0;
+    for (size_t t = 0; t < starts.size(); ++t) {
+        const int64_t columns = sizes.data()[2 * t], rows = sizes.data()[2 * t + 1];
+        require(columns >= 0 && columns <= kLongestRaster && rows >= 0 && rows <= kLongestRaster &&
+                    (columns == 0) == (rows == 0),
+                "rasters must have 1 … 65536 columns and rows, or none");
+        starts[t] = cells;
+        cells += columns * rows;
+        require(cells <= int64_t(tints.size()), "rasters have more cells than there are materials");
+    }
+    require(tints.ndim() == 1 && int64_t(tints.size()) == cells, "rasters have fewer cells than there are materials");
+    return starts;
+}
+
+MeshView view_mesh(const MeshArrays& arrays, const std::vector<int64_t>& starts) {
+    const auto& [positions, triangles, materials, sizes, places, tints] = arrays;
     require_rows(positions, 3, "positions must have shape (V, 3)");
     require_rows(triangles, 3, "triangles must have shape (T, 3)");
     require(materials.ndim() == 1 && (materials.size() == triangles.shape(0) || materials.size() == 0),
@@ -41,7 +62,14 @@ MeshView view_mesh(const MeshArrays& arrays) {
     require(lowest >= 0 && highest < vertices, "triangles must index positions");
     for (size_t i = 0; i < materials.size(); ++i)
         require(materials.data()[i] != 0, "material 0 is empty space");
-    return {{positions.data(), positions.size()}, {corner, triangles.size()}, {materials.data(), materials.size()}};
+    require_rows(sizes, 2, "raster sizes must have shape (T, 2)");
+    require(places.ndim() == 3 && places.shape(0) == sizes.shape(0) && places.shape(1) == 3 && places.shape(2) == 2,
+            "places in rasters must have shape (T, 3, 2)");
+    require(sizes.shape(0) == triangles.shape(0) || sizes.shape(0) == 0, "raster sizes must have shape (T, 2)");
+    return {{positions.data(), positions.size()},
+            {corner, triangles.size()},
+            {materials.data(), materials.size()},
+            {{sizes.data(), sizes.size()}, {places.data(), places.size()}, {tints.data(), tints.size()}, starts}};
 }
 
 template <typename T> nb::ndarray<nb::numpy, T> give(SparseVoxels::Array<T>& array) {
@@ -69,10 +97,12 @@ nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Input
     require_rows(frames, 12, "frames must have shape (P, 12)");
     require(frames.shape(0) == count, "frames must have shape (P, 12)");
 
+    std::vector<std::vector<int64_t>> starts;
     std::vector<MeshView> views;
+    starts.reserve(meshes.size());
     views.reserve(meshes.size());
     for (const MeshArrays& arrays : meshes)
-        views.push_back(view_mesh(arrays));
+        views.push_back(view_mesh(arrays, starts.emplace_back(raster_starts(arrays))));
     std::vector<PartView> parts;
     parts.reserve(count);
     for (size_t p = 0; p < count; ++p) {
@@ -130,7 +160,10 @@ Parameters
 depth
     The grid's depth, 1 … 16.
 meshes
-    Positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their objects' frames; shared by parts.
+    Positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their objects' frames; shared by parts. Then, for
+    materials that vary over triangles, the columns and rows of each triangle's raster (T, 2), 0 where it has none;
+    its corners' places in it (T, 3, 2); and the materials of all rasters' cells, as src/tint.h says. The three are
+    without rows where no triangle has a raster. They count in parts whose material is 0.
 kinds
     Shape (P,): 0 mesh, 1 axis-aligned box, 2 ball, 3 ellipsoid.
 mesh_of

@@ -25,9 +25,11 @@ inline constexpr uint32_t kNone = 0xFFFF'FFFF;
 struct ShellBrick {
     Columns shell{}, enters{}, leaves{};
     uint32_t cells = kNone; // row of materials where the shell has several
+    uint32_t cuts = kNone;  // row of voxels that surface without material is in
     uint8_t material = 0;   // the shell's only material, else 0
     bool crossed = false;   // enters or leaves may hold something
     bool has_spill = false; // crossings of this brick are in the layer's list too
+    bool has_shell() const { return material != 0 || cells != kNone; }
 };
 
 struct Spill {
@@ -52,6 +54,7 @@ public:
         places_.clear();
         bricks_.clear();
         cells_.clear();
+        cuts_.clear();
         spills_.clear();
         x_ = x;
         y_ = y;
@@ -74,6 +77,17 @@ public:
             }
             brick.shell[bit] |= interval;
         }
+    }
+
+    /// Takes note of surface that has no material: it is no shell, but what it is in is not inside either.
+    void cut(int x, int y, int z) {
+        const auto [column, bit] = locate(x, y);
+        ShellBrick& brick = at(column, z >> kBrickBits);
+        if (brick.cuts == kNone) {
+            brick.cuts = uint32_t(cuts_.size());
+            cuts_.emplace_back();
+        }
+        cuts_[brick.cuts][bit] |= uint8_t(1 << (z & (kBrickSide - 1)));
     }
 
     /// Sink of cover_triangle.
@@ -117,6 +131,17 @@ public:
     uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
     const Cells& cells(uint32_t row) const { return cells_[row]; }
 
+    /// The voxels of a brick that surface is in, its shell and what is cut away.
+    Slices surface(const ShellBrick& brick, const Slices& shell) const {
+        Slices found = shell;
+        if (brick.cuts != kNone) {
+            const Slices cut = slices_of(cuts_[brick.cuts]);
+            for (int z = 0; z < kBrickSide; ++z)
+                found[z] |= cut[z];
+        }
+        return found;
+    }
+
 private:
     struct Place {
         int column, bit;
@@ -148,6 +173,7 @@ private:
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> places_;
     std::vector<Cells> cells_;
+    std::vector<Columns> cuts_;
     std::vector<Spill> spills_;
 };
 

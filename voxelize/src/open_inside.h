@@ -25,7 +25,7 @@ public:
     /// What the settling of large cubes asks of a brick: the closed surface's winding number at two of its voxels.
     struct Brick {
         int corner = 0, middle = 0; // voxels (0, 0, 0) and (4, 4, 4)
-        bool shell = false;
+        bool surface = false;
     };
 
     /// The inside lies within `box`; every brick is then to be told before settle().
@@ -54,9 +54,9 @@ public:
 
     Verdict verdict(int column, int k) const { return verdicts_[size_t(column) * height_ + k]; }
 
-    /// The voxels of a brick that are inside, the shell's left out of a mixed one. `numbers`: the closed surface's
+    /// The voxels of a brick that are inside, the surface's left out of a mixed one. `numbers`: the closed surface's
     /// winding numbers there; asked of mixed ones only.
-    Slices inside(int column, int k, const Slices& shell, const std::vector<int>& numbers) {
+    Slices inside(int column, int k, const Slices& surface, const std::vector<int>& numbers) {
         Slices box = box_of(column, k), within{};
         if (verdict(column, k) == Verdict::inside)
             return box;
@@ -66,7 +66,7 @@ public:
         y_ = y0_ + column / kTileBricks * kBrickSide;
         z_ = k * kBrickSide;
         for (int z = 0; z < kBrickSide; ++z)
-            box[z] &= ~shell[z];
+            box[z] &= ~surface[z];
         decide({0, 0, 0, std::min(side_, kBrickSide)}, box, numbers.data(), within);
         return within;
     }
@@ -114,7 +114,7 @@ private:
         for (int v = by; v < by + bricks; ++v)
             for (int u = bx; u < bx + bricks; ++u)
                 for (int w = k; w < k + bricks; ++w)
-                    if (brick(v * kTileBricks + u, w).shell)
+                    if (brick(v * kTileBricks + u, w).surface)
                         return Verdict::mixed;
         const HoleRim::Slope slope = holes_->slope(q, reach);
         const Point& g = slope.gradient;

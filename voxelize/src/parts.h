@@ -11,11 +11,21 @@
 
 namespace voxrt {
 
+/// The rasters of a mesh's triangles (see tint.h), borrowed; all spans are empty where none has one.
+struct Tints {
+    std::span<const int32_t> sizes;     // columns and rows of each triangle's, 0 and 0 where it has one material
+    std::span<const float> corners;     // 6 a triangle: its corners' places in the raster
+    std::span<const uint8_t> materials; // of the cells, raster by raster, row by row; 0 where cut away
+    std::span<const int64_t> starts;    // 1 a triangle: its first cell
+    bool covers(size_t triangle) const { return !sizes.empty() && sizes[2 * triangle] != 0; }
+};
+
 /// Triangles in their object's frame, borrowed; instances share one.
 struct MeshView {
     std::span<const double> positions;  // 3 a vertex
     std::span<const int32_t> triangles; // 3 a triangle, in range
     std::span<const uint8_t> materials; // 1 a triangle, or empty
+    Tints tints = {};                   // of the triangles whose materials vary
     size_t vertex_count() const { return positions.size() / 3; }
     size_t triangle_count() const { return triangles.size() / 3; }
 };

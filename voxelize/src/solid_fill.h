@@ -30,7 +30,7 @@ public:
             const int column = int(place) / layer.height(), k = int(place) % layer.height();
             const ShellBrick& brick = *layer.find(column, k);
             const Cells* cells = brick.cells == kNone ? nullptr : &layer.cells(brick.cells);
-            if (brick.material != 0 || cells != nullptr)
+            if (brick.has_shell())
                 result.voxels += tile.claim(column, k, slices_of(brick.shell), brick.material, cells);
         }
         return result;
@@ -111,7 +111,7 @@ private:
                 advance(winding, crossings, index, brick->has_spill, z);
                 within[z] = winding.inside();
             }
-            claim_brick(tile, layer, column, k, *brick, slices_of(brick->shell), within, interior, result);
+            claim_brick(tile, layer, column, k, *brick, within, interior, result);
             ++k;
         }
         result.simple = result.simple && winding.simple();
@@ -149,7 +149,7 @@ private:
                     if (z == kBrickSide / 2)
                         last.middle = winding.at(column_bit(kBrickSide / 2, kBrickSide / 2));
                 }
-                last.shell = brick->material != 0 || brick->cells != kNone;
+                last.surface = brick->has_shell() || brick->cuts != kNone;
             }
             inside_.brick(column, k) = last;
             if (brick != nullptr)
@@ -166,7 +166,7 @@ private:
             const OpenInside::Verdict verdict = inside_.verdict(column, k);
             if (found == nullptr && verdict == OpenInside::Verdict::outside)
                 continue;
-            const Slices shell = slices_of(brick.shell);
+            const Slices surface = layer.surface(brick, slices_of(brick.shell));
             const Crossings crossings(brick);
             if (verdict == OpenInside::Verdict::mixed)
                 numbers_.resize(kBrickVoxels);
@@ -176,24 +176,25 @@ private:
                 for (int bit = 0; verdict == OpenInside::Verdict::mixed && bit < 64; ++bit)
                     numbers_[z * 64 + bit] = winding.at(bit);
             }
-            const Slices within = inside_.inside(column, k, shell, numbers_);
-            if (is_full(within) && is_empty(shell))
+            const Slices within = inside_.inside(column, k, surface, numbers_);
+            if (is_full(within) && is_empty(surface))
                 claim_run(tile, column, k, k + 1, ~uint64_t{0}, interior, result);
             else
-                claim_brick(tile, layer, column, k, brick, shell, within, interior, result);
+                claim_brick(tile, layer, column, k, brick, within, interior, result);
         }
     }
 
     void claim_brick(TileVoxels& tile, ObjectLayer& layer, int column, int k, const ShellBrick& brick,
-                     const Slices& shell, const Slices& within, uint8_t interior, Claim& result) {
+                     const Slices& within, uint8_t interior, Claim& result) {
+        const Slices shell = slices_of(brick.shell), surface = layer.surface(brick, shell);
         Slices mask, hidden;
         for (int z = 0; z < kBrickSide; ++z) {
-            mask[z] = shell[z] | within[z];
-            hidden[z] = within[z] & ~shell[z];
+            hidden[z] = within[z] & ~surface[z];
+            mask[z] = shell[z] | hidden[z];
         }
         if (is_empty(mask))
             return;
-        const bool has_shell = brick.material != 0 || brick.cells != kNone;
+        const bool has_shell = brick.has_shell();
         if (!has_shell || (brick.cells == kNone && (brick.material == interior || is_empty(hidden)))) {
             result.voxels += tile.claim(column, k, mask, has_shell ? brick.material : interior, nullptr);
             return;

@@ -4,6 +4,7 @@
 #include "solid_fill.h"
 #include "survey.h"
 #include "tile_order.h"
+#include "tint.h"
 
 namespace voxrt {
 namespace {
@@ -105,10 +106,19 @@ private:
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
-            if (open != nullptr && open->is_sheet(t))
-                cover_triangle<false>(a, b, c, window, false, layer);
-            else
-                cover_triangle<Cross>(a, b, c, window, surveyed.inverted, layer);
+            auto add_to = [&](auto& sink) {
+                if (open != nullptr && open->is_sheet(t))
+                    cover_triangle<false>(a, b, c, window, false, sink);
+                else
+                    cover_triangle<Cross>(a, b, c, window, surveyed.inverted, sink);
+            };
+            if (part.material != 0 || !mesh.tints.covers(t)) {
+                add_to(layer);
+            } else {
+                const TintedTriangle triangle(a, b, c, mesh.tints, t);
+                TintedLayer tinted(layer, triangle);
+                add_to(tinted);
+            }
         };
         if (items[0].triangle != kWhole) {
             for (const Item& item : items)

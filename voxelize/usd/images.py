@@ -10,7 +10,7 @@ from pxr import Ar
 
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8, srgb_from_linear
 from voxrt.voxelize.images import decode_image
-from voxrt.voxelize.paint import Texture
+from voxrt.voxelize.texture import Texture
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

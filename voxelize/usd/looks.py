@@ -13,7 +13,7 @@ from voxrt.voxelize.usd.values import numbers
 
 if TYPE_CHECKING:
     from voxrt.voxelize.notes import Notes
-    from voxrt.voxelize.paint import Wrap
+    from voxrt.voxelize.texture import Wrap
 
 Linear: TypeAlias = tuple[float, float, float]
 

@@ -75,6 +75,14 @@ def levels(kind: type, tokens: Sequence[Token]) -> int:
     return number
 
 
+def shades(kind: type, tokens: Sequence[Token]) -> int:
+    """Read a number of colours beside the one that a painted surface has inside."""
+    number = whole(kind, tokens)
+    if not 1 <= number <= 254:
+        raise ValueError(f"{number} is not 1 to 254")
+    return number
+
+
 def words(kind: type, tokens: Sequence[Token]) -> int:
     """Read a number of memory words."""
     number = whole(kind, tokens)

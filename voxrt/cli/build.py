@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, words
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.results import build_report, print_json
 
@@ -27,6 +27,7 @@ def build(
     unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
     time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
     variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
+    colours: Annotated[int, Parameter(converter=shades, metavar="K")] = 32,
     budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
@@ -65,6 +66,8 @@ def build(
         The second of its animation at which the asset is shown (glTF, USD).
     variant
         A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
+    colours
+        Materials that textures and vertex colours are reduced to, 1 to 254; uniform materials keep their colour.
     budget
         Words that the memory may take: what is seen least is given up until it fits.
     board
@@ -91,7 +94,7 @@ def build(
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
         raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
-    with stage_bar(5 + (preview is not None) + (budget is not None or board is not None)) as progress:
+    with stage_bar(6 + (preview is not None) + (budget is not None or board is not None)) as progress:
         result = voxrt.build(
             asset,
             output,
@@ -104,6 +107,7 @@ def build(
             unit=unit,
             time=time,
             variants=variant,
+            colours=colours,
             budget=board or budget,
             dialect=dialect,
             preview=png(Path(preview)) if preview else preview is not None,

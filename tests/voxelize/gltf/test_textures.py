@@ -8,7 +8,7 @@ import pytest
 from oracles.gltf_writer import GltfWriter
 from PIL import Image
 
-from voxrt.voxelize import AssetError, load
+from voxrt.voxelize import AssetError, DoesNotFitError, load
 from voxrt.voxelize.colour import srgb_from_linear
 from voxrt.voxelize.paint import sample
 
@@ -107,7 +107,7 @@ def test_vertex_colours_are_linear_whatever_their_type(dtype, scale, flagged, tm
     scene = load(writer.save(tmp_path / "a.glb"))
     # Without a material, vertex colours are the author's: no default material.
     assert scene.materials[1].colour == (156, 156, 156)
-    assert {warning.kind for warning in scene.warnings} == {"painted"}
+    assert not scene.warnings
 
 
 def test_white_vertex_colours_leave_the_material_exact_and_named(tmp_path):
@@ -244,21 +244,45 @@ def test_variants(tmp_path):
         load(path, variants=("Snow", "Park"))
 
 
-def test_uniform_materials_keep_their_ids_and_the_palette_stands_behind_them(tmp_path):
+def painted_triangles(names, uniform=()):
+    """A file with a uniform material for each of `uniform` and a triangle in vertex colours for each of `names`."""
     random = np.random.default_rng(1)
     writer = GltfWriter()
-    writer.add("materials", {"name": "paint"})
-    for at in range(210):
-        index = writer.add("materials", {"name": f"m{at}"})
+    for name in names:
+        index = writer.add("materials", {"name": name})
+        writer.show(mesh=writer.mesh(TRIANGLE, material=index, COLOR_0=writer.accessor(random.random((3, 3)))))
+    for name in uniform:
+        index = writer.add("materials", {"name": name})
         writer.show(mesh=writer.mesh(TRIANGLE, material=index))
-    for _ in range(300):
-        colours = writer.accessor(np.tile(random.random((1, 3)), (3, 1)))
-        writer.show(mesh=writer.mesh(TRIANGLE, material=0, COLOR_0=colours))
+    return writer
+
+
+def test_paints_have_their_materials_behind_the_uniform_ones(tmp_path):
+    uniform = [f"m{at}" for at in range(240)]
+    scene = load(painted_triangles(["silk", "wool"], uniform).save(tmp_path / "a.glb"))
+    assert [material.name for material in scene.materials[1:]] == [*uniform, "silk", "wool"]
+    assert not scene.warnings
+
+
+def test_paints_share_materials_where_there_are_too_many(tmp_path):
+    writer = painted_triangles([f"p{at}" for at in range(300)], [f"m{at}" for at in range(205)])
     scene = load(writer.save(tmp_path / "a.glb"))
-    assert [material.name for material in scene.materials[1:211]] == [f"m{at}" for at in range(210)]
-    assert len(scene.materials) == 256
-    assert all(material.name.startswith("paint #") for material in scene.materials[211:])
-    assert kinds(scene) == {"painted": 300}
+    assert len(scene.materials) - 1 <= 205 + 25
+    assert all(0 < int(thing.mesh.materials[0]) < len(scene.materials) for thing in scene.objects)
+    full = painted_triangles(["silk"], [f"m{at}" for at in range(255)]).save(tmp_path / "b.glb")
+    with pytest.raises(DoesNotFitError, match="leave none of the 255 to the painted surfaces"):
+        load(full)
+
+
+def test_paint_of_one_colour_is_a_material(tmp_path):
+    writer = GltfWriter()
+    writer.add("materials", {"name": "dye", "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1]}})
+    colours = writer.accessor(np.full((3, 3), 0.5))
+    writer.show(mesh=writer.mesh(TRIANGLE, material=0, COLOR_0=colours))
+    scene = load(writer.save(tmp_path / "a.glb"))
+    assert scene.objects[0].mesh.coat is None
+    (dye,) = scene.materials[1:]
+    assert (dye.name, dye.colour) == ("dye", tuple(srgb_from_linear([0.5, 0.25, 0.125]).tolist()))
 
 
 def test_mirrored_paint_is_a_mirror(tmp_path):

@@ -1,8 +1,8 @@
 // Runs the native voxelizer without Python, for the sanitizers: `make sanitize` builds it with each of them.
 //
-// Random soups, closed and holed spheres, huge and tiny triangles, instances, analytic solids and hulls, on grids of
-// every small depth, filled or not. Every scene is voxelized on one thread and on three; the results must be equal.
-// Prints a line and exits with 1 where they are not.
+// Random soups, closed and holed spheres, huge and tiny triangles, instances, analytic solids and hulls, with and
+// without materials that vary over triangles, on grids of every small depth, filled or not. Every scene is voxelized on
+// one thread and on three; the results must be equal. Prints a line and exits with 1 where they are not.
 #include "convex_hull.h"
 #include "voxelizer.h"
 
@@ -19,8 +19,28 @@ struct Mesh {
     std::vector<double> positions;
     std::vector<int32_t> triangles;
     std::vector<uint8_t> materials;
+    std::vector<int32_t> sizes;
+    std::vector<float> places;
+    std::vector<uint8_t> tints;
+    std::vector<int64_t> starts;
 
-    MeshView view() const { return {positions, triangles, materials}; }
+    MeshView view() const { return {positions, triangles, materials, {sizes, places, tints, starts}}; }
+
+    /// Gives each triangle a raster of random materials, 0 among them, some of it beyond the triangle and the other way
+    /// round; every fifth keeps its material.
+    void tint(std::mt19937_64& random) {
+        std::uniform_int_distribution<int> side(1, 6), material(0, 5);
+        std::uniform_real_distribution<float> place(-1, 7);
+        for (size_t t = 0; t < materials.size(); ++t) {
+            const int columns = t % 5 == 0 ? 0 : side(random), rows = t % 5 == 0 ? 0 : side(random);
+            sizes.insert(sizes.end(), {columns, rows});
+            starts.push_back(int64_t(tints.size()));
+            for (int i = 0; i < 6; ++i)
+                places.push_back(place(random));
+            for (int i = 0; i < columns * rows; ++i)
+                tints.push_back(uint8_t(material(random)));
+        }
+    }
     void add(const double (&corners)[9], uint8_t material) {
         for (int i = 0; i < 3; ++i) {
             triangles.push_back(int32_t(positions.size() / 3));
@@ -151,6 +171,10 @@ int main() {
                         sphere(side / 2, side / 2, side / 2, side * 0.4, 12, 0, false),
                         sphere(side / 3, side / 2, side / 2, side * 0.3, 12, 7, false),
                         sphere(side / 2, side / 3, side / 2, side * 0.7, 6, 0, true)};
+        scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 0, false));
+        scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 9, false));
+        for (const size_t mesh : {0, 1, 2, 6, 7})
+            scene.meshes[mesh].tint(random);
         for (size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
             scene.add(mesh, 1, 0);
         for (int i = 0; i < 5; ++i) // instances

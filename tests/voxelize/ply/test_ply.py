@@ -12,6 +12,7 @@ from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.load import load
+from voxrt.voxelize.paint import sample
 from voxrt.voxelize.ply import load_ply
 
 VERTICES = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (1, 1, 3)]
@@ -62,7 +63,7 @@ def test_vertex_colours(ply):
     data = header("ascii", 3, 1, colour=True) + b"0 0 0 10 20 255\n1 0 0 10 20 255\n0 1 0 10 20 255\n3 0 1 2 0\n"
     scene = ply(data)
     assert [one.colour for one in scene.materials[1:]] == [(10, 20, 255)]
-    assert {one.kind: one.count for one in scene.warnings} == {"painted": 1}
+    assert not scene.warnings
 
 
 def test_colours_of_faces_come_before_those_of_vertices(ply):
@@ -71,7 +72,8 @@ def test_colours_of_faces_come_before_those_of_vertices(ply):
     )
     vertices = b"0 0 0 10 20 255\n1 0 0 10 20 255\n0 1 0 10 20 255\n"
     scene = ply(text + vertices + b"3 0 1 2 1 0 0 0\n3 2 1 0 0 1 0 0\n")
-    assert [scene.materials[number].colour for number in scene.objects[0].mesh.materials] == [(255, 0, 0), (0, 255, 0)]
+    colours = sample(scene.objects[0].mesh.coat, np.array([0, 1]), np.full((2, 3), 1 / 3))
+    assert colours.tolist() == [[1, 0, 0, 1], [0, 1, 0, 1]]
 
 
 def test_faces_that_are_transparent_are_air(ply):
