@@ -39,7 +39,7 @@ def rom_of(name, seed):
 
 @pytest.mark.parametrize(
     ("engine", "opened"),
-    [("model", ModelDevice), ("tiny", partial(open_rtl, "tiny")), ("lit4", partial(open_rtl, "lit4"))],
+    [("model", ModelDevice), ("tiny", partial(open_rtl, "tiny")), ("lit", partial(open_rtl, "lit"))],
 )
 def test_swapped_scenes(engine, opened):
     try:
@@ -69,7 +69,7 @@ def test_swapped_scenes(engine, opened):
     assert (len(roots) > 1) == device.identity.movable_root
 
 
-@pytest.mark.parametrize("opened", [ModelDevice, partial(open_rtl, "lit"), partial(open_rtl, "lit4")])
+@pytest.mark.parametrize("opened", [ModelDevice, partial(open_rtl, "lit")])
 def test_features_and_background(opened):
     rom = rom_of("world", 1)
     mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
@@ -140,7 +140,7 @@ def test_every_width_of_the_stream():
 
 def test_an_unknown_configuration():
     rtl_device()
-    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are lit, lit4, tiny"):
+    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are lit, tiny"):
         open_rtl("huge")
 
 

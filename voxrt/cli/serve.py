@@ -49,7 +49,7 @@ def serve(
     device
         What renders: the exact model, the verilated hardware, which is slow, or the PYNQ board that this runs on.
     config
-        The configuration of the verilated hardware: tiny has no features, lit and lit4 have all of them.
+        The configuration of the verilated hardware: tiny has no features, lit has all of them.
     bitstream
         The .bit of the PYNQ board, its .hwh beside it.
     host

@@ -42,7 +42,7 @@ def upload(
     device
         Instead of a server: a device of this machine, to try the upload on.
     config
-        The configuration of the verilated hardware: tiny, lit or lit4.
+        The configuration of the verilated hardware: tiny or lit.
     dry_run
         Check everything, write nothing.
     reporting
