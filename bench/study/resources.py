@@ -42,8 +42,6 @@ plt.show()
 # %%
 # What the area gives on the published house, where a ray reads 12 words: ours at its bound, theirs as simulated.
 for name, row in area.items():
-    pixels = 1e6 / max(1, 12 / int(row["lanes"]))
-    print(
-        f"{name:8s}{float(row['LUT'].replace(',', '')) / pixels * 1e3:8.1f} LUT for a thousand pixels in a million clocks"
-    )
-print(f"{'original':8s}{theirs['LUT'] / (1e6 / 338) * 1e3:8.1f}")
+    pixels = 1e3 / max(1, 12 / int(row["lanes"]))
+    print(f"{name:8s}{float(row['LUT'].replace(',', '')) / pixels:8.1f} LUT for a pixel in a thousand clocks")
+print(f"{'original':8s}{theirs['LUT'] / (1e3 / 338):8.1f}")
