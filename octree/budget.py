@@ -4,8 +4,8 @@ How it works: equal blocks are shared first, which costs nothing. If that is not
 others stand for them (the idea is that of van der Laan, Scandolo and Eisemann, "Lossy Geometry Compression for High
 Resolution Voxel Scenes", 2020): other bricks of the scene, and coarser or fuller versions of all. What that costs is
 how the brick looks along the eight diagonals of its cube: faces that turn or change colour, and what is covered. Which
-bricks to keep is a facility location problem, solved by adding and dropping at a falling price of a block until the
-memory is full. A stand-in holds every solid voxel of what it stands for, so a wall never gets a hole; what it holds
+bricks to keep is a facility location problem, solved by adding and dropping (Kuehn and Hamburger, "A Heuristic Program
+for Locating Warehouses", 1963) at a falling price of a block until the memory is full. A stand-in holds every solid voxel of what it stands for, so a wall never gets a hole; what it holds
 beyond that is what silhouettes grow by. Octants that no ray from outside reaches change for nothing. Memories far too
 large start from a world made coarser by one level or more; every candidate that fits is measured against the original,
 the plain coarser world among them; the closest is taken.
@@ -201,4 +201,5 @@ def _sight_costs(colours: NDArray[np.uint8] | None) -> _SightCosts:
 
 
 def _squares(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return ((a[:, None] - b[None]) ** 2).sum(axis=-1)
+    squares: NDArray[np.float64] = ((a[:, None] - b[None]) ** 2).sum(axis=-1)
+    return squares

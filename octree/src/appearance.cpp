@@ -1,6 +1,7 @@
 #include "appearance.h"
 
 #include <bit>
+#include <cstring>
 #include <vector>
 
 namespace voxrt::octree {
@@ -34,7 +35,8 @@ const std::vector<Way>& ways() {
                 at[(entered + 2) % 3] = i / 8;
                 Way way;
                 for (unsigned axis = entered; at[0] < 8 && at[1] < 8 && at[2] < 8; ++at[axis]) {
-                    way.push_back({static_cast<std::uint16_t>(cell_at(at)), static_cast<std::uint16_t>(256 * (axis + 1))});
+                    way.push_back(
+                        {static_cast<std::uint16_t>(cell_at(at)), static_cast<std::uint16_t>(256 * (axis + 1))});
                     axis = (axis + 1) % 3;
                 }
                 result.push_back(std::move(way));
@@ -61,6 +63,13 @@ const std::array<std::array<std::uint16_t, 6>, 512>& neighbours() {
         return result;
     }();
     return all;
+}
+
+// Inline where the baseline of the processor has no instruction for it, which std::popcount is not.
+unsigned ones(std::uint64_t word) {
+    word -= word >> 1 & 0x5555555555555555u;
+    word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+    return static_cast<unsigned>(((word + (word >> 4)) & 0x0F0F0F0F0F0F0F0Fu) * 0x0101010101010101u >> 56);
 }
 
 } // namespace
@@ -96,17 +105,25 @@ Brick::Brick(const Cells512& materials) : cells(materials) {
 std::uint64_t sight_change(const Brick& before, const Brick& after, const SightCosts& costs, std::uint64_t most) {
     std::uint64_t cost = 0;
     for (unsigned word = 0; word < 8; ++word)
-        for (std::uint64_t left = before.exposed[word]; left != 0; left &= left - 1) {
-            const unsigned cell = 64 * word + static_cast<unsigned>(std::countr_zero(left));
-            if (!(after.exposed[word] >> (cell % 64) & 1) || before.cells[cell] != after.cells[cell])
-                cost += kChanged;
+        cost += kChanged * ones(before.exposed[word] & ~after.exposed[word]);
+    if (cost >= most)
+        return cost;
+    for (unsigned word = 0; word < 8; ++word)
+        for (std::uint64_t both = before.exposed[word] & after.exposed[word]; both != 0; both &= both - 1) {
+            const unsigned cell = 64 * word + static_cast<unsigned>(std::countr_zero(both));
+            cost += before.cells[cell] != after.cells[cell] ? kChanged : 0;
         }
-    for (unsigned ray = 0; ray < Brick::kRays && cost < most; ++ray) {
-        const unsigned a = before.seen[ray];
-        const unsigned b = after.seen[ray];
-        if (a != b)
-            cost += a == 0 ? costs.covering[b & 255]
-                           : (a >> 8 == b >> 8 ? costs.same_face : costs.turned)[a & 255][b & 255];
+    // Most rays see the same: four are compared at once.
+    for (unsigned first = 0; first < Brick::kRays && cost < most; first += 4) {
+        if (std::memcmp(&before.seen[first], &after.seen[first], 4 * sizeof before.seen[0]) == 0)
+            continue;
+        for (unsigned ray = first; ray < first + 4; ++ray) {
+            const unsigned a = before.seen[ray];
+            const unsigned b = after.seen[ray];
+            if (a != b)
+                cost += a == 0 ? costs.covering[b & 255]
+                               : (a >> 8 == b >> 8 ? costs.same_face : costs.turned)[a & 255][b & 255];
+        }
     }
     return cost;
 }

@@ -19,6 +19,8 @@ struct SightCosts {
 constexpr std::uint64_t kChanged = 300;
 constexpr std::uint64_t kAppeared = 100;
 
+using Mask512 = std::array<std::uint64_t, 8>; // a bit a cell, Morton order
+
 /// A brick and what is seen of it along the diagonals of its cube: one ray enters each face on the three near sides.
 /// Seen so, faces hide each other as they do in pictures, and all three axes count alike.
 struct Brick {
@@ -26,16 +28,9 @@ struct Brick {
 
     explicit Brick(const Cells512& materials);
 
-    bool holds(const Brick& part) const {
-        std::uint64_t lacking = 0;
-        for (unsigned word = 0; word < 8; ++word)
-            lacking |= part.mask[word] & ~mask[word];
-        return lacking == 0;
-    }
-
     Cells512 cells;
-    std::array<std::uint64_t, 8> mask{};    // solid cells
-    std::array<std::uint64_t, 8> exposed{}; // those with an empty neighbour inside the brick
+    Mask512 mask{};    // solid cells
+    Mask512 exposed{}; // those with an empty neighbour inside the brick
     unsigned solid = 0;
     std::array<std::uint16_t, kRays> seen{}; // material + 256 * (axis of the face + 1); 0 where a ray meets nothing
 };

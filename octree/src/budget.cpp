@@ -15,17 +15,17 @@ constexpr double kHighest = 1e15; // price of a block, in units of cost; dearer 
 constexpr double kFall = 0.7;
 constexpr unsigned kHalvings = 4;
 
-/// Chooses which stand-ins a memory has. A facility location problem: to have one costs blocks, and each brick is shown
-/// as the one it has that looks most like it. Solved as M. Balinski's (1965) usually is, by adding and dropping: at a
-/// falling price of a block those are added that better the picture by more than they cost, and dropped that no longer
-/// do, until the memory is full.
+/// Chooses which stand-ins a memory has: a facility location problem, since to have one costs blocks, and each brick is
+/// shown as the one there is that looks most like it. Solved by adding and dropping (A. A. Kuehn and M. J. Hamburger,
+/// "A Heuristic Program for Locating Warehouses", 1963) at a falling price of a block: those are added that better the
+/// picture by more than they cost, and dropped that no longer do, until the memory is full.
 class Choice {
 public:
     /// With `plain`, only bricks as they are and coarser ones. A block that nothing has yet costs its price divided by
     /// how many stand-ins would share it, at most `sharing`.
     Choice(const Memory& base, unsigned level, StandIns& stand_ins, bool plain, std::uint32_t sharing)
-        : base_(base), level_(level), stand_ins_(stand_ins), plain_(plain), sharing_(sharing),
-          open_(stand_ins.count()), uses_(stand_ins.pool().size()), sharers_(stand_ins.pool().size()) {
+        : base_(base), level_(level), stand_ins_(stand_ins), plain_(plain), sharing_(sharing), open_(stand_ins.count()),
+          uses_(stand_ins.pool().size()), sharers_(stand_ins.pool().size()) {
         for (std::uint32_t i = 0; i < open_.size(); ++i) {
             open_[i] = stand_ins_.uniform(i);
             for (const Node part : stand_ins_.parts(i))

@@ -1,7 +1,7 @@
 #include "stand_ins.h"
 
 #include <algorithm>
-#include <bit>
+#include <numeric>
 
 #include "hidden.h"
 #include "interrupt.h"
@@ -12,9 +12,10 @@ namespace voxrt::octree {
 namespace {
 
 constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 20; // more weigh the same; keeps sums of costs in 64 bits
-constexpr std::uint32_t kFewPatterns = 8000;
-constexpr std::size_t kChoices = 64;
-constexpr std::size_t kLooks = 20000; // at stand-ins with ever more solid cells, for one pattern
+constexpr std::uint32_t kFewPatterns = 4000;
+constexpr std::size_t kChoices = 32;
+constexpr std::size_t kLooks = 24'000'000; // of a pattern at a stand-in, with ever more solid cells; for all of them,
+constexpr std::size_t kFewestLooks = 1000; // and for each
 constexpr unsigned kNearlyFull[] = {24, 40, 52}; // of 64 cells
 
 // Octants of `count` cells made uniform, of the material that most of their solid cells have.
@@ -37,6 +38,13 @@ void read_cells(const Memory& memory, Word word, unsigned level, std::uint8_t* c
     }
     for (unsigned octant = 0; octant < 8; ++octant)
         read_cells(memory, memory.child(word, octant, level), level - 1, cells + octant * (count / 8), count / 8);
+}
+
+bool holds(const Mask512& mask, const Mask512& part) {
+    for (unsigned word = 0; word < 8; word += 2)
+        if ((part[word] & ~mask[word]) | (part[word + 1] & ~mask[word + 1]))
+            return false;
+    return true;
 }
 
 bool cheaper(const Match& a, const Match& b) { return a.cost != b.cost ? a.cost < b.cost : a.brick < b.brick; }
@@ -140,9 +148,12 @@ void StandIns::find_parts() {
 }
 
 void StandIns::match(const SightCosts& costs) {
-    std::vector<std::vector<std::uint32_t>> by_solid(513);
-    for (std::uint32_t i = 0; i < count(); ++i)
-        by_solid[bricks_[i].solid].push_back(i);
+    ascending_.resize(count());
+    std::iota(ascending_.begin(), ascending_.end(), 0u);
+    std::stable_sort(ascending_.begin(), ascending_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return bricks_[a].solid < bricks_[b].solid; });
+    for (const std::uint32_t i : ascending_)
+        masks_.push_back(bricks_[i].mask);
     choices_.resize(patterns());
     constexpr std::uint32_t kChunk = 64;
     const std::size_t chunks = (patterns() + kChunk - 1) / kChunk;
@@ -151,7 +162,7 @@ void StandIns::match(const SightCosts& costs) {
             Interrupt::check();
         const auto first = static_cast<std::uint32_t>(chunk) * kChunk;
         for (std::uint32_t pattern = first; pattern < std::min(first + kChunk, patterns()); ++pattern)
-            choices_[pattern] = match(pattern, by_solid, costs);
+            choices_[pattern] = match(pattern, costs);
     });
     users_.resize(count());
     for (std::uint32_t pattern = 0; pattern < patterns(); ++pattern)
@@ -159,40 +170,42 @@ void StandIns::match(const SightCosts& costs) {
             users_[choice.brick].push_back({choice.cost, pattern});
 }
 
-std::vector<Match> StandIns::match(std::uint32_t pattern, const std::vector<std::vector<std::uint32_t>>& by_solid,
-                                   const SightCosts& costs) const {
+std::vector<Match> StandIns::match(std::uint32_t pattern, const SightCosts& costs) const {
     constexpr std::uint64_t kAny = ~std::uint64_t{0};
     const Brick& brick = bricks_[pattern];
     const std::vector<std::uint32_t>& always = always_[pattern];
+    const auto grown = [&](std::uint32_t i) {
+        return octants_[pattern] * kAppeared * (bricks_[i].solid - brick.solid);
+    };
+    const std::uint64_t visible = visible_[pattern];
     std::vector<Match> choices; // a heap, the dearest on top
     std::uint64_t most = kAny;
-    std::size_t looks = 0;
-    for (unsigned solid = brick.solid; solid <= 512 && looks < kLooks; ++solid) {
-        const std::uint64_t grown = octants_[pattern] * kAppeared * (solid - brick.solid);
-        if (grown >= most)
+    const auto fewest = std::lower_bound(ascending_.begin(), ascending_.end(), brick.solid,
+                                         [&](std::uint32_t i, unsigned solid) { return bricks_[i].solid < solid; });
+    const std::size_t begin = static_cast<std::size_t>(fewest - ascending_.begin());
+    const std::size_t looks = std::max(kFewestLooks, kLooks / patterns());
+    for (std::size_t place = begin; place < std::min(begin + looks, masks_.size()); ++place) {
+        if (!holds(masks_[place], brick.mask))
+            continue;
+        const std::uint32_t i = ascending_[place];
+        if (grown(i) >= most)
             break;
-        looks += by_solid[solid].size();
-        for (const std::uint32_t i : by_solid[solid]) {
-            if (!bricks_[i].holds(brick) || std::binary_search(always.begin(), always.end(), i))
-                continue;
-            const std::uint64_t dearest =
-                most == kAny ? kAny : (most - grown) / std::max<std::uint64_t>(visible_[pattern], 1) + 1;
-            const std::uint64_t cost = grown + visible_[pattern] * sight_change(brick, bricks_[i], costs, dearest);
-            if (cost >= most)
-                continue;
-            choices.push_back({cost, i});
-            std::push_heap(choices.begin(), choices.end(), cheaper);
-            if (choices.size() > kChoices) {
-                std::pop_heap(choices.begin(), choices.end(), cheaper);
-                choices.pop_back();
-                most = choices.front().cost;
-            }
+        if (std::binary_search(always.begin(), always.end(), i))
+            continue;
+        const std::uint64_t dearest = most == kAny ? kAny : (most - grown(i)) / std::max<std::uint64_t>(visible, 1) + 1;
+        const std::uint64_t cost = grown(i) + visible * sight_change(brick, bricks_[i], costs, dearest);
+        if (cost >= most)
+            continue;
+        choices.push_back({cost, i});
+        std::push_heap(choices.begin(), choices.end(), cheaper);
+        if (choices.size() > kChoices) {
+            std::pop_heap(choices.begin(), choices.end(), cheaper);
+            choices.pop_back();
+            most = choices.front().cost;
         }
     }
     for (const std::uint32_t i : always)
-        choices.push_back({octants_[pattern] * kAppeared * (bricks_[i].solid - brick.solid) +
-                               visible_[pattern] * sight_change(brick, bricks_[i], costs, kAny),
-                           i});
+        choices.push_back({grown(i) + visible * sight_change(brick, bricks_[i], costs, kAny), i});
     std::sort(choices.begin(), choices.end(), cheaper);
     return choices;
 }

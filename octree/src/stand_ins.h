@@ -52,17 +52,18 @@ private:
     void add_coarser();
     void find_parts();
     void match(const SightCosts& costs);
-    std::vector<Match> match(std::uint32_t pattern, const std::vector<std::vector<std::uint32_t>>& by_solid,
-                             const SightCosts& costs) const;
+    std::vector<Match> match(std::uint32_t pattern, const SightCosts& costs) const;
 
     std::vector<Brick> bricks_; // patterns first
     std::vector<Node> nodes_;
     std::unordered_map<Node, std::uint32_t> numbers_;
     std::unordered_map<Word, std::uint32_t> pattern_of_;
-    std::vector<std::uint64_t> octants_; // that show a pattern
-    std::vector<std::uint64_t> visible_; // of those, not hidden
+    std::vector<std::uint64_t> octants_;             // that show a pattern
+    std::vector<std::uint64_t> visible_;             // of those, not hidden
     std::vector<std::vector<std::uint32_t>> always_; // stand-ins of a pattern however dear
     std::uint32_t plain_ = 0;
+    std::vector<std::uint32_t> ascending_; // stand-ins, those with the fewest solid cells first
+    std::vector<Mask512> masks_;           // theirs, side by side since most are looked at and no more
     std::vector<std::vector<Node>> parts_;
     std::vector<std::vector<Match>> choices_;
     std::vector<std::vector<Match>> users_;
