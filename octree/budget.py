@@ -5,10 +5,11 @@ others stand for them (the idea is that of van der Laan, Scandolo and Eisemann, 
 Resolution Voxel Scenes", 2020): other bricks of the scene, and coarser or fuller versions of all. What that costs is
 how the brick looks along the eight diagonals of its cube: faces that turn or change colour, and what is covered. Which
 bricks to keep is a facility location problem, solved by adding and dropping (Kuehn and Hamburger, "A Heuristic Program
-for Locating Warehouses", 1963) at a falling price of a block until the memory is full. A stand-in holds every solid voxel of what it stands for, so a wall never gets a hole; what it holds
-beyond that is what silhouettes grow by. Octants that no ray from outside reaches change for nothing. Memories far too
-large start from a world made coarser by one level or more; every candidate that fits is measured against the original,
-the plain coarser world among them; the closest is taken.
+for Locating Warehouses", 1963) at a falling price of a block until the memory is full. A stand-in holds every solid
+voxel of what it stands for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Octants
+that no ray from outside reaches change for nothing. Memories far too large start from a world made coarser by one level
+or more; every candidate that fits is measured against the original, the plain coarser world among them; the closest is
+taken.
 """
 
 from __future__ import annotations
@@ -42,6 +43,9 @@ _MANY_BLOCKS = 30_000
 
 _FACES = np.array((0.21, 0.25, 0.54))
 """How bright the faces along the three axes are in the default picture of a scene."""
+
+_STANDING_OUT = 6
+"""Another material's colour counts so many times: it stands out where a face that turns is lost among others."""
 
 _PASSED = 0.5
 """A ray that is stopped by more than stopped it before would mostly have met a face close by: this share of the error
@@ -188,8 +192,8 @@ def _sight_costs(colours: NDArray[np.uint8] | None) -> _SightCosts:
         table[: len(given)] = given
     turns = [(a, b) for a in _FACES for b in _FACES if a != b]
     unit = 256 / np.mean([3 * (150 * (a - b)) ** 2 for a, b in turns])
-    same = unit * np.mean(_FACES**2) * _squares(table, table)
-    turned = unit * np.mean([_squares(a * table, b * table) for a, b in turns], axis=0)
+    same = _STANDING_OUT * unit * np.mean(_FACES**2) * _squares(table, table)
+    turned = same + unit * np.mean([_squares(a * table, b * table) for a, b in turns], axis=0)
     if colours is None:
         other = 128 * (1 - np.eye(256))
         same, turned = same + other, turned + other
