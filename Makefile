@@ -41,7 +41,7 @@ bench: $(VENV)/.installed
 hardware: $(VENV)/.hardware
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
 	git diff --exit-code -- rtl/generated board/registers.py
-	$(BIN)/python rtl/benches/run.py tiny quad
+	$(BIN)/python rtl/benches/run.py lit quad-narrow
 	$(BIN)/python rtl/formal/prove.py
 
 docs: $(VENV)/.installed $(VENV)/.docs

@@ -1,6 +1,6 @@
 """Benchmark of the ray tracer's configurations: cycles a pixel against the bound, words a clock, speed simulated.
 
-Usage: ``python bench/rtl.py [--size WxH] [--memories DIR] [--write]``. ``--write`` puts the tables into
+Usage: ``python bench/rtl.py [--size WxH ...] [--memories DIR] [--write]``. ``--write`` puts the tables into
 ``bench/results/rtl.md`` as well. ``--memories`` is a folder with the published ``house.mem``, which is left out
 without.
 """
@@ -133,22 +133,21 @@ def measure(scene: Scene, size: tuple[int, int]) -> list[str]:
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--size", default="256x256")
+    parser.add_argument("--size", nargs="+", default=["256x256", "640x480"])
     parser.add_argument("--memories", type=Path, default=ROOT.parent / "shared" / "seed-memories")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    width, height = (int(side) for side in options.size.split("x"))
     heads = ["scene", "configuration", "lanes", "words a ray", "cycles a pixel", "bound", "of the bound"]
     heads += ["words a clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
-    lines = [
-        f"{width}x{height} pixels. Bound: max(1, words a ray / lanes).",
-        "",
-        f"| {' | '.join(heads)} |",
-        "|---" * len(heads) + "|",
-    ]
-    for scene in scenes(options.memories, (width, height)):
-        lines += measure(scene, (width, height))
-    text = "\n".join(lines) + "\n"
+    lines = []
+    for size in options.size:
+        width, height = (int(side) for side in size.split("x"))
+        lines += [f"{size} pixels. Bound: max(1, words a ray / lanes).", ""]
+        lines += [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        for scene in scenes(options.memories, (width, height)):
+            lines += measure(scene, (width, height))
+        lines.append("")
+    text = "\n".join(lines)
     print(text, end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)

@@ -56,6 +56,14 @@ REGISTERS = {
             "depth": (0, 5),
         },
     ),
+    "features": (
+        0x01C,
+        {
+            "flat": (0, 1),
+            "light": (1, 1),
+            "mirrors": (2, 1),
+        },
+    ),
     "position[0]": (
         0x020,
         {
@@ -154,6 +162,39 @@ REGISTERS = {
     ),
     "stalls": (
         0x070,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "shading": (
+        0x074,
+        {
+            "flat": (0, 1),
+            "light": (1, 1),
+            "ambient": (8, 8),
+            "bounces": (16, 4),
+        },
+    ),
+    "root": (
+        0x078,
+        {
+            "address": (0, 32),
+        },
+    ),
+    "light[0]": (
+        0x080,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "light[1]": (
+        0x084,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "light[2]": (
+        0x088,
         {
             "value": (0, 32),
         },

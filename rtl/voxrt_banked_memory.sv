@@ -1,5 +1,9 @@
-// The octree memory once for all lanes, in eight banks of dual-port block RAM. The words of a block stand in
-// different banks: octant xor the block's lowest bits, so that lanes near the root do not all want one bank.
+// The octree memory once for all lanes, in sixteen banks of dual-port block RAM. The words of a block stand in
+// different banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want
+// one bank: word {row, bank ^ lowest bits of row}.
+//
+// The first eight blocks, which is the octree's top where blocks are ordered breadth-first, are in distributed memory
+// as well, with a read port for each lane: near the root, where all rays pass, lanes do not meet.
 //
 // Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
 // Every lane that wants one of these rows gets it; the others get no ack_o and ask again at their ray's next turn.
@@ -28,26 +32,54 @@ module voxrt_banked_memory
   output logic [    Lanes-1:0] ack_o,
   output logic [PayloadBits:0] word_o             [Lanes]
 );
-  localparam int unsigned Banks = 8;
+  localparam int unsigned BankBits = 4;
+  localparam int unsigned Banks = 2 ** BankBits;
+  localparam int unsigned BankRowBits = RowBits - BankBits;
 
-  // Bank and block of each lane's request, clock by clock.
-  logic [Lanes-1:0]     read_q [1:3];
-  logic [2:0]           bank   [Lanes];
-  logic [2:0]           bank_q [1:4] [Lanes];
-  logic [BlockBits-1:0] block_q[1:2] [Lanes];
+  // Bank and row in it of each lane's request, clock by clock.
+  logic [Lanes-1:0]       read_q[1:3];
+  logic [BankBits-1:0]    bank  [Lanes];
+  logic [BankBits-1:0]    bank_q[1:4] [Lanes];
+  logic [BankRowBits-1:0] row   [Lanes];
+  logic [BankRowBits-1:0] row_q [1:2] [Lanes];
 
-  always_comb for (int unsigned i = 0; i < Lanes; i++) bank[i] = octant_i[i] ^ block_i[i][2:0];
+  // Of the first blocks.
+  localparam int unsigned TopBits = 6;
+  // Public, so that a simulation can fill it.
+  logic [PayloadBits:0] top_q[2**TopBits]  /* verilator public_flat_rw */;
+  logic [    Lanes-1:0] in_top, in_top_q[1:4];
+  logic [  TopBits-1:0] place_q[1:4] [Lanes];
 
   always_ff @(posedge clk_i) begin
-    read_q[1] <= rst_ni ? read_i : '0;
+    if (access_i && access_write_i && access_row_i[RowBits-1:TopBits] == '0) begin
+      top_q[access_row_i[TopBits-1:0]] <= access_word_i;
+    end
+    in_top_q[1] <= in_top & read_i;
+    for (int unsigned i = 0; i < Lanes; i++) place_q[1][i] <= TopBits'({block_i[i], octant_i[i]});
+    for (int unsigned s = 2; s <= 4; s++) begin
+      in_top_q[s] <= in_top_q[s-1];
+      place_q[s]  <= place_q[s-1];
+    end
+  end
+
+  always_comb begin
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      in_top[i] = block_i[i][BlockBits-1:TopBits-3] == '0;
+      row[i]  = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
+      bank[i] = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    read_q[1] <= rst_ni ? read_i & ~in_top : '0;
     read_q[2] <= rst_ni ? read_q[1] : '0;
     read_q[3] <= rst_ni ? read_q[2] : '0;
     bank_q[1] <= bank;
     bank_q[2] <= bank_q[1];
     bank_q[3] <= bank_q[2];
     bank_q[4] <= bank_q[3];
-    block_q[1] <= block_i;
-    block_q[2] <= block_q[1];
+    row_q[1]  <= row;
+    row_q[2]  <= row_q[1];
   end
 
   // Lanes from the rotating start on go before the others at port A, and after them at port B.
@@ -58,16 +90,16 @@ module voxrt_banked_memory
   // The access port, kept in step.
   logic                 access_q     [1:4];
   logic                 access_write_q;
-  logic [BlockBits-1:0] access_block_q;
-  logic [          2:0] access_bank_q[1:4];
+  logic [BankRowBits-1:0] access_row_q;
+  logic [   BankBits-1:0] access_bank_q[1:4];
   logic [PayloadBits:0] access_word_q[1:2];
   logic                 access_write2_q;
 
   always_ff @(posedge clk_i) begin
     access_q[1]      <= access_i && rst_ni;
     access_write_q   <= access_write_i;
-    access_block_q   <= access_row_i[RowBits-1:3];
-    access_bank_q[1] <= access_row_i[2:0] ^ access_row_i[5:3];
+    access_row_q     <= access_row_i[RowBits-1:BankBits];
+    access_bank_q[1] <= access_row_i[BankBits-1:0] ^ access_row_i[2*BankBits-1:BankBits];
     access_word_q[1] <= access_word_i;
     access_word_q[2] <= access_word_q[1];
     access_write2_q  <= access_write_q;
@@ -78,7 +110,7 @@ module voxrt_banked_memory
   end
 
   logic [PayloadBits:0] a_word[Banks], b_word[Banks];
-  logic [BlockBits-1:0] a_block2_q[Banks], b_block2_q[Banks];
+  logic [BankRowBits-1:0] a_row2_q[Banks], b_row2_q[Banks];
   logic [Banks-1:0]     a_lane2_q;  // Port A reads for a lane.
 
   for (genvar k = 0; k < Banks; k++) begin : gen_bank
@@ -90,21 +122,21 @@ module voxrt_banked_memory
     endfunction
 
     always_comb begin
-      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && bank[i] == 3'(k);
+      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && !in_top[i] && bank[i] == BankBits'(k);
       early     = asks & ~late_q;
       upwards   = early != '0 ? early : asks;
       downwards = mirror((asks & late_q) != '0 ? asks & late_q : asks);
     end
 
     // 1 rows.
-    logic [BlockBits-1:0] a_block, b_block;
+    logic [BankRowBits-1:0] a_row, b_row;
 
     always_comb begin
-      a_block = '0;
-      b_block = '0;
+      a_row = '0;
+      b_row = '0;
       for (int unsigned i = 0; i < Lanes; i++) begin
-        if (first_q[i]) a_block |= block_q[1][i];
-        if (last_q[i]) b_block |= block_q[1][i];
+        if (first_q[i]) a_row |= row_q[1][i];
+        if (last_q[i]) b_row |= row_q[1][i];
       end
     end
 
@@ -114,24 +146,24 @@ module voxrt_banked_memory
     always_ff @(posedge clk_i) begin
       first_q       <= upwards & -upwards;
       last_q        <= mirror(downwards & -downwards);
-      accessed2_q   <= access_q[1] && access_bank_q[1] == 3'(k);
-      a_lane2_q[k]  <= !(access_q[1] && access_bank_q[1] == 3'(k));
-      a_block2_q[k] <= access_q[1] && access_bank_q[1] == 3'(k) ? access_block_q : a_block;
-      b_block2_q[k] <= b_block;
+      accessed2_q   <= access_q[1] && access_bank_q[1] == BankBits'(k);
+      a_lane2_q[k]  <= !(access_q[1] && access_bank_q[1] == BankBits'(k));
+      a_row2_q[k]  <= access_q[1] && access_bank_q[1] == BankBits'(k) ? access_row_q : a_row;
+      b_row2_q[k]  <= b_row;
     end
 
     voxrt_block_ram #(
       .Width(PayloadBits + 1),
-      .Depth(2 ** BlockBits)
+      .Depth(2 ** BankRowBits)
     ) u_ram (
       .clk_i,
       .a_read_i (1'b1),
       .a_write_i(accessed2_q && access_write2_q),
-      .a_row_i  (a_block2_q[k]),
+      .a_row_i  (a_row2_q[k]),
       .a_data_i (access_word_q[2]),
       .a_data_o (a_word[k]),
       .b_read_i (1'b1),
-      .b_row_i  (b_block2_q[k]),
+      .b_row_i  (b_row2_q[k]),
       .b_data_o (b_word[k])
     );
   end
@@ -142,13 +174,14 @@ module voxrt_banked_memory
 
   always_ff @(posedge clk_i) begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_block2_q[bank_q[2][i]] == block_q[2][i];
-      from_b_q[3][i] <= read_q[2][i] && b_block2_q[bank_q[2][i]] == block_q[2][i];
-      word_q[i]      <= from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
+      from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_row2_q[bank_q[2][i]] == row_q[2][i];
+      from_b_q[3][i] <= read_q[2][i] && b_row2_q[bank_q[2][i]] == row_q[2][i];
+      word_q[i]      <= in_top_q[4][i] ? top_q[place_q[4][i]] :
+          from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
     end
     from_a_q[4]  <= from_a_q[3];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] : '0;
+    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | in_top_q[4] : '0;
     access_out_q <= a_word[access_bank_q[4]];
   end
 

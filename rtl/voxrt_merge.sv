@@ -1,22 +1,22 @@
 // Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
 module voxrt_merge
-  import voxrt_pkg::*;
 #(
-  parameter int unsigned Lanes = 1
+  parameter int unsigned Lanes = 1,
+  parameter int unsigned Width = 8
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
   input  logic             start_i,         // The next pixel is lane 0's.
   input  logic [Lanes-1:0] valid_i,
   output logic [Lanes-1:0] ready_o,
-  input  pixel_t           pixel_i [Lanes],
+  input  logic [Width-1:0] pixel_i [Lanes],
   output logic             valid_o,
   input  logic             ready_i,
-  output pixel_t           pixel_o
+  output logic [Width-1:0] pixel_o
 );
   logic [Lanes-1:0] turn_q;  // One-hot.
   logic             valid;
-  pixel_t           pixel;
+  logic [Width-1:0] pixel;
 
   always_comb begin
     pixel = '0;

@@ -13,7 +13,10 @@ module voxrt_pixel_generator
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter bit          Banked       = 1'b0
+  parameter bit          Banked       = 1'b0,
+  parameter bit          Flat         = 1'b0,
+  parameter bit          Light        = 1'b0,
+  parameter bit          Mirrors      = 1'b0
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -52,6 +55,7 @@ module voxrt_pixel_generator
   output logic        m_axis_tlast
 );
   localparam int unsigned DepthBits = $clog2(MaxDepth + 1);
+  localparam int unsigned LightBits = light_bits(MaxDepth);
 
   voxrt_registers_pkg::voxrt_registers__in_t  status;
   voxrt_registers_pkg::voxrt_registers__out_t control;
@@ -94,7 +98,9 @@ module voxrt_pixel_generator
 
   always_ff @(posedge clk_i) busy_q <= rst_n && busy;
 
-  // Camera.
+  // Camera and light.
+  shading_t                       shading;
+  logic signed [   LightBits-1:0] light   [3];
   logic signed [PositionBits-1:0] position[3];
   logic signed [  CameraBits-1:0] look[3], right[3], up[3];
 
@@ -104,7 +110,12 @@ module voxrt_pixel_generator
       look[a]     = control.look[a].value.value;
       right[a]    = control.right[a].value.value;
       up[a]       = control.up[a].value.value;
+      light[a]    = control.light[a].value.value[LightBits-1:0];
     end
+    shading.flat    = control.shading.flat.value;
+    shading.light   = control.shading.light.value;
+    shading.ambient = control.shading.ambient.value;
+    shading.bounces = control.shading.bounces.value;
   end
 
   logic        pixel_valid, pixel_ready, pixel_first, pixel_line_end;
@@ -118,7 +129,10 @@ module voxrt_pixel_generator
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
-    .Banked      (Banked)
+    .Banked      (Banked),
+    .Flat        (Flat),
+    .Light       (Light),
+    .Mirrors     (Mirrors)
   ) u_rtu (
     .clk_i,
     .rst_ni          (rst_n),
@@ -131,6 +145,9 @@ module voxrt_pixel_generator
     .width_i         (control.size.width.value),
     .height_i        (control.size.height.value),
     .depth_i         (control.depth.depth.value[DepthBits-1:0]),
+    .root_i          (control.root.address.value),
+    .shading_i       (shading),
+    .light_i         (light),
     .access_i        (bram_en_i),
     .access_write_i  (bram_we_i == '1),
     .access_address_i(bram_addr_i >> 2),
@@ -139,7 +156,7 @@ module voxrt_pixel_generator
     .access_word_o   (bram_rddata_o),
     .table_write_i   (control.materials.req && control.materials.req_is_wr),
     .table_material_i(control.materials.addr[9:2]),
-    .table_colour_i  (control.materials.wr_data[23:0]),
+    .table_row_i     (control.materials.wr_data[24:0]),
     .out_valid_o     (pixel_valid),
     .out_ready_i     (pixel_ready),
     .out_colour_o    (pixel_colour),
@@ -178,6 +195,9 @@ module voxrt_pixel_generator
     status.configuration.position_bits.next     = 6'(PositionBits);
     status.configuration.block_bits.next        = 5'(BlockBits);
     status.configuration.banked.next            = Banked;
+    status.features.flat.next                   = Flat;
+    status.features.light.next                  = Light;
+    status.features.mirrors.next                = Mirrors;
     status.status.busy.next                     = busy;
     status.status.frame_done.hwset              = busy_q && !busy && rst_n;
     status.status.direction_overflow.hwset      = busy && error.direction_overflow;

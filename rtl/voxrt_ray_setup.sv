@@ -5,18 +5,26 @@
 // near planes, (0, FaceNone) for a camera inside. A ray that does not meet the world, or meets a world of one leaf,
 // comes out resolved.
 //
-// An axis on which the ray does not move is dead: its planes are crossed before the start or never. Setting the
-// fraction of its origin to 15/16 keeps planes and origin apart, so that the sign of T alone tells which.
+// An axis on which the ray does not move is dead: its planes are crossed before the start or never. Its origin counts
+// as above the plane that it is on, so that the sign of T alone tells which: planes up to the origin have T < 0.
 //
-// Pipeline: sign and size | multiply | weight | plane 0: multiply | sum | compare | entry key | compare | out.
+// Shadow rays share the pipeline (Light): each has an origin of its own, in 1/32 voxel and in the world, and its entry key
+// is (0, FaceNone). Lanes read a dozen words a ray: one setup has time for both kinds.
+//
+// Pipeline: sign and size | multiply | weight | plane 0: three clocks | compare | entry key | key - plane 0, half of the
+// world's time | compare | out.
 module voxrt_ray_setup
   import voxrt_pkg::*;
 #(
   parameter  int unsigned MaxDepth     = 10,
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned Lanes        = 1,
+  parameter  int unsigned TagBits      = 8,
+  parameter  bit          Light        = 1'b0,
+  localparam int unsigned LitBits      = MaxDepth + LitFractionBits + 2,
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
   localparam int unsigned TimeBits     = DistanceBits + WeightBits,
+  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
 ) (
   input  logic                           clk_i,
@@ -25,12 +33,16 @@ module voxrt_ray_setup
   input  logic signed [DistanceBits-1:0] origin_i          [3],
   input  logic signed [DistanceBits-1:0] mirrored_origin_i [3],  // 16 * side - origin.
   input  logic        [   DepthBits-1:0] depth_i,
+  input  logic        [      MaxDepth:0] world_i,                // One-hot: the world's side.
   input  logic                           root_leaf_i,            // The whole world is one leaf ...
   input  material_t                      root_material_i,        // ... of this material.
   // Directions, each for one lane (one-hot).
   input  logic                           valid_i,
   input  logic        [       Lanes-1:0] lane_i,
   input  logic signed [    ScanBits-1:0] direction_i       [3],
+  input  logic                           shadow_i,               // A shadow ray, from ...
+  input  logic signed [     LitBits-1:0] lit_i             [3],  // ... this point, 1/32 voxel, grid frame.
+  input  logic        [     TagBits-1:0] tag_i,
   // Rays, in the same order.
   output logic                           valid_o,
   output logic        [       Lanes-1:0] lane_o,
@@ -41,10 +53,18 @@ module voxrt_ray_setup
   output logic        [             2:0] dead_o,
   output logic        [             2:0] octant_o,               // First octant of the root, mirrored frame.
   output logic        [  WeightBits-1:0] weight_o          [3],
-  output logic signed [    TimeBits-1:0] entry_time_o,
-  output face_e                          entry_face_o
+  output logic        [     KeyBits-1:0] entry_time_o,           // As lanes compare it.
+  output face_e                          entry_face_o,
+  output logic signed [DistanceBits-1:0] origin_o          [3],  // Mirrored frame.
+  output logic                           shadow_o,
+  output logic                           lit_o,                  // The answer, of a shadow ray that is resolved.
+  output logic        [     TagBits-1:0] tag_o
 );
-  localparam int unsigned Stages = 9;
+  localparam int unsigned Stages = 11;
+  // The world's side, in time.
+  localparam int unsigned SpanBits = WeightBits + (Light ? LitFractionBits : FractionBits) + MaxDepth;
+  // Between any two of the times compared.
+  localparam int unsigned GapBits = TimeBits + 1;
 
   // What travels along unchanged.
   logic [Stages:1]            valid_q;
@@ -52,7 +72,8 @@ module voxrt_ray_setup
   logic [2:0]                 mirrored_q [1:Stages];
   logic [2:0]                 dead_q     [1:Stages];
   logic [Stages:1]            overflow_q;
-  logic [WeightBits-1:0]      weight_q   [3:Stages] [3];
+  logic [WeightBits-1:0]      weight3    [3];
+  logic [WeightBits-1:0]      weight_q   [4:Stages] [3];
 
   always_ff @(posedge clk_i) begin
     valid_q <= rst_ni ? {valid_q[Stages-1:1], valid_i} : '0;
@@ -62,7 +83,9 @@ module voxrt_ray_setup
       dead_q[s]     <= dead_q[s-1];
       overflow_q[s] <= overflow_q[s-1];
     end
-    for (int unsigned s = 4; s <= Stages; s++) begin
+    // Registers keep what they have where no ray is.
+    if (valid_q[3]) weight_q[4] <= weight3;
+    for (int unsigned s = 5; s <= Stages; s++) begin
       if (valid_q[s-1]) weight_q[s] <= weight_q[s-1];
     end
     lane_q[1] <= lane_i;
@@ -70,50 +93,113 @@ module voxrt_ray_setup
 
   // 1: sign and size.
   logic [DirectionBits-1:0] size_q[3];
-  logic [2:0]               too_large;
-  logic [ScanBits-1:0]      magnitude[3];
+  logic [DirectionBits:0]   magnitude[3];
+  logic [2:0]               negative, zero, too_large;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      magnitude[a] = direction_i[a] < 0 ? -direction_i[a] : direction_i[a];
-      too_large[a] = magnitude[a][ScanBits-1:DirectionBits] != '0;
+      negative[a]  = direction_i[a] < 0;
+      zero[a]      = direction_i[a] == 0;
+      // Bits above the magnitude's are the sign, or the component is too large.
+      magnitude[a] = (direction_i[a][DirectionBits:0] ^ {(DirectionBits + 1){negative[a]}}) +
+          (DirectionBits + 1)'(negative[a]);
+      too_large[a] = magnitude[a][DirectionBits] ||
+          direction_i[a][ScanBits-1:DirectionBits+1] != {(ScanBits - DirectionBits - 1){negative[a]}};
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (valid_i) begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        mirrored_q[1][a] <= direction_i[a] < 0;
-        dead_q[1][a]     <= direction_i[a] == 0;
-        // A zero counts as 1 in the weights of the other axes.
-        size_q[a]        <= magnitude[a][DirectionBits-1:0] | DirectionBits'(direction_i[a] == 0);
-      end
+      mirrored_q[1] <= negative;
+      dead_q[1]     <= zero;
+      // A zero counts as 1 in the weights of the other axes.
+      for (int unsigned a = 0; a < 3; a++) size_q[a] <= magnitude[a][DirectionBits-1:0] | DirectionBits'(zero[a]);
       overflow_q[1] <= too_large != '0;
     end
   end
 
-  // 2, 3: weights.
-  logic [WeightBits-1:0]          product_q [3];
-  logic signed [DistanceBits-1:0] distance_q[3];  // From the origin to the near plane.
+  // Shadow rays, in stages 2 and 7: from where, in the mirrored frame.
+  logic                           shadow2, shadow7;
+  logic signed [DistanceBits-1:0] lit2[3];
+
+  // 2, 3: weights; from the origin to the near plane, as voxrt_lane does it.
+  logic signed [DistanceBits-1:0] distance_q[3], origin[3], other_origin[3];
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      origin[a]       = mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a];
+      other_origin[a] = mirrored_q[2][a] ? origin_i[a] : mirrored_origin_i[a];
+    end
+  end
+
+  for (genvar a = 0; a < 3; a++) begin : gen_weight
+    voxrt_multiply #(
+      .ABits(DirectionBits),
+      .BBits(DirectionBits)
+    ) u_weight (
+      .clk_i,
+      .a_i      (size_q[(a+1)%3]),
+      .b_i      (size_q[(a+2)%3]),
+      .product_o(weight3[a])
+    );
+  end
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[1]) begin
-      product_q[0] <= WeightBits'(size_q[1]) * WeightBits'(size_q[2]);
-      product_q[1] <= WeightBits'(size_q[2]) * WeightBits'(size_q[0]);
-      product_q[2] <= WeightBits'(size_q[0]) * WeightBits'(size_q[1]);
-    end
     if (valid_q[2]) begin
-      weight_q[3] <= product_q;
       for (int unsigned a = 0; a < 3; a++) begin
-        distance_q[a] <= -((mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a]) |
-                           DistanceBits'(dead_q[2][a] ? 2 ** FractionBits - 1 : 0));
+        distance_q[a][FractionBits-1:0] <= other_origin[a][FractionBits-1:0];
+        distance_q[a][DistanceBits-1:FractionBits] <= ~origin[a][DistanceBits-1:FractionBits] +
+            (DistanceBits - FractionBits)'(origin_i[a][FractionBits-1:0] == '0 && !dead_q[2][a]);
+        // Those of shadow rays are on no plane of a dead axis.
+        if (shadow2) distance_q[a] <= -lit2[a];
       end
     end
   end
 
-  // 4, 5: plane 0, and how long the ray takes through half of the world.
-  logic signed [TimeBits-1:0] near_time [3];
-  logic signed [TimeBits-1:0] half_span_q [4:5] [3];
+  // Shadow rays.
+  if (Light) begin : gen_light
+    logic        [  Stages:1] shadow_q;
+    logic        [TagBits-1:0] tag_q[1:Stages];
+    logic signed [LitBits-1:0] lit_q[1:Stages][3];
+
+    always_ff @(posedge clk_i) begin
+      shadow_q <= {shadow_q[Stages-1:1], shadow_i};
+      tag_q[1] <= tag_i;
+      lit_q[1] <= lit_i;
+      for (int unsigned s = 2; s <= Stages; s++) begin
+        tag_q[s] <= tag_q[s-1];
+        lit_q[s] <= lit_q[s-1];
+      end
+      // Mirrored from here on.
+      for (int unsigned a = 0; a < 3; a++) lit_q[3][a] <= LitBits'(lit2[a]);
+    end
+
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        lit2[a] = DistanceBits'(lit_q[2][a]);
+        if (mirrored_q[2][a]) lit2[a] = DistanceBits'({world_i, LitFractionBits'(0)}) - DistanceBits'(lit_q[2][a]);
+        origin_o[a] = mirrored_q[11][a] ? mirrored_origin_i[a] : origin_i[a];
+        if (shadow_q[11]) origin_o[a] = DistanceBits'(lit_q[11][a]);
+      end
+    end
+
+    assign shadow2  = shadow_q[2];
+    assign shadow7  = shadow_q[7];
+    assign shadow_o = shadow_q[11];
+    assign tag_o    = tag_q[11];
+  end else begin : gen_no_light
+    logic unused_light;
+    assign unused_light = &{shadow_i, tag_i, lit_i[0], lit_i[1], lit_i[2], world_i};
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) origin_o[a] = mirrored_q[11][a] ? mirrored_origin_i[a] : origin_i[a];
+    end
+    assign {shadow2, shadow7, shadow_o} = '0;
+    assign lit2  = '{default: '0};
+    assign tag_o = '0;
+  end
+
+  // 4, 5, 6: plane 0.
+  logic signed [TimeBits-1:0] near_time[3];
 
   for (genvar a = 0; a < 3; a++) begin : gen_near
     voxrt_plane_time #(
@@ -121,110 +207,127 @@ module voxrt_ray_setup
     ) u_near (
       .clk_i,
       .distance_i(distance_q[a]),
-      .weight_i  (weight_q[3][a]),
+      .weight_i  (weight3[a]),
       .time_o    (near_time[a])
     );
   end
 
-  always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      if (valid_q[3]) half_span_q[4][a] <= TimeBits'(weight_q[3][a]) << (FractionBits - 1);
-      if (valid_q[4]) half_span_q[5][a] <= half_span_q[4][a] << depth_i;
-    end
-  end
-
-  // 6: middle and far planes; order of the near planes.
-  logic signed [TimeBits-1:0] near_q [3], middle_q[6:7] [3], far_q[6:7] [3];
+  // 7: order of the near planes.
+  logic signed [TimeBits-1:0] near_q[7:8] [3];
   logic [2:0]                 ahead_q;  // The near plane is yet to be crossed.
   logic                       later_yx_q, later_zx_q, later_zy_q;
-  logic [2:0]                 ahead;
-
-  always_comb for (int unsigned a = 0; a < 3; a++) ahead[a] = near_time[a] > 0;
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[5]) begin
+    if (valid_q[6]) begin
+      near_q[7] <= near_time;
+      // On a dead axis no plane is at the origin, and 0 is ahead.
       for (int unsigned a = 0; a < 3; a++) begin
-        near_q[a]      <= near_time[a];
-        middle_q[6][a] <= near_time[a] + half_span_q[5][a];
-        far_q[6][a]    <= near_time[a] + (half_span_q[5][a] <<< 1);
+        ahead_q[a] <= !near_time[a][TimeBits-1] && (dead_q[6][a] || near_time[a] != '0);
       end
-      ahead_q    <= ahead;
       later_yx_q <= near_time[1] >= near_time[0];
       later_zx_q <= near_time[2] >= near_time[0];
       later_zy_q <= near_time[2] >= near_time[1];
     end
-    if (valid_q[6]) begin
-      middle_q[7] <= middle_q[6];
-      far_q[7]    <= far_q[6];
-    end
   end
 
-  // 7: the entry key, the last near plane that is ahead.
-  logic signed [TimeBits-1:0] entry_time_q[7:9];
-  face_e                      entry_face_q[7:9];
+  // 8: the entry key, the last near plane that is ahead.
+  logic signed [TimeBits-1:0] near[4], entry_time_q;
+  logic        [KeyBits-1:0]  entry_time_key_q[9:11];
+  face_e                      entry_face, entry_face_q[8:11];
   logic [2:0]                 enters;
-  logic [9:7]                 outside_q;
+  logic [11:8]                outside_q;
 
-  assign enters    = ahead_q & ~dead_q[6];
+  assign enters = ahead_q & ~dead_q[7];
+  assign near   = '{near_q[7][0], near_q[7][1], near_q[7][2], '0};
 
-  always_ff @(posedge clk_i) begin
-    if (valid_q[6]) begin
-      entry_time_q[7] <= '0;
-      entry_face_q[7] <= FaceNone;
-      if (enters[2] && (!enters[1] || later_zy_q) && (!enters[0] || later_zx_q)) begin
-        entry_time_q[7] <= near_q[2];
-        entry_face_q[7] <= FaceZ;
-      end else if (enters[1] && (!enters[0] || later_yx_q)) begin
-        entry_time_q[7] <= near_q[1];
-        entry_face_q[7] <= FaceY;
-      end else if (enters[0]) begin
-        entry_time_q[7] <= near_q[0];
-        entry_face_q[7] <= FaceX;
-      end
-      outside_q[7] <= (ahead_q & dead_q[6]) != '0;
-    end
+  always_comb begin
+    entry_face = FaceNone;
+    if (enters[0]) entry_face = FaceX;
+    if (enters[1] && (!enters[0] || later_yx_q)) entry_face = FaceY;
+    if (enters[2] && (!enters[1] || later_zy_q) && (!enters[0] || later_zx_q)) entry_face = FaceZ;
   end
-
-  // 8: which middle and far planes come before the entry.
-  logic [2:0] past_middle_q[8:9], past_far_q;
 
   always_ff @(posedge clk_i) begin
     if (valid_q[7]) begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        past_middle_q[8][a] <= dead_q[7][a] ? middle_q[7][a] < 0
-            : $signed({middle_q[7][a], 1'b0}) < $signed({entry_time_q[7], 2'(a) <= entry_face_q[7]});
-        past_far_q[a] <= dead_q[7][a] ? far_q[7][a] < 0
-            : $signed({far_q[7][a], 1'b0}) < $signed({entry_time_q[7], 2'(a) <= entry_face_q[7]});
-      end
-      entry_time_q[8] <= entry_time_q[7];
-      entry_face_q[8] <= entry_face_q[7];
-      outside_q[8]    <= outside_q[7];
+      entry_time_q    <= near[entry_face];
+      entry_face_q[8] <= entry_face;
+      outside_q[8]    <= (ahead_q & dead_q[7]) != '0;
+      near_q[8]       <= near_q[7];
     end
   end
 
-  // 9: out.
+  // 9: near plane - key - 1, where a dead axis has the key 0; how long the ray takes through half of the world, which is
+  // 16 * weight * side / 2.
+  logic signed [GapBits-1:0] gap_q[3];
+  logic [SpanBits-2:0]       half_span8_q[3], half_span_q[3];
+
   always_ff @(posedge clk_i) begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      if (valid_q[7]) begin
+        half_span8_q[a] <= (SpanBits - 1)'(weight_q[7][a]) << {1'b0, depth_i[0]} << (FractionBits - 1) << shadow7;
+      end
+      if (valid_q[8]) begin
+        half_span_q[a] <= half_span8_q[a] << {depth_i[DepthBits-1:1], 1'b0};
+        gap_q[a]       <= GapBits'(near_q[8][a]) + ~(dead_q[8][a] ? '0 : GapBits'(entry_time_q));
+      end
+    end
     if (valid_q[8]) begin
-      entry_time_q[9]  <= entry_time_q[8];
-      entry_face_q[9]  <= entry_face_q[8];
-      past_middle_q[9] <= past_middle_q[8];
-      outside_q[9]     <= outside_q[8] || past_far_q != '0 || overflow_q[8];
+      entry_time_key_q[9] <= KeyBits'(entry_time_q);
+      entry_face_q[9]     <= entry_face_q[8];
+      outside_q[9]        <= outside_q[8];
     end
   end
 
-  assign valid_o      = valid_q[9];
-  assign lane_o       = lane_q[9];
-  assign resolved_o   = outside_q[9] || root_leaf_i;
-  assign overflow_o   = overflow_q[9];
-  assign mirrored_o   = mirrored_q[9];
-  assign dead_o       = dead_q[9];
-  assign octant_o     = past_middle_q[9];
-  assign weight_o     = weight_q[9];
-  assign entry_time_o = entry_time_q[9];
-  assign entry_face_o = entry_face_q[9];
+  // 10: which middle and far planes come before the entry: their T less the key is below 0, or is 0 and the axis comes
+  // first. In whole numbers, less one: below 0.
+  logic [2:0]       last;  // Of equals.
+  logic [GapBits:0] middle[3], far[3];
+  logic [2:0]       past_middle_q[10:11], past_far_q;
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      last[a]   = dead_q[9][a] || 2'(a) > entry_face_q[9];
+      middle[a] = {gap_q[a], 1'b1} + (GapBits + 1)'({half_span_q[a], last[a]});
+      far[a]    = {gap_q[a], 1'b1} + (GapBits + 1)'({half_span_q[a], 1'b0, last[a]});
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (valid_q[9]) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        past_middle_q[10][a] <= middle[a][GapBits];
+        past_far_q[a]        <= far[a][GapBits];
+      end
+      entry_time_key_q[10] <= entry_time_key_q[9];
+      entry_face_q[10]     <= entry_face_q[9];
+      outside_q[10]        <= outside_q[9];
+    end
+  end
+
+  // 11: out.
+  always_ff @(posedge clk_i) begin
+    if (valid_q[10]) begin
+      entry_time_key_q[11] <= entry_time_key_q[10];
+      entry_face_q[11]     <= entry_face_q[10];
+      past_middle_q[11]    <= past_middle_q[10];
+      outside_q[11]        <= outside_q[10] || past_far_q != '0 || overflow_q[10];
+    end
+  end
+
+  assign valid_o      = valid_q[11];
+  assign lane_o       = lane_q[11];
+  assign resolved_o   = outside_q[11] || root_leaf_i;
+  assign overflow_o   = overflow_q[11];
+  assign mirrored_o   = mirrored_q[11];
+  assign dead_o       = dead_q[11];
+  assign octant_o     = past_middle_q[11];
+  assign weight_o     = weight_q[11];
+  assign entry_time_o = entry_time_key_q[11];
+  assign entry_face_o = entry_face_q[11];
+  assign lit_o        = !overflow_q[11];
 
   always_comb begin
     pixel_o = '{material: '0, face: FaceNone};
-    if (!outside_q[9] && root_material_i != '0) pixel_o = '{material: root_material_i, face: entry_face_q[9]};
+    if (!outside_q[11] && root_material_i != '0) pixel_o = '{material: root_material_i, face: entry_face_q[11]};
   end
 endmodule

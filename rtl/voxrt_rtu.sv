@@ -1,12 +1,15 @@
 // Ray tracing unit: camera and octree memory in, shaded pixels in pixel order out.
 //
-//   ray generator -> ray setup -> FIFO a lane -> lanes -> pixel buffer a lane -> merge -> shader
-//                                                  |
-//                                            octree memory
+//   ray generator -> ray setup -> queue, lane, pixel buffer (a track each) -> merge -> brightness -> shader
+//                        ^                    |
+//                        +------- light ------+---- octree memory
 //
-// start_i, while busy_o is low, latches the whole frame: camera, size, depth and root; nothing that changes later
-// shows in it. busy_o falls when the last pixel has been accepted. A frame may be started with its first pixel not
+// start_i, while busy_o is low, latches the whole frame: camera, shading, size, depth and root; nothing that changes later
+// shows in it, but words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started with its first pixel not
 // wanted yet: out_ready_i may be low at any time.
+//
+// Flat, Light and Mirrors build the shader's features in (docs/shading.md says what they are); what is not built in is off,
+// whatever shading_i says.
 module voxrt_rtu
   import voxrt_pkg::*;
 #(
@@ -15,7 +18,11 @@ module voxrt_rtu
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned BlockBits    = 12,
   parameter  bit          Banked       = 1'b0,
-  localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
+  parameter  bit          Flat         = 1'b0,
+  parameter  bit          Light        = 1'b0,
+  parameter  bit          Mirrors      = 1'b0,
+  localparam int unsigned DepthBits    = $clog2(MaxDepth + 1),
+  localparam int unsigned LightBits    = light_bits(MaxDepth)
 ) (
   input  logic                           clk_i,
   input  logic                           rst_ni,
@@ -29,6 +36,9 @@ module voxrt_rtu
   input  logic        [    SizeBits-1:0] width_i,
   input  logic        [    SizeBits-1:0] height_i,
   input  logic        [   DepthBits-1:0] depth_i,             // 1 .. MaxDepth
+  input  logic        [            31:0] root_i,              // Word address of the root.
+  input  shading_t                       shading_i,
+  input  logic signed [   LightBits-1:0] light_i        [3],  // 1/16 voxel
   // Octree memory, see voxrt_octree_memory.
   input  logic                           access_i,
   input  logic                           access_write_i,
@@ -36,10 +46,10 @@ module voxrt_rtu
   input  logic        [            31:0] access_word_i,
   output logic                           access_valid_o,
   output logic        [            31:0] access_word_o,
-  // Material table, see voxrt_shader.
+  // Material table, see voxrt_shader and voxrt_reflect.
   input  logic                           table_write_i,
   input  material_t                      table_material_i,
-  input  colour_t                        table_colour_i,
+  input  row_t                           table_row_i,
   // Pixels.
   output logic                           out_valid_o,
   input  logic                           out_ready_i,
@@ -57,40 +67,50 @@ module voxrt_rtu
   output logic        [            31:0] stalls_o             // Clocks in which a pixel waited to be accepted.
 );
   localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
-  localparam int unsigned TimeBits = DistanceBits + WeightBits;
+  localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
-  localparam int unsigned RayFifoDepth = 16;
-  localparam int unsigned BufferDepth = 128;
-  localparam int unsigned TagBits = $clog2(BufferDepth) + 1;
+  localparam int unsigned PlaceBits = MaxDepth + FractionBits;
+  localparam int unsigned LitBits = MaxDepth + LitFractionBits + 2;
+  localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
+  localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
+  localparam int unsigned PixelDepth = 256;
+  localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
 
   // Frame.
-  logic                           start_q, busy_q;
+  logic                           start_q, busy_q;  // start_q: the root is there too.
   logic signed [DistanceBits-1:0] origin_q[3], mirrored_origin_q[3];
   logic signed [  CameraBits-1:0] look_q  [3], right_q          [3], up_q[3];
   logic        [    SizeBits-1:0] width_q, height_q;
   logic        [   DepthBits-1:0] depth_q;
   logic        [      MaxDepth:0] world_q;  // One-hot: the world's side.
-  logic        [   PayloadBits:0] root, root_q;
+  logic        [   PayloadBits:0] first_word, root;
+  shading_t                       shading_q;
+  logic signed [   LightBits-1:0] light_q [3];
   logic                           start;
 
   assign start = start_i && !busy_q;
 
   always_ff @(posedge clk_i) begin
-    start_q <= start && rst_ni;
     if (start) begin
       for (int unsigned a = 0; a < 3; a++) begin
         origin_q[a]          <= DistanceBits'(position_i[a]);
         mirrored_origin_q[a] <= (DistanceBits'(2 ** FractionBits) << depth_i) - DistanceBits'(position_i[a]);
       end
-      look_q   <= look_i;
-      right_q  <= right_i;
-      up_q     <= up_i;
-      width_q  <= width_i;
-      height_q <= height_i;
-      depth_q  <= depth_i;
-      world_q  <= (MaxDepth + 1)'(1) << depth_i;
-      root_q   <= root;
-      busy_q   <= 1'b1;
+      look_q    <= look_i;
+      right_q   <= right_i;
+      up_q      <= up_i;
+      width_q   <= width_i;
+      height_q  <= height_i;
+      depth_q   <= depth_i;
+      world_q   <= (MaxDepth + 1)'(1) << depth_i;
+      shading_q <= '{
+          flat: Flat && shading_i.flat,
+          light: Light && shading_i.light,
+          ambient: Light ? shading_i.ambient : '0,
+          bounces: Mirrors ? shading_i.bounces : '0
+      };
+      light_q   <= light_i;
+      busy_q    <= 1'b1;
     end
     if (out_valid_o && out_ready_i && out_last_o) busy_q <= 1'b0;
     if (!rst_ni) busy_q <= 1'b0;
@@ -98,27 +118,82 @@ module voxrt_rtu
 
   assign busy_o = busy_q;
 
-  // Ray generator: a ray goes to the lane whose turn it is when that lane's FIFO has a place.
-  logic                       direction_valid, issues;
-  logic signed [ScanBits-1:0] direction[3];
-  logic [Lanes-1:0]           turn_q;  // One-hot.
-  logic [Lanes-1:0]           has_credit;
-  logic                       unused_first, unused_line_end, unused_last;
+  logic   [    Lanes-1:0] read, memory_read, word_read;
+  logic   [BlockBits-1:0] block[Lanes], memory_block[Lanes], root_block;
+  logic   [          2:0] octant[Lanes], memory_octant[Lanes], root_octant;
+  logic   [PayloadBits:0] word[Lanes];
+  logic                   reads_root;
 
-  assign issues = direction_valid && (has_credit & turn_q) != '0;
+  voxrt_root #(
+    .BlockBits   (BlockBits),
+    .MemoryClocks(memory_clocks(Banked))
+  ) u_root (
+    .clk_i,
+    .rst_ni,
+    .start_i  (start),
+    .address_i(root_i),
+    .first_i  (first_word),
+    .done_o   (start_q),
+    .root_o   (root),
+    .reads_o  (reads_root),
+    .block_o  (root_block),
+    .octant_o (root_octant),
+    .ack_i    (word_read[0]),
+    .word_i   (word[0])
+  );
+
+  always_comb begin
+    memory_read   = read;
+    memory_block  = block;
+    memory_octant = octant;
+    if (reads_root) begin
+      memory_read[0]   = 1'b1;
+      memory_block[0]  = root_block;
+      memory_octant[0] = root_octant;
+    end
+  end
+
+  // Rays of the camera: a ray goes to the lane whose turn it is when its queue has a place. Shadow rays go first, at any
+  // clock that they come.
+  logic                         corner, direction_valid, issues;
+  logic signed [  ScanBits-1:0] line_step[3], direction[3], way[3], ray_direction[3];
+  logic        [     Lanes-1:0] turn_q;  // One-hot.
+  logic        [     Lanes-1:0] has_place;
+  logic                         shadow_valid;
+  logic        [     Lanes-1:0] shadow_lane;
+  logic        [   TagBits-1:0] shadow_tag;
+  logic signed [   LitBits-1:0] lit_point[3];
+  logic                         unused_first, unused_line_end, unused_last;
+
+  assign issues = direction_valid && (has_place & turn_q) != '0 && !shadow_valid;
+
+  always_comb for (int unsigned a = 0; a < 3; a++) ray_direction[a] = shadow_valid ? way[a] : direction[a];
 
   always_ff @(posedge clk_i) begin
     if (issues) turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
     if (!rst_ni || start_q) turn_q <= Lanes'(1);
   end
 
+  voxrt_scan u_scan (
+    .clk_i,
+    .rst_ni,
+    .start_i      (start_q),
+    .look_i       (look_q),
+    .right_i      (right_q),
+    .up_i         (up_q),
+    .half_width_i (width_q[SizeBits-1:1]),
+    .half_height_i(height_q[SizeBits-1:1]),
+    .corner_o     (corner),
+    .line_step_o  (line_step)
+  );
+
   voxrt_ray_generator u_ray_generator (
     .clk_i,
     .rst_ni,
     .start_i    (start_q),
-    .look_i     (look_q),
+    .corner_i   (corner),
+    .line_step_i(line_step),
     .right_i    (right_q),
-    .up_i       (up_q),
     .width_i    (width_q),
     .height_i   (height_q),
     .valid_o    (direction_valid),
@@ -129,149 +204,168 @@ module voxrt_rtu
     .last_o     (unused_last)
   );
 
-  typedef struct packed {
-    logic                       resolved;
-    pixel_t                     pixel;
-    logic [2:0]                 mirrored;
-    logic [2:0]                 dead;
-    logic [2:0]                 octant;
-    logic [2:0][WeightBits-1:0] weight;
-    logic [TimeBits-1:0]        entry_time;
-    face_e                      entry_face;
-  } ray_t;
+  logic                           ray_valid, overflow, ray_resolved, ray_shadow, ray_lit;
+  logic        [       Lanes-1:0] ray_lane;
+  pixel_t                         ray_pixel;
+  logic        [             2:0] ray_mirrored, ray_dead, ray_octant;
+  logic        [  WeightBits-1:0] ray_weight[3];
+  logic        [    KeyBits-1:0] ray_entry_time;
+  face_e                          ray_entry_face;
+  logic signed [DistanceBits-1:0] ray_origin[3];
+  logic        [     TagBits-1:0] ray_tag;
 
-  logic                       ray_valid, overflow;
-  logic        [   Lanes-1:0] ray_lane;
-  logic        [WeightBits-1:0] ray_weight[3];
-  ray_t                       ray;
+  // With Light or Mirrors the lanes go into a root that is a leaf: its faces are lit and reflect too.
+  localparam bit ResolvesRoot = !Light && !Mirrors;
 
   voxrt_ray_setup #(
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Lanes       (Lanes)
+    .Lanes       (Lanes),
+    .TagBits     (TagBits),
+    .Light       (Light)
   ) u_ray_setup (
     .clk_i,
     .rst_ni,
     .origin_i         (origin_q),
     .mirrored_origin_i(mirrored_origin_q),
     .depth_i          (depth_q),
-    .root_leaf_i      (root_q[PayloadBits]),
-    .root_material_i  (root_q[8] ? '0 : root_q[7:0]),
-    .valid_i          (issues),
-    .lane_i           (turn_q),
-    .direction_i      (direction),
+    .world_i          (world_q),
+    .root_leaf_i      (ResolvesRoot && root[PayloadBits]),
+    .root_material_i  (!ResolvesRoot || root[8] ? '0 : root[7:0]),
+    .valid_i          (issues || shadow_valid),
+    .lane_i           (shadow_valid ? shadow_lane : turn_q),
+    .direction_i      (ray_direction),
+    .shadow_i         (shadow_valid),
+    .lit_i            (lit_point),
+    .tag_i            (shadow_tag),
     .valid_o          (ray_valid),
     .lane_o           (ray_lane),
-    .resolved_o       (ray.resolved),
-    .pixel_o          (ray.pixel),
+    .resolved_o       (ray_resolved),
+    .pixel_o          (ray_pixel),
     .overflow_o       (overflow),
-    .mirrored_o       (ray.mirrored),
-    .dead_o           (ray.dead),
-    .octant_o         (ray.octant),
+    .mirrored_o       (ray_mirrored),
+    .dead_o           (ray_dead),
+    .octant_o         (ray_octant),
     .weight_o         (ray_weight),
-    .entry_time_o     (ray.entry_time),
-    .entry_face_o     (ray.entry_face)
+    .entry_time_o     (ray_entry_time),
+    .entry_face_o     (ray_entry_face),
+    .origin_o         (ray_origin),
+    .shadow_o         (ray_shadow),
+    .lit_o            (ray_lit),
+    .tag_o            (ray_tag)
   );
 
-  assign ray.weight = {ray_weight[2], ray_weight[1], ray_weight[0]};
+  logic [MaxDepth:0] before_light[2][3], to_light[2][3];
 
-  // Lanes.
-  logic   [    Lanes-1:0] pixel_valid, pixel_ready, read, word_read, bad_pointer, step_limit;
-  pixel_t                 pixel [Lanes];
-  logic   [BlockBits-1:0] block [Lanes];
-  logic   [          2:0] octant[Lanes];
-  logic   [PayloadBits:0] word  [Lanes];
+  // Tracks.
+  logic   [    Lanes-1:0] pixel_valid, pixel_ready, pixel_lit, bad_pointer, step_limit;
+  logic   [    Lanes-1:0] request, request_ready, shadow_started;
+  logic   [    Width-1:0] pixel            [Lanes];
+  logic   [  TagBits-1:0] request_tag      [Lanes];
+  face_e                  request_face     [Lanes];
+  logic   [          2:0] request_mirrored [Lanes];
+  logic   [PlaceBits-1:0] request_place    [Lanes][3];
 
-  for (genvar i = 0; i < Lanes; i++) begin : gen_lane
-    // Places in the FIFO that are not promised to a ray under way.
-    localparam int unsigned CreditBits = $clog2(RayFifoDepth) + 1;
-    logic [CreditBits-1:0] credit_q;
-    logic                  lane_valid, lane_ready, unused_ready;
-    ray_t                  lane_ray;
-    logic [WeightBits-1:0] lane_weight[3];
-
-    assign has_credit[i] = credit_q != '0;
-
-    always_ff @(posedge clk_i) begin
-      credit_q <= credit_q - CreditBits'(issues && turn_q[i]) + CreditBits'(lane_valid && lane_ready);
-      if (!rst_ni) credit_q <= CreditBits'(RayFifoDepth);
-    end
-
-    voxrt_fifo #(
-      .Width($bits(ray_t)),
-      .Depth(RayFifoDepth)
-    ) u_rays (
-      .clk_i,
-      .rst_ni,
-      .valid_i(ray_valid && ray_lane[i]),
-      .ready_o(unused_ready),
-      .data_i (ray),
-      .valid_o(lane_valid),
-      .ready_i(lane_ready),
-      .data_o (lane_ray)
-    );
-
-    assign lane_weight[0] = lane_ray.weight[0];
-    assign lane_weight[1] = lane_ray.weight[1];
-    assign lane_weight[2] = lane_ray.weight[2];
-
-    logic                 take, take_ready, fill;
-    logic [  TagBits-1:0] take_tag, fill_tag;
-    pixel_t               fill_pixel;
-
-    voxrt_lane #(
+  for (genvar i = 0; i < Lanes; i++) begin : gen_track
+    voxrt_track #(
       .MaxDepth    (MaxDepth),
       .PositionBits(PositionBits),
       .BlockBits   (BlockBits),
-      .TagBits     (TagBits),
-      .MemoryClocks(memory_clocks(Banked))
-    ) u_lane (
+      .MemoryClocks(memory_clocks(Banked)),
+      .RayDepth    (RayDepth),
+      .PixelDepth  (PixelDepth),
+      .Light       (Light),
+      .Mirrors     (Mirrors)
+    ) u_track (
       .clk_i,
       .rst_ni,
-      .origin_i         (origin_q),
-      .mirrored_origin_i(mirrored_origin_q),
-      .world_i          (world_q),
-      .root_block_i     (root_q[BlockBits-1:0]),
-      .ray_valid_i      (lane_valid),
-      .ray_ready_o      (lane_ready),
-      .ray_resolved_i   (lane_ray.resolved),
-      .ray_pixel_i      (lane_ray.pixel),
-      .ray_mirrored_i   (lane_ray.mirrored),
-      .ray_dead_i       (lane_ray.dead),
-      .ray_octant_i     (lane_ray.octant),
-      .ray_weight_i     (lane_weight),
-      .ray_entry_time_i (lane_ray.entry_time),
-      .ray_entry_face_i (lane_ray.entry_face),
-      .mem_read_o       (read[i]),
-      .mem_block_o      (block[i]),
-      .mem_octant_o     (octant[i]),
-      .mem_ack_i        (word_read[i]),
-      .mem_word_i       (word[i]),
-      .take_o           (take),
-      .take_ready_i     (take_ready),
-      .take_tag_i       (take_tag),
-      .fill_o           (fill),
-      .fill_tag_o       (fill_tag),
-      .fill_pixel_o     (fill_pixel),
-      .bad_pointer_o    (bad_pointer[i]),
-      .step_limit_o     (step_limit[i])
+      .origin_i              (origin_q),
+      .mirrored_origin_i     (mirrored_origin_q),
+      .world_i               (world_q),
+      .root_i                (root),
+      .light_i               (shading_q.light),
+      .bounces_i             (shading_q.bounces),
+      .before_light_i    (before_light),
+      .to_light_i        (to_light),
+      .table_write_i,
+      .table_material_i,
+      .table_row_i,
+      .promise_i             (issues && turn_q[i]),
+      .has_place_o           (has_place[i]),
+      .ray_valid_i           (ray_valid && ray_lane[i]),
+      .ray_resolved_i        (ray_resolved),
+      .ray_pixel_i           (ray_pixel),
+      .ray_mirrored_i        (ray_mirrored),
+      .ray_dead_i            (ray_dead),
+      .ray_octant_i          (ray_octant),
+      .ray_weight_i          (ray_weight),
+      .ray_entry_time_i      (ray_entry_time),
+      .ray_entry_face_i      (ray_entry_face),
+      .ray_origin_i          (ray_origin),
+      .ray_shadow_i          (ray_shadow),
+      .ray_lit_i             (ray_lit),
+      .ray_tag_i             (ray_tag),
+      .shadow_started_o      (shadow_started[i]),
+      .mem_read_o            (read[i]),
+      .mem_block_o           (block[i]),
+      .mem_octant_o          (octant[i]),
+      .mem_ack_i             (word_read[i]),
+      .mem_word_i            (word[i]),
+      .request_o             (request[i]),
+      .request_ready_i       (request_ready[i]),
+      .request_tag_o         (request_tag[i]),
+      .request_face_o        (request_face[i]),
+      .request_mirrored_o    (request_mirrored[i]),
+      .request_place_o       (request_place[i]),
+      .pixel_valid_o         (pixel_valid[i]),
+      .pixel_ready_i         (pixel_ready[i]),
+      .pixel_o               (pixel[i]),
+      .lit_o                 (pixel_lit[i]),
+      .bad_pointer_o         (bad_pointer[i]),
+      .step_limit_o          (step_limit[i])
     );
+  end
 
-    voxrt_pixel_buffer #(
-      .Depth(BufferDepth)
-    ) u_pixels (
+  if (Light) begin : gen_light
+    voxrt_light #(
+      .Lanes     (Lanes),
+      .MaxDepth  (MaxDepth),
+      .TagBits   (TagBits),
+      .QueueDepth(RayDepth)
+    ) u_light (
       .clk_i,
       .rst_ni,
-      .take_i (take),
-      .ready_o(take_ready),
-      .tag_o  (take_tag),
-      .fill_i (fill),
-      .tag_i  (fill_tag),
-      .pixel_i(fill_pixel),
-      .valid_o(pixel_valid[i]),
-      .ready_i(pixel_ready[i]),
-      .pixel_o(pixel[i])
+      .world_i   (world_q),
+      .light_i   (light_q),
+      .request_i (request),
+      .ready_o   (request_ready),
+      .tag_i     (request_tag),
+      .face_i    (request_face),
+      .mirrored_i(request_mirrored),
+      .place_i   (request_place),
+      .started_i (shadow_started),
+      .valid_o   (shadow_valid),
+      .lane_o    (shadow_lane),
+      .tag_o     (shadow_tag),
+      .lit_o     (lit_point),
+      .way_o     (way),
+      .before_light_o(before_light),
+      .to_light_o    (to_light)
     );
+  end else begin : gen_no_light
+    logic [Lanes-1:0] unused_request;
+    always_comb begin
+      for (int unsigned i = 0; i < Lanes; i++) begin
+        unused_request[i] = &{request[i], shadow_started[i], request_tag[i], request_face[i], request_mirrored[i],
+                              request_place[i][0], request_place[i][1], request_place[i][2]};
+      end
+    end
+    assign request_ready = '0;
+    assign {shadow_valid, shadow_lane, shadow_tag} = '0;
+    assign lit_point     = '{default: '0};
+    assign way           = '{default: '0};
+    assign before_light  = '{default: '0};
+    assign to_light      = '{default: '0};
   end
 
   voxrt_octree_memory #(
@@ -287,54 +381,48 @@ module voxrt_rtu
     .access_word_i,
     .access_valid_o,
     .access_word_o,
-    .root_o  (root),
-    .read_i  (read),
-    .block_i (block),
-    .octant_i(octant),
+    .root_o  (first_word),
+    .read_i  (memory_read),
+    .block_i (memory_block),
+    .octant_i(memory_octant),
     .ack_o   (word_read),
     .word_o  (word)
   );
 
   // Pixels.
-  logic   merged_valid, merged_ready;
-  pixel_t merged;
-
-  voxrt_merge #(
-    .Lanes(Lanes)
-  ) u_merge (
+  voxrt_pixels #(
+    .Lanes   (Lanes),
+    .MaxDepth(MaxDepth),
+    .Flat    (Flat),
+    .Light   (Light),
+    .Mirrors (Mirrors)
+  ) u_pixels (
     .clk_i,
     .rst_ni,
-    .start_i(start_q),
-    .valid_i(pixel_valid),
-    .ready_o(pixel_ready),
-    .pixel_i(pixel),
-    .valid_o(merged_valid),
-    .ready_i(merged_ready),
-    .pixel_o(merged)
-  );
-
-  voxrt_shader u_shader (
-    .clk_i,
-    .rst_ni,
-    .start_i   (start_q),
-    .look_i    (look_q),
-    .right_i   (right_q),
-    .up_i      (up_q),
-    .width_i   (width_q),
-    .height_i  (height_q),
+    .start_i       (start_q),
+    .corner_i      (corner),
+    .line_step_i   (line_step),
+    .right_i       (right_q),
+    .width_i       (width_q),
+    .height_i      (height_q),
+    .world_i       (world_q),
+    .light_i       (light_q),
+    .flat_i        (shading_q.flat),
+    .ambient_i     (shading_q.ambient),
     .table_write_i,
     .table_material_i,
-    .table_colour_i,
-    .valid_i   (merged_valid),
-    .ready_o   (merged_ready),
-    .pixel_i   (merged),
-    .valid_o   (out_valid_o),
-    .ready_i   (out_ready_i),
-    .colour_o  (out_colour_o),
-    .pixel_o   (out_pixel_o),
-    .first_o   (out_first_o),
-    .line_end_o(out_line_end_o),
-    .last_o    (out_last_o)
+    .table_colour_i(table_row_i.colour),
+    .valid_i       (pixel_valid),
+    .ready_o       (pixel_ready),
+    .lit_i         (pixel_lit),
+    .pixel_i       (pixel),
+    .out_valid_o,
+    .out_ready_i,
+    .out_colour_o,
+    .out_pixel_o,
+    .out_first_o,
+    .out_line_end_o,
+    .out_last_o
   );
 
   // Counters and errors.
@@ -348,16 +436,17 @@ module voxrt_rtu
     if (out_valid_o && !out_ready_i) stalls_q <= stalls_q + 1'b1;
     words_read_q <= words_read_q + 32'($countones(word_read));
     if (ray_valid && overflow) error_q.direction_overflow <= 1'b1;
-    if (bad_pointer != '0 || (start_q && root_q[PayloadBits] && root_q[8])) error_q.bad_pointer <= 1'b1;
+    if (bad_pointer != '0 || (start_q && root[PayloadBits] && root[8])) error_q.bad_pointer <= 1'b1;
     if (step_limit != '0) error_q.step_limit <= 1'b1;
     if (start) begin
       cycles_q     <= '0;
       rays_q       <= '0;
-      words_read_q <= '0;
       hits_q       <= '0;
       stalls_q     <= '0;
       error_q      <= '0;
     end
+    // Not the root, which is read once a frame.
+    if (start_q) words_read_q <= '0;
   end
 
   assign cycles_o     = cycles_q;

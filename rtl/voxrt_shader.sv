@@ -1,21 +1,27 @@
 // From materials and faces to colours, exact to the last bit, one pixel a clock:
 //   colour = round half up (c * d_a**2 / |d|**2), a the axis crossed, d the ray's direction
-// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour.
+// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour; so have
+// all when Flat is built in and asked for. With Given, voxrt_brightness may say otherwise for a pixel: another factor, and
+// sums of colours in the place of the material's.
 //
 // Directions are made again by a second ray generator, in pixel order: nothing of the ray but material and face need
 // come through the lanes. The pipeline never stops; a pixel enters when the FIFO behind has a place for it.
 //
-// Pipeline: direction, material | sizes | squares | sums | colour x square | dividend | 8 digits | FIFO.
+// Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
+// 8 digits | FIFO.
 module voxrt_shader
   import voxrt_pkg::*;
-(
+#(
+  parameter bit Flat  = 1'b0,
+  parameter bit Given = 1'b0
+) (
   input  logic                         clk_i,
   input  logic                         rst_ni,
   // Frame, as voxrt_ray_generator wants it.
   input  logic                         start_i,
-  input  logic signed [CameraBits-1:0] look_i            [3],
+  input  logic                         corner_i,
+  input  logic signed [  ScanBits-1:0] line_step_i       [3],
   input  logic signed [CameraBits-1:0] right_i           [3],
-  input  logic signed [CameraBits-1:0] up_i              [3],
   input  logic        [  SizeBits-1:0] width_i,
   input  logic        [  SizeBits-1:0] height_i,
   // Material table; row 0 is the background.
@@ -26,6 +32,8 @@ module voxrt_shader
   input  logic                         valid_i,
   output logic                         ready_o,
   input  pixel_t                       pixel_i,
+  input  brightness_t                  brightness_i,
+  input  logic                         flat_i,                 // Held during a frame.
   // Pixels out.
   output logic                         valid_o,
   input  logic                         ready_i,
@@ -35,9 +43,8 @@ module voxrt_shader
   output logic                         line_end_o,
   output logic                         last_o                  // Of the frame.
 );
-  localparam int unsigned SquareBits = 2 * DirectionBits;
   localparam int unsigned SumBits = SquareBits + 2;
-  localparam int unsigned Setup = 7;
+  localparam int unsigned Setup = 8;
   localparam int unsigned Stages = Setup + 8;
   localparam int unsigned FifoDepth = 32;
 
@@ -56,9 +63,9 @@ module voxrt_shader
     .clk_i,
     .rst_ni,
     .start_i,
-    .look_i,
+    .corner_i,
+    .line_step_i,
     .right_i,
-    .up_i,
     .width_i,
     .height_i,
     .valid_o    (direction_valid),
@@ -92,23 +99,46 @@ module voxrt_shader
   end
 
   // 1 direction, material.
+  // Of a channel: a colour, or a sum of colours.
+  localparam int unsigned ChannelBits = Given ? ColourSumBits : 8;
+
   colour_t                    table_q[256];
-  colour_t                    colour_q[1:4];
+  colour_t                     colour1_q;
+  logic [2:0][ChannelBits-1:0] channel_q[2:5];  // Red is 0.
+  brightness_t                 brightness_q[1:4];
   logic signed [ScanBits-1:0] direction1_q[3];
 
   always_ff @(posedge clk_i) begin
     if (table_write_i) table_q[table_material_i] <= table_colour_i;
     if (enters) begin
-      colour_q[1]  <= table_q[pixel_i.material];
-      direction1_q <= direction;
+      colour1_q       <= table_q[pixel_i.material];
+      brightness_q[1] <= Given ? brightness_i : '0;
+      direction1_q    <= direction;
     end
-    for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) colour_q[s] <= colour_q[s-1];
+    if (valid_q[1]) begin
+      channel_q[2] <= {ChannelBits'(colour1_q.blue), ChannelBits'(colour1_q.green), ChannelBits'(colour1_q.red)};
+      if (Given && brightness_q[1].sum_given) channel_q[2] <= $bits(channel_q[2])'(brightness_q[1].sum);
+    end
+    for (int unsigned s = 3; s <= 5; s++) if (valid_q[s-1]) channel_q[s] <= channel_q[s-1];
+    for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) brightness_q[s] <= brightness_q[s-1];
   end
 
-  // 2 sizes, 3 squares, 4 registered for the multipliers' own output registers, 5 sums.
-  logic [DirectionBits-1:0] size2_q  [3];
-  logic [SquareBits-1:0]    square3_q[3], square4_q;
-  logic [SumBits-1:0]       sum4_q, sum5_q, sum6_q, sum7_q;
+  // 2 sizes, 3 and 4 squares, 5 sums.
+  logic [DirectionBits-1:0] size2_q[3];
+  logic [SquareBits-1:0]    square4[3], square5_q;
+  logic [SumBits-1:0]       sum5_q, sum6_q, sum7_q, sum8_q;
+
+  for (genvar a = 0; a < 3; a++) begin : gen_square
+    voxrt_multiply #(
+      .ABits(DirectionBits),
+      .BBits(DirectionBits)
+    ) u_square (
+      .clk_i,
+      .a_i      (size2_q[a]),
+      .b_i      (size2_q[a]),
+      .product_o(square4[a])
+    );
+  end
 
   always_ff @(posedge clk_i) begin
     if (valid_q[1]) begin
@@ -116,41 +146,51 @@ module voxrt_shader
         size2_q[a] <= DirectionBits'(direction1_q[a] < 0 ? -direction1_q[a] : direction1_q[a]);
       end
     end
-    if (valid_q[2]) begin
-      for (int unsigned a = 0; a < 3; a++) square3_q[a] <= SquareBits'(size2_q[a]) * SquareBits'(size2_q[a]);
-    end
-    if (valid_q[3]) begin
-      sum4_q <= SumBits'(square3_q[0]) + SumBits'(square3_q[1]) + SumBits'(square3_q[2]);
-      unique case (place_q[3].pixel.face)
-        FaceX:   square4_q <= square3_q[0];
-        FaceY:   square4_q <= square3_q[1];
-        FaceZ:   square4_q <= square3_q[2];
+    if (valid_q[4]) begin
+      sum5_q <= SumBits'(square4[0]) + SumBits'(square4[1]) + SumBits'(square4[2]);
+      unique case (place_q[4].pixel.face)
+        FaceX:   square5_q <= square4[0];
+        FaceY:   square5_q <= square4[1];
+        FaceZ:   square5_q <= square4[2];
         default: begin
           // Without a face: c * 1 / 1.
-          square4_q <= SquareBits'(1);
-          sum4_q    <= SumBits'(1);
+          square5_q <= SquareBits'(1);
+          sum5_q    <= SumBits'(1);
         end
       endcase
+      if (Flat && flat_i) begin
+        square5_q <= SquareBits'(1);
+        sum5_q    <= SumBits'(1);
+      end
+      if (Given && brightness_q[4].part_given) begin
+        square5_q <= brightness_q[4].part;
+        sum5_q    <= brightness_q[4].whole;
+      end
     end
-    if (valid_q[4]) sum5_q <= sum4_q;
     if (valid_q[5]) sum6_q <= sum5_q;
     if (valid_q[6]) sum7_q <= sum6_q;
+    if (valid_q[7]) sum8_q <= sum7_q;
   end
 
-  // 5, 6 colour x square, 7 dividend, then the digits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
-  logic [7:0] channel[3];
+  // 6 and 7 colour x square, 8 dividend, then the digits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
   logic [7:0] quotient[3];
 
-  assign {channel[0], channel[1], channel[2]} = colour_q[4];
-
   for (genvar c = 0; c < 3; c++) begin : gen_channel
-    logic [SquareBits+7:0] product5_q, product6_q;
-    logic [SumBits+8:0]    dividend7_q;
+    logic [SquareBits+ChannelBits-1:0] product7;
+    logic [SumBits+8:0]                dividend8_q;
+
+    voxrt_multiply #(
+      .ABits(SquareBits),
+      .BBits(ChannelBits)
+    ) u_product (
+      .clk_i,
+      .a_i      (square5_q),
+      .b_i      (channel_q[5][c]),
+      .product_o(product7)
+    );
 
     always_ff @(posedge clk_i) begin
-      if (valid_q[4]) product5_q <= (SquareBits + 8)'(square4_q) * (SquareBits + 8)'(channel[c]);
-      if (valid_q[5]) product6_q <= product5_q;
-      if (valid_q[6]) dividend7_q <= (SumBits + 9)'({product6_q, 1'b0}) + (SumBits + 9)'(sum6_q);
+      if (valid_q[7]) dividend8_q <= (SumBits + 9)'({product7, 1'b0}) + (SumBits + 9)'(sum7_q);
     end
 
     voxrt_divide #(
@@ -159,8 +199,8 @@ module voxrt_shader
     ) u_divide (
       .clk_i,
       .valid_i   (valid_q[Stages-1:Setup]),
-      .dividend_i(dividend7_q),
-      .divisor_i ({sum7_q, 1'b0}),
+      .dividend_i(dividend8_q),
+      .divisor_i ({sum8_q, 1'b0}),
       .quotient_o(quotient[c])
     );
   end

@@ -18,7 +18,7 @@ from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
-from voxrt.sim.render import Engine, EngineCheck, check, render
+from voxrt.sim.render import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
@@ -51,6 +51,7 @@ __all__ = [
     "peak_signal_to_noise",
     "pixel_directions",
     "render",
+    "shader_features",
     "structural_similarity",
     "write_png",
 ]

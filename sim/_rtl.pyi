@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 CONFIGS: list[str]
+FEATURES: dict[str, list[str]]
 CORES: list[str]
 
 class RenderResult(TypedDict):
@@ -23,6 +24,8 @@ class Tracer:
     def max_depth(self) -> int: ...
     @property
     def position_limit(self) -> int: ...
+    @property
+    def light_limit(self) -> int: ...
     def load(self, words: NDArray[np.uint32], *, through_port: bool = False) -> None: ...
     def read_back(self, count: int) -> NDArray[np.uint32]: ...
     def render(
@@ -33,6 +36,12 @@ class Tracer:
         depth: int,
         materials: NDArray[np.uint8],
         *,
+        flat: bool = False,
+        light: NDArray[np.int32] | None = None,
+        ambient: int = 0,
+        bounces: int = 0,
+        mirrors: NDArray[np.uint8] | None = None,
+        root: int = 0,
         stall_seed: int = 0,
     ) -> RenderResult: ...
 

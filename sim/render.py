@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
@@ -94,37 +96,34 @@ def render(
     _check_shading(shading)
     if engine == "model":
         return _render_model(rom, camera, size, shading, threads)
-    if shading != PLAIN:
-        raise SimulatorError(
-            "the ray tracer has no lights, mirrors or flat colour yet; use the exact model (--engine model)"
-        )
-    return _render_rtl(rom, camera, size, config)
+    return _render_rtl(rom, camera, size, shading, config)
 
 
-def check(rom: Rom, camera: Camera, size: tuple[int, int], *, threads: int = 0, config: str = "tiny") -> EngineCheck:
+def check(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    shading: Shading = PLAIN,
+    threads: int = 0,
+    config: str = "tiny",
+) -> EngineCheck:
     """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
-    rtl = render(rom, camera, size, engine="rtl", config=config)
-    model = render(rom, camera, size, engine="model", threads=threads)
+    rtl = render(rom, camera, size, engine="rtl", shading=shading, config=config)
+    model = render(rom, camera, size, engine="model", shading=shading, threads=threads)
     wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
     return EngineCheck(rtl=rtl, model=model, wrong=wrong)
 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, threads: int) -> Frame:
     started = time.perf_counter()
-    light = shading.light
-    mirrors = np.zeros(256, dtype=np.uint8)
-    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
         palette_of(rom),
         _registers(camera),
         size[0],
         size[1],
         threads,
-        flat=shading.flat,
-        light=None if light is None else np.array(light.position, dtype=np.int32),
-        ambient=0 if light is None else light.ambient,
-        bounces=shading.bounces,
-        mirrors=mirrors,
+        **_shading(rom, shading),
     )
     return Frame(
         colour=pixels["colour"],
@@ -134,8 +133,20 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
     )
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) -> Frame:
-    started = time.perf_counter()
+def shader_features(config: str) -> frozenset[str]:
+    """Give what a configuration of the ray tracer has built in: of ``"flat"``, ``"light"`` and ``"mirrors"``.
+
+    Raises
+    ------
+    NoSuchConfigurationError
+        The ray tracer has no configuration of that name here.
+    SimulatorError
+        The ray tracer is not in this installation.
+    """
+    return frozenset(_ray_tracer(config).FEATURES[config])
+
+
+def _ray_tracer(config: str) -> ModuleType:
     try:
         _rtl = import_module("voxrt.sim._rtl")
     except ImportError as error:
@@ -145,7 +156,18 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
         ) from error
     if config not in _rtl.CONFIGS:
         raise NoSuchConfigurationError(config, _rtl.CONFIGS)
+    return _rtl
+
+
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, config: str) -> Frame:
+    started = time.perf_counter()
+    _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
+    if absent := shading.features - shader_features(config):
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
+            "take configuration 'lit' or render with --engine model"
+        )
     place = tuple(value / POSITION_UNITS for value in camera.position)
     for misfit, problem in (
         (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
@@ -154,6 +176,11 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
             not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
             f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
         ),
+        (
+            shading.light is not None
+            and not all(-tracer.light_limit <= value < tracer.light_limit for value in shading.light.position),
+            f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
+        ),
         (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
     ):
         if misfit:
@@ -161,7 +188,14 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
                 f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
             )
     tracer.load(rom.octree.words)
-    pixels = tracer.render(_registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom))
+    pixels = tracer.render(
+        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading(rom, shading)
+    )
+    if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
+        raise SimulatorError(
+            f"the light is {DIRECTION_LIMIT // (2 * POSITION_UNITS)} voxels or more from what it should light: "
+            "too far for the ray tracer; move it nearer or render with --engine model"
+        )
     if pixels["errors"]:
         raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
     return Frame(
@@ -170,6 +204,19 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], config: str) ->
         face=pixels["face"],
         cost=RenderCost(size[0] * size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started),
     )
+
+
+def _shading(rom: Rom, shading: Shading) -> dict[str, Any]:
+    light = shading.light
+    mirrors = np.zeros(256, dtype=np.uint8)
+    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
+    return {
+        "flat": shading.flat,
+        "light": None if light is None else np.array(light.position, dtype=np.int32),
+        "ambient": 0 if light is None else light.ambient,
+        "bounces": shading.bounces,
+        "mirrors": mirrors,
+    }
 
 
 def _check_directions(camera: Camera, size: tuple[int, int]) -> None:

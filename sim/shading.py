@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from voxrt.export import Lighting
     from voxrt.sim.camera import Triple
 
 BOUNCE_LIMIT = 15
@@ -45,6 +46,20 @@ class Shading:
     flat: bool = False
     light: Light | None = None
     bounces: int = 0
+
+    @classmethod
+    def of(cls, lighting: Lighting | None) -> Shading:
+        """Give what a memory's lighting asks for; None asks for nothing."""
+        if lighting is None:
+            return cls()
+        light = Light(lighting.position, lighting.ambient) if lighting.on else None
+        return cls(lighting.flat, light, lighting.bounces)
+
+    @property
+    def features(self) -> frozenset[str]:
+        """What a ray tracer needs built in: of ``"flat"``, ``"light"`` and ``"mirrors"``."""
+        wanted = {"flat": self.flat, "light": self.light is not None, "mirrors": self.bounces > 0}
+        return frozenset(name for name, is_wanted in wanted.items() if is_wanted)
 
 
 PLAIN = Shading()

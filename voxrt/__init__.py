@@ -17,13 +17,24 @@ from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
+    from voxrt.export import WRITABLE_SUFFIXES, Lighting, convert, read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.sim import Camera, Frame, NoSuchConfigurationError, SimulatorError, check, compare, comparison_sheet
+    from voxrt.sim import (
+        Camera,
+        Frame,
+        Light,
+        NoSuchConfigurationError,
+        Shading,
+        SimulatorError,
+        check,
+        compare,
+        comparison_sheet,
+        shader_features,
+    )
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -43,6 +54,8 @@ __all__ = [
     "Frame",
     "Grid",
     "InteriorFit",
+    "Light",
+    "Lighting",
     "LikenessAtDepth",
     "Material",
     "NoSuchConfigurationError",
@@ -54,6 +67,7 @@ __all__ = [
     "RomError",
     "Scene",
     "SceneWarning",
+    "Shading",
     "SimulatorError",
     "ViewerError",
     "ViewpointError",
@@ -74,10 +88,11 @@ __all__ = [
     "render",
     "rom_info",
     "save_picture",
+    "shader_features",
 ]
 
 _HOMES = {
-    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.export": ("WRITABLE_SUFFIXES", "Lighting", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
     "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
@@ -86,11 +101,14 @@ _HOMES = {
     "voxrt.sim": (
         "Camera",
         "Frame",
+        "Light",
         "NoSuchConfigurationError",
+        "Shading",
         "SimulatorError",
         "check",
         "compare",
         "comparison_sheet",
+        "shader_features",
     ),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (

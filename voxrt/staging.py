@@ -32,8 +32,8 @@ def board_scene(blob: Blob) -> Scene:
     """Give a memory as a board takes it, seen as its author wants, or whole."""
     rom = blob.rom
     colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
-    colours[: len(rom.materials)] = [material.colour for material in rom.materials]
-    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
+    for number, material in enumerate(rom.materials):
+        colours[number], mirrors[number] = material.colour, material.mirror
     camera = blob.view or frame_scene(rom, PREVIEW_SIZE)
     return Scene(
         rom.name,

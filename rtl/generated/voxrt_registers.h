@@ -20,7 +20,7 @@ extern "C" {
 #define VOXRT_REGISTERS__VERSION__MINOR_bm 0xff
 #define VOXRT_REGISTERS__VERSION__MINOR_bp 0
 #define VOXRT_REGISTERS__VERSION__MINOR_bw 8
-#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x1
+#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x2
 #define VOXRT_REGISTERS__VERSION__MAJOR_bm 0xff00
 #define VOXRT_REGISTERS__VERSION__MAJOR_bp 8
 #define VOXRT_REGISTERS__VERSION__MAJOR_bw 8
@@ -98,6 +98,17 @@ extern "C" {
 #define VOXRT_REGISTERS__DEPTH__DEPTH_bw 5
 #define VOXRT_REGISTERS__DEPTH__DEPTH_reset 0x1
 
+// reg - voxrt_registers::features
+#define VOXRT_REGISTERS__FEATURES__FLAT_bm 0x1
+#define VOXRT_REGISTERS__FEATURES__FLAT_bp 0
+#define VOXRT_REGISTERS__FEATURES__FLAT_bw 1
+#define VOXRT_REGISTERS__FEATURES__LIGHT_bm 0x2
+#define VOXRT_REGISTERS__FEATURES__LIGHT_bp 1
+#define VOXRT_REGISTERS__FEATURES__LIGHT_bw 1
+#define VOXRT_REGISTERS__FEATURES__MIRRORS_bm 0x4
+#define VOXRT_REGISTERS__FEATURES__MIRRORS_bp 2
+#define VOXRT_REGISTERS__FEATURES__MIRRORS_bw 1
+
 // reg - voxrt_registers::position_reg
 #define VOXRT_REGISTERS__POSITION_REG__VALUE_bm 0xffffffff
 #define VOXRT_REGISTERS__POSITION_REG__VALUE_bp 0
@@ -115,6 +126,30 @@ extern "C" {
 #define VOXRT_REGISTERS__COUNTER_REG__VALUE_bp 0
 #define VOXRT_REGISTERS__COUNTER_REG__VALUE_bw 32
 
+// reg - voxrt_registers::shading
+#define VOXRT_REGISTERS__SHADING__FLAT_bm 0x1
+#define VOXRT_REGISTERS__SHADING__FLAT_bp 0
+#define VOXRT_REGISTERS__SHADING__FLAT_bw 1
+#define VOXRT_REGISTERS__SHADING__FLAT_reset 0x0
+#define VOXRT_REGISTERS__SHADING__LIGHT_bm 0x2
+#define VOXRT_REGISTERS__SHADING__LIGHT_bp 1
+#define VOXRT_REGISTERS__SHADING__LIGHT_bw 1
+#define VOXRT_REGISTERS__SHADING__LIGHT_reset 0x0
+#define VOXRT_REGISTERS__SHADING__AMBIENT_bm 0xff00
+#define VOXRT_REGISTERS__SHADING__AMBIENT_bp 8
+#define VOXRT_REGISTERS__SHADING__AMBIENT_bw 8
+#define VOXRT_REGISTERS__SHADING__AMBIENT_reset 0x20
+#define VOXRT_REGISTERS__SHADING__BOUNCES_bm 0xf0000
+#define VOXRT_REGISTERS__SHADING__BOUNCES_bp 16
+#define VOXRT_REGISTERS__SHADING__BOUNCES_bw 4
+#define VOXRT_REGISTERS__SHADING__BOUNCES_reset 0x0
+
+// reg - voxrt_registers::root
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bm 0xffffffff
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bp 0
+#define VOXRT_REGISTERS__ROOT__ADDRESS_bw 32
+#define VOXRT_REGISTERS__ROOT__ADDRESS_reset 0x0
+
 // mem - voxrt_registers::materials
 typedef struct __attribute__ ((__packed__)) {
     uint32_t mem[256];
@@ -129,7 +164,7 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t status;
     uint32_t size;
     uint32_t depth;
-    uint8_t RESERVED_1c_1f[0x4];
+    uint32_t features;
     uint32_t position[3];
     uint8_t RESERVED_2c_2f[0x4];
     uint32_t look[3];
@@ -143,7 +178,11 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t words_read;
     uint32_t hits;
     uint32_t stalls;
-    uint8_t RESERVED_74_3ff[0x38c];
+    uint32_t shading;
+    uint32_t root;
+    uint8_t RESERVED_7c_7f[0x4];
+    uint32_t light[3];
+    uint8_t RESERVED_8c_3ff[0x374];
     voxrt_registers__materials_t materials;
 } voxrt_registers_t;
 

@@ -234,6 +234,7 @@ module voxrt_registers (
         logic status;
         logic size;
         logic depth;
+        logic features;
         logic position[3];
         logic look[3];
         logic right[3];
@@ -243,6 +244,9 @@ module voxrt_registers (
         logic words_read;
         logic hits;
         logic stalls;
+        logic shading;
+        logic root;
+        logic light[3];
         logic materials;
     } decoded_reg_strb_t;
     decoded_reg_strb_t decoded_reg_strb;
@@ -269,6 +273,7 @@ module voxrt_registers (
         decoded_reg_strb.status = cpuif_req_masked & (cpuif_addr == 11'h10);
         decoded_reg_strb.size = cpuif_req_masked & (cpuif_addr == 11'h14);
         decoded_reg_strb.depth = cpuif_req_masked & (cpuif_addr == 11'h18);
+        decoded_reg_strb.features = cpuif_req_masked & (cpuif_addr == 11'h1c) & !cpuif_req_is_wr;
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.position[i0] = cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
         end
@@ -286,6 +291,11 @@ module voxrt_registers (
         decoded_reg_strb.words_read = cpuif_req_masked & (cpuif_addr == 11'h68) & !cpuif_req_is_wr;
         decoded_reg_strb.hits = cpuif_req_masked & (cpuif_addr == 11'h6c) & !cpuif_req_is_wr;
         decoded_reg_strb.stalls = cpuif_req_masked & (cpuif_addr == 11'h70) & !cpuif_req_is_wr;
+        decoded_reg_strb.shading = cpuif_req_masked & (cpuif_addr == 11'h74);
+        decoded_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
+        for(int i0=0; i0<3; i0++) begin
+            decoded_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
+        end
         decoded_reg_strb.materials = cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_external |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         decoded_err = '0;
@@ -395,6 +405,36 @@ module voxrt_registers (
                 logic load_next;
             } value;
         } up[3];
+        struct {
+            struct {
+                logic next;
+                logic load_next;
+            } flat;
+            struct {
+                logic next;
+                logic load_next;
+            } light;
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } ambient;
+            struct {
+                logic [3:0] next;
+                logic load_next;
+            } bounces;
+        } shading;
+        struct {
+            struct {
+                logic [31:0] next;
+                logic load_next;
+            } address;
+        } root;
+        struct {
+            struct {
+                logic [31:0] next;
+                logic load_next;
+            } value;
+        } light[3];
     } field_combo_t;
     field_combo_t field_combo;
 
@@ -460,6 +500,30 @@ module voxrt_registers (
                 logic [15:0] value;
             } value;
         } up[3];
+        struct {
+            struct {
+                logic value;
+            } flat;
+            struct {
+                logic value;
+            } light;
+            struct {
+                logic [7:0] value;
+            } ambient;
+            struct {
+                logic [3:0] value;
+            } bounces;
+        } shading;
+        struct {
+            struct {
+                logic [31:0] value;
+            } address;
+        } root;
+        struct {
+            struct {
+                logic [31:0] value;
+            } value;
+        } light[3];
     } field_storage_t;
     field_storage_t field_storage;
 
@@ -834,6 +898,146 @@ module voxrt_registers (
         end
         assign hwif_out.up[i0].value.value = field_storage.up[i0].value.value;
     end
+    // Field: voxrt_registers.shading.flat
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.shading.flat.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.shading && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.shading.flat.value & ~decoded_wr_biten[0:0]) | (decoded_wr_data[0:0] & decoded_wr_biten[0:0]);
+            load_next_c = '1;
+        end
+        field_combo.shading.flat.next = next_c;
+        field_combo.shading.flat.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.shading.flat.value <= 1'h0;
+        end else begin
+            if(field_combo.shading.flat.load_next) begin
+                field_storage.shading.flat.value <= field_combo.shading.flat.next;
+            end
+        end
+    end
+    assign hwif_out.shading.flat.value = field_storage.shading.flat.value;
+    // Field: voxrt_registers.shading.light
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.shading.light.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.shading && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.shading.light.value & ~decoded_wr_biten[1:1]) | (decoded_wr_data[1:1] & decoded_wr_biten[1:1]);
+            load_next_c = '1;
+        end
+        field_combo.shading.light.next = next_c;
+        field_combo.shading.light.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.shading.light.value <= 1'h0;
+        end else begin
+            if(field_combo.shading.light.load_next) begin
+                field_storage.shading.light.value <= field_combo.shading.light.next;
+            end
+        end
+    end
+    assign hwif_out.shading.light.value = field_storage.shading.light.value;
+    // Field: voxrt_registers.shading.ambient
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.shading.ambient.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.shading && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.shading.ambient.value & ~decoded_wr_biten[15:8]) | (decoded_wr_data[15:8] & decoded_wr_biten[15:8]);
+            load_next_c = '1;
+        end
+        field_combo.shading.ambient.next = next_c;
+        field_combo.shading.ambient.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.shading.ambient.value <= 8'h20;
+        end else begin
+            if(field_combo.shading.ambient.load_next) begin
+                field_storage.shading.ambient.value <= field_combo.shading.ambient.next;
+            end
+        end
+    end
+    assign hwif_out.shading.ambient.value = field_storage.shading.ambient.value;
+    // Field: voxrt_registers.shading.bounces
+    always_comb begin
+        automatic logic [3:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.shading.bounces.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.shading && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.shading.bounces.value & ~decoded_wr_biten[19:16]) | (decoded_wr_data[19:16] & decoded_wr_biten[19:16]);
+            load_next_c = '1;
+        end
+        field_combo.shading.bounces.next = next_c;
+        field_combo.shading.bounces.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.shading.bounces.value <= 4'h0;
+        end else begin
+            if(field_combo.shading.bounces.load_next) begin
+                field_storage.shading.bounces.value <= field_combo.shading.bounces.next;
+            end
+        end
+    end
+    assign hwif_out.shading.bounces.value = field_storage.shading.bounces.value;
+    // Field: voxrt_registers.root.address
+    always_comb begin
+        automatic logic [31:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.root.address.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.root && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.root.address.value & ~decoded_wr_biten[31:0]) | (decoded_wr_data[31:0] & decoded_wr_biten[31:0]);
+            load_next_c = '1;
+        end
+        field_combo.root.address.next = next_c;
+        field_combo.root.address.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.root.address.value <= 32'h0;
+        end else begin
+            if(field_combo.root.address.load_next) begin
+                field_storage.root.address.value <= field_combo.root.address.next;
+            end
+        end
+    end
+    assign hwif_out.root.address.value = field_storage.root.address.value;
+    for(genvar i0=0; i0<3; i0++) begin
+        // Field: voxrt_registers.light[].value
+        always_comb begin
+            automatic logic [31:0] next_c;
+            automatic logic load_next_c;
+            next_c = field_storage.light[i0].value.value;
+            load_next_c = '0;
+            if(decoded_reg_strb.light[i0] && decoded_req_is_wr) begin // SW write
+                next_c = (field_storage.light[i0].value.value & ~decoded_wr_biten[31:0]) | (decoded_wr_data[31:0] & decoded_wr_biten[31:0]);
+                load_next_c = '1;
+            end
+            field_combo.light[i0].value.next = next_c;
+            field_combo.light[i0].value.load_next = load_next_c;
+        end
+        always_ff @(posedge clk) begin
+            if(~rst_n) begin
+                field_storage.light[i0].value.value <= 32'h0;
+            end else begin
+                if(field_combo.light[i0].value.load_next) begin
+                    field_storage.light[i0].value.value <= field_combo.light[i0].value.next;
+                end
+            end
+        end
+        assign hwif_out.light[i0].value.value = field_storage.light[i0].value.value;
+    end
     // External region: voxrt_registers.materials
     assign hwif_out.materials.req = decoded_reg_strb.materials;
     assign hwif_out.materials.addr = decoded_addr[9:0];
@@ -891,7 +1095,7 @@ module voxrt_registers (
             readback_data_var[31:0] = 32'h56585254;
         end
         if(rd_mux_addr == 11'h4) begin
-            readback_data_var[7:0] = 8'h1;
+            readback_data_var[7:0] = 8'h2;
             readback_data_var[15:8] = 8'h0;
         end
         if(rd_mux_addr == 11'h8) begin
@@ -920,6 +1124,11 @@ module voxrt_registers (
         end
         if(rd_mux_addr == 11'h18) begin
             readback_data_var[4:0] = field_storage.depth.depth.value;
+        end
+        if(rd_mux_addr == 11'h1c) begin
+            readback_data_var[0] = hwif_in.features.flat.next;
+            readback_data_var[1] = hwif_in.features.light.next;
+            readback_data_var[2] = hwif_in.features.mirrors.next;
         end
         for(int i0=0; i0<3; i0++) begin
             if(rd_mux_addr == 11'h20 + (11)'(i0) * 11'h4) begin
@@ -955,6 +1164,20 @@ module voxrt_registers (
         end
         if(rd_mux_addr == 11'h70) begin
             readback_data_var[31:0] = hwif_in.stalls.value.next;
+        end
+        if(rd_mux_addr == 11'h74) begin
+            readback_data_var[0] = field_storage.shading.flat.value;
+            readback_data_var[1] = field_storage.shading.light.value;
+            readback_data_var[15:8] = field_storage.shading.ambient.value;
+            readback_data_var[19:16] = field_storage.shading.bounces.value;
+        end
+        if(rd_mux_addr == 11'h78) begin
+            readback_data_var[31:0] = field_storage.root.address.value;
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(rd_mux_addr == 11'h80 + (11)'(i0) * 11'h4) begin
+                readback_data_var[31:0] = field_storage.light[i0].value.value;
+            end
         end
         if((rd_mux_addr >= 11'h400) && (rd_mux_addr <= 11'h400 + 11'h3ff)) begin
             readback_data_var = hwif_in.materials.rd_data;

@@ -64,6 +64,24 @@ package voxrt_registers_pkg;
     } voxrt_registers__status__in_t;
 
     typedef struct {
+        logic next;
+    } voxrt_registers__features__flat__in_t;
+
+    typedef struct {
+        logic next;
+    } voxrt_registers__features__light__in_t;
+
+    typedef struct {
+        logic next;
+    } voxrt_registers__features__mirrors__in_t;
+
+    typedef struct {
+        voxrt_registers__features__flat__in_t flat;
+        voxrt_registers__features__light__in_t light;
+        voxrt_registers__features__mirrors__in_t mirrors;
+    } voxrt_registers__features__in_t;
+
+    typedef struct {
         logic [31:0] next;
     } voxrt_registers__counter_reg__value__in_t;
 
@@ -80,6 +98,7 @@ package voxrt_registers_pkg;
     typedef struct {
         voxrt_registers__configuration__in_t configuration;
         voxrt_registers__status__in_t status;
+        voxrt_registers__features__in_t features;
         voxrt_registers__counter_reg__in_t cycles;
         voxrt_registers__counter_reg__in_t rays;
         voxrt_registers__counter_reg__in_t words_read;
@@ -172,6 +191,37 @@ package voxrt_registers_pkg;
     } voxrt_registers__direction_reg__out_t;
 
     typedef struct {
+        logic value;
+    } voxrt_registers__shading__flat__out_t;
+
+    typedef struct {
+        logic value;
+    } voxrt_registers__shading__light__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__shading__ambient__out_t;
+
+    typedef struct {
+        logic [3:0] value;
+    } voxrt_registers__shading__bounces__out_t;
+
+    typedef struct {
+        voxrt_registers__shading__flat__out_t flat;
+        voxrt_registers__shading__light__out_t light;
+        voxrt_registers__shading__ambient__out_t ambient;
+        voxrt_registers__shading__bounces__out_t bounces;
+    } voxrt_registers__shading__out_t;
+
+    typedef struct {
+        logic [31:0] value;
+    } voxrt_registers__root__address__out_t;
+
+    typedef struct {
+        voxrt_registers__root__address__out_t address;
+    } voxrt_registers__root__out_t;
+
+    typedef struct {
         logic req;
         logic [9:0] addr;
         logic req_is_wr;
@@ -188,6 +238,9 @@ package voxrt_registers_pkg;
         voxrt_registers__direction_reg__out_t look[3];
         voxrt_registers__direction_reg__out_t right[3];
         voxrt_registers__direction_reg__out_t up[3];
+        voxrt_registers__shading__out_t shading;
+        voxrt_registers__root__out_t root;
+        voxrt_registers__position_reg__out_t light[3];
         voxrt_registers__materials__external__out_t materials;
     } voxrt_registers__out_t;
 endpackage

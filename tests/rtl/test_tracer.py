@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from oracles.memory import words_of
+from oracles.random_cameras import random_camera, random_voxels
 from oracles.ray import render
 
 rtl = pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
@@ -37,42 +38,6 @@ def assert_exact(voxels, camera, width, height, *, stall_seed=0):
         np.testing.assert_array_equal(got["colour"], colour, config)
         assert got["errors"] == []
     return got
-
-
-def random_voxels(rng, depth, density):
-    """A world of boxes and single voxels: octants of every size, solid and empty."""
-    side = 1 << depth
-    voxels = np.zeros((side,) * 3, np.uint8)
-    for _ in range(int(rng.integers(0, 4))):
-        low = rng.integers(0, side, 3)
-        high = np.minimum(low + rng.integers(1, side + 1, 3), side)
-        voxels[low[0] : high[0], low[1] : high[1], low[2] : high[2]] = rng.integers(0, 256)
-    sprinkled = rng.random(voxels.shape) < density
-    voxels[sprinkled] = rng.integers(0, 256, int(sprinkled.sum()))
-    return voxels
-
-
-def random_camera(rng, side):
-    """Cameras that like trouble: on planes, edges and corners, along axes and diagonals, inside, far outside."""
-    world = 16 * side
-    position = [
-        int(rng.choice([rng.integers(0, side + 1) * 16, rng.integers(-world, 2 * world), 0, world, -1, world - 1]))
-        for _ in range(3)
-    ]
-    kind = rng.integers(4)
-    scale = int(rng.choice([1, 3, 1000, 12000]))  # directions stay below 2**20
-    if kind == 0:
-        frame = rng.integers(-2, 3, (3, 3)) * scale
-    elif kind == 1:
-        frame = rng.permutation(np.diag(rng.choice([-scale, scale], 3)))
-        frame[0] *= int(rng.integers(0, 2))
-    elif kind == 2:
-        frame = rng.integers(-scale, scale + 1, (3, 3))
-    else:
-        frame = np.zeros((3, 3), int)
-        frame[0] = [side * 8 - p for p in position]
-        frame[1:] = rng.integers(-side, side + 1, (2, 3))
-    return np.array([position, *np.clip(frame, -32768, 32767)], np.int32)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -233,3 +198,28 @@ def test_arguments_out_of_range_are_refused(config):
         design.load(np.zeros(0, np.uint32))
     with pytest.raises(ValueError, match="no configuration"):
         rtl.Tracer("imaginary")
+
+
+@pytest.mark.parametrize("config", rtl.CONFIGS)
+def test_the_root_may_stand_anywhere(config):
+    rng = np.random.default_rng(12)
+    design = tracer(config)
+    scenes = [words_of(random_voxels(rng, depth, 0.2)) for depth in (4, 3)] + [np.array([0xFFFFFF05], np.uint32)]
+    base, memory, roots = 0, np.zeros(0, np.uint32), []
+    for words in scenes:
+        moved = np.where(words >> 31 == 0, words + base, words).astype(np.uint32)
+        memory = np.concatenate([memory, moved, np.full(-len(moved) % 8, 0xFFFFFF00, np.uint32)])
+        roots.append(base)
+        base = len(memory)
+    camera = np.array([[-100, 300, -80], [100, -60, 100], [4, 0, -4], [0, 4, 1]], np.int32)
+    for words, root, depth in zip(scenes, roots, (4, 3, 3), strict=True):
+        design.load(words)
+        alone = design.render(camera, 30, 20, depth, MATERIALS)
+        design.load(memory)
+        got = design.render(camera, 30, 20, depth, MATERIALS, root=root)
+        for key in ("colour", "material", "face", "words_read", "errors"):
+            np.testing.assert_array_equal(alone[key], got[key])
+    for root in (design.memory_words, 2**32 - 1):
+        got = design.render(camera, 3, 2, 3, MATERIALS, root=root)
+        assert got["errors"] == ["bad pointer"]
+        assert (got["material"] == 0).all()

@@ -180,3 +180,40 @@ def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path):
     with pytest.raises(OSError, match=r"folder\.png"):
         write_png(tmp_path / "folder.png", np.zeros((2, 2, 3), np.uint8))
     assert [entry.name for entry in tmp_path.iterdir()] == ["folder.png"]
+
+
+@needs_rtl
+def test_the_ray_tracer_shades_as_the_model(rom):
+    camera = frame_scene(rom, (40, 30))
+    shading = Shading(light=Light((300, 900, -70), ambient=20), bounces=3)
+    found = check(rom, camera, (40, 30), shading=shading, config="lit4")
+    assert found.wrong_pixels == 0
+    assert not np.array_equal(found.rtl.colour, render(rom, camera, (40, 30), engine="model").colour)
+
+
+@needs_rtl
+@pytest.mark.parametrize(
+    ("shading", "absent"),
+    [
+        (Shading(flat=True), "flat"),
+        (Shading(light=Light((0, 0, 0))), "light"),
+        (Shading(bounces=2, flat=True), "flat and mirrors"),
+    ],
+)
+def test_a_configuration_without_the_feature_says_so(rom, shading, absent):
+    with pytest.raises(SimulatorError, match=f"'tiny' is built without {absent}; .*'lit'.*--engine model"):
+        render(rom, ALONG_Z, (4, 4), engine="rtl", shading=shading)
+
+
+@needs_rtl
+def test_a_light_too_far_for_the_ray_tracer_is_refused(rom):
+    for light, message in ((1 << 30, "a light outside of"), (700_000, "move it nearer")):
+        with pytest.raises(SimulatorError, match=message):
+            render(
+                rom,
+                frame_scene(rom, (40, 30)),
+                (40, 30),
+                engine="rtl",
+                shading=Shading(light=Light((light,) * 3)),
+                config="lit4",
+            )

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, png
+from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, place, png, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import aim
+
+if TYPE_CHECKING:
+    from voxrt import Lighting
+
+Triple = tuple[int, int, int]
 
 
 def render(
@@ -20,11 +26,17 @@ def render(
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     engine: Literal["rtl", "model"] = "rtl",
-    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     size: Pixels = (640, 480),
     sight: Annotated[Sight, Parameter(name="*")] = Sight(),  # noqa: B008
     depth: Depth = None,
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
+    light: Annotated[
+        Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
+    ] = None,
+    ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    flat: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -40,7 +52,8 @@ def render(
     engine
         The verilated hardware, or the exact model of it. Both give the same pixels.
     config
-        The configuration of the hardware: how many lanes, which memory.
+        The configuration of the hardware: how many lanes, which memory, which features of the shader. Not given: tiny,
+        or lit where light, mirrors or flat colours are wanted.
     size
         Width and height, pixels. [default: 640x480]
     sight
@@ -49,6 +62,16 @@ def render(
         Levels of the octree, where no manifest says.
     dialect
         How the memory spells a material, where no manifest says.
+    light
+        Where a light stands that casts shadows, voxels, in steps of 1/16. Not given: the memory's, or none: then the
+        camera is the light.
+    ambient
+        The brightness of that light's shadows, 0 to 255. [default: 32]
+    bounces
+        How often mirrors reflect a ray, 0 to 15; with 0 they are like all other materials. Not given: as the memory
+        says, or 0.
+    flat
+        Show materials in their own colour, whatever the angle.
     check
         Render with both engines, count the pixels on which they differ, fail if there are any.
     reporting
@@ -59,15 +82,18 @@ def render(
     warn(warnings)
     memory = blob.rom
     camera = aim(memory, blob.view, size, sight)
+    lighting = _lighting(blob.lighting, light, ambient, bounces, flat=flat)
+    shading = voxrt.Shading.of(lighting)
+    if config is None:
+        config = "tiny" if lighting is None else "lit"
+    elif engine == "rtl" and lighting == blob.lighting and shading.features - voxrt.shader_features(config):
+        warn((voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),))
+        lighting = None
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, config=config)
+        checked = voxrt.check(memory, camera, size, shading=voxrt.Shading.of(lighting), config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        lighting = blob.lighting
-        if engine == "rtl" and lighting is not None and lighting.on:
-            warn((voxrt.SceneWarning("light", "the memory's light is left out: --engine model casts it"),))
-            lighting = None
         frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
@@ -81,3 +107,19 @@ def render(
         raise voxrt.SimulatorError(
             f"{rom}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+def _lighting(
+    authored: Lighting | None, light: Triple | None, ambient: int | None, bounces: int | None, *, flat: bool
+) -> Lighting | None:
+    """Give the memory's lighting with what the command line says in its place; None where nothing is wanted."""
+    lighting = authored or voxrt.Lighting()
+    if light is not None:
+        lighting = replace(lighting, position=light, on=True, ambient=32)
+    if ambient is not None:
+        lighting = replace(lighting, ambient=ambient)
+    if bounces is not None:
+        lighting = replace(lighting, bounces=bounces)
+    if flat:
+        lighting = replace(lighting, flat=True)
+    return lighting if lighting.on or lighting.bounces or lighting.flat else None

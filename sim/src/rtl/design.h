@@ -14,23 +14,33 @@ namespace voxrt::rtl {
 struct Limits {
     unsigned lanes;
     bool banked;
-    unsigned max_depth;     // depth is 1 .. max_depth
-    unsigned position_bits; // signed
-    unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
+    unsigned max_depth;        // depth is 1 .. max_depth
+    unsigned position_bits;    // signed
+    unsigned block_bits;       // blocks of eight words that the memory holds: 2 ** block_bits
+    bool flat, light, mirrors; // features that are built in; others are off, whatever is asked for
 
     std::size_t memory_words() const { return (std::size_t{8} << block_bits) + 1; }
+    // Signed, 1/16 voxel: voxrt_pkg::light_bits.
+    unsigned light_bits() const { return max_depth + 4 >= 20 ? max_depth + 6 : 21; }
 };
 
 // Sizes are 1 .. 2 ** size_bits - 1.
 inline constexpr unsigned size_bits = 12;
+inline constexpr unsigned bounce_limit = 15;
 
 struct FrameRequest {
     int32_t position[3]; // 1/16 voxel
     int16_t look[3], right[3], up[3];
     unsigned width, height;
     unsigned depth;
+    uint32_t root;            // word address
     const uint8_t* materials; // 256 x 3, row 0 is the background
-    uint32_t stall_seed;      // 0: the output is always ready; else it stalls in a pattern of this seed's
+    const uint8_t* mirrors;   // 256 flags
+    bool flat, light;
+    int32_t light_position[3]; // 1/16 voxel
+    uint8_t ambient;           // 1/256
+    uint8_t bounces;           // 0 .. bounce_limit
+    uint32_t stall_seed;       // 0: the output is always ready; else it stalls in a pattern of this seed's
 };
 
 // Row by row from the top; colour 3 bytes a pixel.

@@ -1,18 +1,23 @@
 // voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
 //
 //   CONFIGS: list[str]        names of the configurations that were built
+//   FEATURES: dict[str, list[str]]  which of "flat", "light" and "mirrors" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
+//     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, through_port=False)
 //                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
 //                             straight into the simulated memory: the outcome is the same
 //     .read_back(count)       uint32: the memory's first words, read through that port
-//     .render(camera, width, height, depth, materials, *, stall_seed=0) -> dict
+//     .render(camera, width, height, depth, materials, *, flat=False, light=None, ambient=0, bounces=0, mirrors=None,
+//             root=0, stall_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
-//                             materials uint8 (256, 3), sRGB, row 0 is the background. With a stall_seed, the
+//                             materials uint8 (256, 3), sRGB, row 0 is the background; light int32 (3,), 1/16 voxel;
+//                             ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the word address
+//                             of the octree's root. With a stall_seed, the
 //                             picture's consumer stalls in a pattern that depends on it.
 //                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
@@ -20,13 +25,14 @@
 //
 //   CORES, PixelGenerator     the whole core: core_module.cpp
 //
-// ValueError: a name, size or register out of range.
+// ValueError: a name, size or register out of range, or a feature that is not built in.
 #include "core_module.h"
 #include "design.h"
 #include "one_call.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -39,7 +45,7 @@ using namespace nb::literals;
 
 namespace voxrt::rtl {
 
-#define VOXRT_CONFIGURATION(name) std::unique_ptr<Design> make_##name();
+#define VOXRT_CONFIGURATION(name, flat, light, mirrors) std::unique_ptr<Design> make_##name();
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 
@@ -48,10 +54,11 @@ namespace {
 struct Configuration {
     const char* name;
     std::unique_ptr<Design> (*make)();
+    bool flat, light, mirrors;
 };
 
 constexpr Configuration configurations[] = {
-#define VOXRT_CONFIGURATION(name) {#name, make_##name},
+#define VOXRT_CONFIGURATION(name, flat, light, mirrors) {#name, make_##name, flat, light, mirrors},
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 };
@@ -59,6 +66,8 @@ constexpr Configuration configurations[] = {
 using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using CameraRegisters = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
 using Materials = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
+using Place = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 
 std::string range(long low, long high) { return std::to_string(low) + " ... " + std::to_string(high); }
 
@@ -81,6 +90,17 @@ nb::object array(std::vector<std::size_t> shape, uint8_t*& data) {
     return nb::cast(nb::ndarray<nb::numpy, uint8_t>(data, shape.size(), shape.data(), owner));
 }
 
+std::vector<std::string> features_of(const Configuration& configuration) {
+    std::vector<std::string> names;
+    if (configuration.flat)
+        names.emplace_back("flat");
+    if (configuration.light)
+        names.emplace_back("light");
+    if (configuration.mirrors)
+        names.emplace_back("mirrors");
+    return names;
+}
+
 class Tracer {
 public:
     explicit Tracer(const std::string& name) {
@@ -94,6 +114,7 @@ public:
     std::size_t memory_words() const { return design_->limits().memory_words(); }
     unsigned max_depth() const { return design_->limits().max_depth; }
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
+    int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
 
     void load(const Words& words, bool through_port) {
         if (words.size() < 1 || words.size() > memory_words())
@@ -119,7 +140,8 @@ public:
     }
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
-                    uint32_t stall_seed) {
+                    bool flat, const std::optional<Place>& light, long ambient, long bounces,
+                    const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -136,6 +158,21 @@ public:
         request.height = static_cast<unsigned>(height);
         request.depth = static_cast<unsigned>(depth);
         request.materials = materials.data();
+        static constexpr uint8_t no_mirrors[256] = {};
+        request.mirrors = mirrors ? mirrors->data() : no_mirrors;
+        if ((flat && !limits.flat) || (light && !limits.light) || (bounces != 0 && !limits.mirrors))
+            throw std::invalid_argument("this configuration has not been built with that feature: see FEATURES");
+        check("ambient", ambient, 0, 255);
+        check("bounces", bounces, 0, bounce_limit);
+        request.flat = flat;
+        request.light = light.has_value();
+        request.ambient = static_cast<uint8_t>(ambient);
+        request.bounces = static_cast<uint8_t>(bounces);
+        for (std::size_t axis = 0; light && axis < 3; ++axis) {
+            check("light position", (*light)(axis), -light_limit(), light_limit() - 1);
+            request.light_position[axis] = (*light)(axis);
+        }
+        request.root = root;
         request.stall_seed = stall_seed;
 
         FrameImage image{};
@@ -182,14 +219,20 @@ NB_MODULE(_rtl, m) {
     for (const auto& configuration : voxrt::rtl::configurations)
         names.emplace_back(configuration.name);
     m.attr("CONFIGS") = names;
+    nb::dict features;
+    for (const auto& configuration : voxrt::rtl::configurations)
+        features[configuration.name] = voxrt::rtl::features_of(configuration);
+    m.attr("FEATURES") = features;
     nb::class_<Tracer>(m, "Tracer")
         .def(nb::init<const std::string&>(), "config"_a)
         .def_prop_ro("memory_words", &Tracer::memory_words)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
+        .def_prop_ro("light_limit", &Tracer::light_limit)
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
-             "stall_seed"_a = 0);
+             "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
+             "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0);
     voxrt::rtl::bind_pixel_generator(m);
 }

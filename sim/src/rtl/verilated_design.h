@@ -49,12 +49,15 @@ public:
         const std::string memory = "TOP.voxrt_rtu.u_memory";
         *variable(memory, "root_q") = memory_word(words[0]);
         if (limits_.banked) {
-            uint32_t* banks[8];
-            for (unsigned bank = 0; bank < 8; ++bank)
+            uint32_t* banks[16];
+            for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
                     variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
+            uint32_t* top = variable(memory + ".gen_banked.u_memory", "top_q");
+            for (std::size_t row = 0; row + 1 < words.size() && row < 64; ++row)
+                top[row] = memory_word(words[row + 1]);
             for (std::size_t row = 0; row + 1 < words.size(); ++row)
-                banks[(row ^ row >> 3) & 7][row >> 3] = memory_word(words[row + 1]);
+                banks[(row ^ row >> 4) & 15][row >> 4] = memory_word(words[row + 1]);
         } else {
             for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
                 uint32_t* rows =
@@ -134,7 +137,7 @@ private:
         model_->eval();
     }
 
-    // The pixel buffers clear themselves, 128 places a clock each, after reset.
+    // The pixel buffers clear themselves after reset, a place a clock; no ray starts until they have.
     void reset() {
         model_->start_i = 0;
         model_->out_ready_i = 0;
@@ -142,7 +145,8 @@ private:
         for (int i = 0; i < 16; ++i)
             clock();
         model_->rst_ni = 1;
-        clock();
+        for (int i = 0; i < 256; ++i)
+            clock();
     }
 
     void set_frame(const FrameRequest& request) {
@@ -150,7 +154,8 @@ private:
         for (unsigned material = 0; material < 256; ++material) {
             const uint8_t* colour = request.materials + 3 * material;
             model_->table_material_i = static_cast<uint8_t>(material);
-            model_->table_colour_i = uint32_t{colour[0]} << 16 | uint32_t{colour[1]} << 8 | colour[2];
+            model_->table_row_i = uint32_t{request.mirrors[material] != 0} << 24 | uint32_t{colour[0]} << 16 |
+                                  uint32_t{colour[1]} << 8 | colour[2];
             clock();
         }
         model_->table_write_i = 0;
@@ -160,7 +165,13 @@ private:
             model_->look_i[axis] = static_cast<uint16_t>(request.look[axis]);
             model_->right_i[axis] = static_cast<uint16_t>(request.right[axis]);
             model_->up_i[axis] = static_cast<uint16_t>(request.up[axis]);
+            model_->light_i[axis] =
+                static_cast<uint32_t>(request.light_position[axis]) & ((1u << limits_.light_bits()) - 1);
         }
+        // voxrt_pkg::shading_t.
+        model_->shading_i =
+            static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 | request.bounces);
+        model_->root_i = request.root;
         model_->width_i = static_cast<uint16_t>(request.width);
         model_->height_i = static_cast<uint16_t>(request.height);
         model_->depth_i = static_cast<uint8_t>(request.depth);

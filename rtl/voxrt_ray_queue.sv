@@ -1,0 +1,39 @@
+// Two queues in one memory, whose depth distributed memory has anyway: rays of the camera, and shadow rays, which
+// leave first. A ray comes in when its queue has a place: both queues' writers count places, so none is refused.
+module voxrt_ray_queue #(
+  parameter  int unsigned Width     = 8,
+  parameter  int unsigned Depth     = 16,  // Of each queue; a power of two.
+  localparam int unsigned IndexBits = $clog2(Depth)
+) (
+  input  logic             clk_i,
+  input  logic             rst_ni,
+  input  logic             valid_i,
+  input  logic             shadow_i,
+  input  logic [Width-1:0] data_i,
+  output logic             valid_o,
+  output logic             shadow_o,  // Which queue data_o is from.
+  input  logic             ready_i,
+  output logic [Width-1:0] data_o
+);
+  logic [Width-1:0]   data_q [2*Depth];
+  logic [IndexBits:0] write_q[2], read_q[2];
+  logic [1:0]         filled;
+
+  always_comb for (int unsigned i = 0; i < 2; i++) filled[i] = write_q[i] != read_q[i];
+
+  assign valid_o  = filled != '0;
+  assign shadow_o = filled[1];
+  assign data_o   = data_q[{shadow_o, read_q[shadow_o][IndexBits-1:0]}];
+
+  always_ff @(posedge clk_i) begin
+    if (valid_i) begin
+      data_q[{shadow_i, write_q[shadow_i][IndexBits-1:0]}] <= data_i;
+      write_q[shadow_i]                                    <= write_q[shadow_i] + 1'b1;
+    end
+    if (valid_o && ready_i) read_q[shadow_o] <= read_q[shadow_o] + 1'b1;
+    if (!rst_ni) begin
+      write_q <= '{default: '0};
+      read_q  <= '{default: '0};
+    end
+  end
+endmodule

@@ -1,0 +1,82 @@
+// What both ray generators of a frame add up, once: the direction of its top left pixel
+//   look - right * (width/2) + up * (height/2)
+// digit by digit from the highest, and the step from line to line, -up. One adder an axis.
+//
+// Look, right, up and the halves of width and height must hold from start_i on, during the frame. corner_o comes 2 * SizeBits clocks
+// after start_i; with it, line_step_o is the direction of the top left pixel. Two clocks later it is the step.
+module voxrt_scan
+  import voxrt_pkg::*;
+(
+  input  logic                         clk_i,
+  input  logic                         rst_ni,
+  input  logic                         start_i,
+  input  logic signed [CameraBits-1:0] look_i      [3],
+  input  logic signed [CameraBits-1:0] right_i     [3],
+  input  logic signed [CameraBits-1:0] up_i        [3],
+  input  logic        [  SizeBits-2:0] half_width_i,
+  input  logic        [  SizeBits-2:0] half_height_i,
+  output logic                         corner_o,
+  output logic signed [  ScanBits-1:0] line_step_o [3]
+);
+  typedef enum logic [2:0] {
+    Idle,    // line_step_o is the step.
+    Right,   // Twice the sum, minus right where width/2 has a digit ...
+    Up,      // ... plus up where height/2 has one.
+    Look,    // Plus look.
+    Corner,  // The sum is the first direction.
+    Line     // 0 - up.
+  } state_e;
+
+  localparam int unsigned Digits = SizeBits - 1;
+
+  state_e                            state_q;
+  logic        [         Digits-1:0] half_width_q, half_height_q;
+  logic        [$clog2(Digits)-1:0]  digit_q;
+  logic signed [       ScanBits-1:0] sum_q[3];
+  logic                              takes;
+  logic signed [       CameraBits:0] term[3];
+
+  always_comb begin
+    takes = state_q == Right || state_q == Line;
+    for (int unsigned a = 0; a < 3; a++) begin
+      unique case (state_q)
+        Right:   term[a] = half_width_q[Digits-1] ? (CameraBits + 1)'(right_i[a]) : '0;
+        Up:      term[a] = half_height_q[Digits-1] ? (CameraBits + 1)'(up_i[a]) : '0;
+        Look:    term[a] = (CameraBits + 1)'(look_i[a]);
+        default: term[a] = (CameraBits + 1)'(up_i[a]);
+      endcase
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      if (state_q != Idle) begin
+        sum_q[a] <= (state_q == Right ? sum_q[a] <<< 1 : sum_q[a]) + (ScanBits'(term[a]) ^ {ScanBits{takes}}) +
+            ScanBits'(takes);
+      end
+      if (start_i || state_q == Corner) sum_q[a] <= '0;
+    end
+    unique case (state_q)
+      Right:   state_q <= Up;
+      Up: begin
+        half_width_q  <= half_width_q << 1;
+        half_height_q <= half_height_q << 1;
+        digit_q       <= digit_q - 1'b1;
+        state_q       <= digit_q == '0 ? Look : Right;
+      end
+      Look:    state_q <= Corner;
+      Corner:  state_q <= Line;
+      default: state_q <= Idle;
+    endcase
+    if (start_i) begin
+      state_q       <= Right;
+      half_width_q  <= half_width_i;
+      half_height_q <= half_height_i;
+      digit_q       <= ($bits(digit_q))'(Digits - 1);
+    end
+    if (!rst_ni) state_q <= Idle;
+  end
+
+  assign corner_o    = state_q == Corner;
+  assign line_step_o = sum_q;
+endmodule
