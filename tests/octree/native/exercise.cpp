@@ -17,6 +17,7 @@
 #include "surface.h"
 #include "validate.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <random>
@@ -154,7 +155,7 @@ void exercise_grid(Random& random, unsigned depth) {
     for (auto& row : costs->turned)
         row.fill(256);
     costs->covering.fill(128);
-    for (const std::vector<Word>& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size() / 2))
+    for (const std::vector<Word>& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size / 2))
         expect(validate(fit.data(), fit.size(), depth).fault == Fault::none, "fitted bricks", depth);
 }
 
