@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .view import View
+    from .view import Triple, View
 
 _IDENTITY = int.from_bytes(b"VXRT", "big")
 _STUCK_SECONDS = 30.0
@@ -25,6 +25,8 @@ _ERRORS = {
     "bad_pointer": "a bad pointer",
     "step_limit": "an octree deeper than its depth",
 }
+_FEATURES = {"flat": "flat", "light": "shadows", "mirrors": "mirrors"}  # of the register: what people are shown
+_MIRROR = 1 << 24
 _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
 
@@ -122,6 +124,7 @@ class RegisterDevice:
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
             size=video.size,
+            features=frozenset(_FEATURES[name] for name, built_in in self._fields("features").items() if built_in),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
             movable_root=False,
@@ -141,11 +144,12 @@ class RegisterDevice:
         """Read words from word `address` on."""
         return np.array(self._memory[address : address + count], dtype=np.uint32)
 
-    def write_materials(self, colours: NDArray[np.uint8], _mirrors: NDArray[np.bool_], /) -> None:
-        """Write the material table; this version of the hardware shows mirror materials like all others."""
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
+        """Write the material table."""
         self._hold()
         for material, (red, green, blue) in enumerate(colours.tolist()):
-            self._registers.write(MATERIALS + 4 * material, red << 16 | green << 8 | blue)
+            row = _MIRROR * bool(mirrors[material]) | red << 16 | green << 8 | blue
+            self._registers.write(MATERIALS + 4 * material, row)
 
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at word 0 from the next frame on."""
@@ -157,10 +161,17 @@ class RegisterDevice:
         """Start a frame, and take it when the frame-done bit says that it is complete."""
         started = time.perf_counter()
         columns, rows = view.size
-        self._write("size", columns | rows << 16)
+        self._write_fields("size", width=columns, height=rows)
         for name in ("position", "look", "right", "up"):
-            for axis, value in enumerate(getattr(view.camera, name)):
-                self._write(f"{name}[{axis}]", value & ((1 << REGISTERS[f"{name}[{axis}]"][1]["value"][1]) - 1))
+            self._write_triple(name, getattr(view.camera, name))
+        self._write_triple("light", view.light)
+        self._write_fields(
+            "shading",
+            flat="flat" in view.features,
+            light="shadows" in view.features,
+            ambient=view.ambient,
+            bounces=view.bounces if "mirrors" in view.features else 0,
+        )
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
         self._write("status", self._bits("status", "frame_done", *_ERRORS))  # writing 1 clears
@@ -204,6 +215,16 @@ class RegisterDevice:
 
     def _write(self, name: str, value: int) -> None:
         self._registers.write(REGISTERS[name][0], value)
+
+    def _write_triple(self, name: str, values: Triple) -> None:
+        for axis, value in enumerate(values):
+            self._write_fields(f"{name}[{axis}]", value=value)
+
+    def _write_fields(self, name: str, **values: int) -> None:
+        places = REGISTERS[name][1]
+        self._write(
+            name, sum((value & ((1 << places[field][1]) - 1)) << places[field][0] for field, value in values.items())
+        )
 
     def _fields(self, name: str) -> dict[str, int]:
         value = self._read(name)

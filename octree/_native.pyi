@@ -32,15 +32,16 @@ def differing_regions(
     first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int
 ) -> tuple[NDArray[np.int64], NDArray[np.uint64]]: ...
 def coarsen(words: NDArray[np.uint32], depth: int, level: int) -> NDArray[np.uint32]: ...
-def merge_blocks(
+def fit_bricks(
     words: NDArray[np.uint32],
     hidden: NDArray[np.uint32],
     depth: int,
     finest: int,
-    costs: NDArray[np.uint16],
-    fine_price: int,
-    coarse_price: int,
-) -> NDArray[np.uint32]: ...
+    same_face: NDArray[np.uint32],
+    turned: NDArray[np.uint32],
+    covering: NDArray[np.uint32],
+    most: int,
+) -> list[NDArray[np.uint32]]: ...
 def surface_change(first: NDArray[np.uint32], second: NDArray[np.uint32], depth: int) -> tuple[int, int]: ...
 def hidden_voxels(words: NDArray[np.uint32], depth: int) -> NDArray[np.uint32]: ...
 def fill_hidden(

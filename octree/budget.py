@@ -1,12 +1,15 @@
 """Fit an octree to the memory that a board has, giving up what is seen least.
 
-How it works: equal blocks are shared first, which costs nothing. If that is not enough, blocks two and three levels
-above the voxels let similar blocks stand for them (van der Laan, Scandolo and Eisemann, "Lossy Geometry Compression for
-High Resolution Voxel Scenes", 2020): a block goes where the voxels that change, counted wherever it stands, weigh less
-than the price of a block, and the price rises until the memory fits. A stand-in holds every solid voxel of what it
-stands for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Materials that no ray
-from outside reaches change for nothing. Memories far too large start from a world made coarser by one level or more;
-every candidate that fits is measured against the original, the plain coarser world among them; the closest is taken.
+How it works: equal blocks are shared first, which costs nothing. If that is not enough, bricks of 8 x 8 x 8 cells let
+others stand for them (the idea is that of van der Laan, Scandolo and Eisemann, "Lossy Geometry Compression for High
+Resolution Voxel Scenes", 2020): other bricks of the scene, and coarser or fuller versions of all. What that costs is
+how the brick looks along the eight diagonals of its cube: faces that turn or change colour, and what is covered. Which
+bricks to keep is a facility location problem, solved by adding and dropping (Kuehn and Hamburger, "A Heuristic Program
+for Locating Warehouses", 1963) at a falling price of a block until the memory is full. A stand-in holds every solid
+voxel of what it stands for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Octants
+that no ray from outside reaches change for nothing. Memories far too large start from a world made coarser by one level
+or more; every candidate that fits is measured against the original, the plain coarser world among them; the closest is
+taken.
 """
 
 from __future__ import annotations
@@ -23,9 +26,11 @@ from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
+
+    _SightCosts = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]
 
 BOARDS = {"pynq-z1": 1 + 8 * 4096}
 """Words that the octree memory of a board's design holds: its configuration's 2**BlockBits blocks, and the root."""
@@ -33,11 +38,21 @@ BOARDS = {"pynq-z1": 1 + 8 * 4096}
 _LEVELS_KEPT = 3
 """However small the budget, octants of more than 1/8 of the world's side are never filled up."""
 
-_EXPONENTS = (0.0, 44.0)
-_COARSE_DISCOUNT = 0.75
-_FINE_EXPONENTS = (-1.5, 2.5)
 _MANY_BLOCKS = 30_000
-"""With fewer blocks there is time to start from a world twice as fine as need be, too."""
+"""With fewer blocks there is time to start from a world four times as fine as what fits, not twice."""
+
+_FACES = np.array((0.21, 0.25, 0.54))
+"""How bright the faces along the three axes are in the default picture of a scene."""
+
+_STANDING_OUT = 6
+"""Another material's colour counts so many times: it stands out where a face that turns is lost among others."""
+
+_PASSED = 0.5
+"""A ray that is stopped by more than stopped it before would mostly have met a face close by: this share of the error
+of a face that turns, ..."""
+
+_BACKGROUND = 0.1
+"""... and this share of that of a face before the background."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -89,8 +104,14 @@ def coarsen(octree: Octree, level: int) -> Octree:
     return Octree(octree.depth, _native.coarsen(octree.words, octree.depth, level))
 
 
-def fit(octree: Octree, words: int, *, colours: NDArray[np.uint8] | None = None) -> Fit:
-    """Make `octree` fit a memory of `words` words, changing as little of its surface as it can.
+def fit(
+    octree: Octree,
+    words: int,
+    *,
+    colours: NDArray[np.uint8] | None = None,
+    choose: Callable[[Sequence[Fit]], Fit] | None = None,
+) -> Fit:
+    """Make `octree` fit a memory of `words` words, changing as little of what is seen of it as it can.
 
     Parameters
     ----------
@@ -99,8 +120,11 @@ def fit(octree: Octree, words: int, *, colours: NDArray[np.uint8] | None = None)
     words
         What the result may take.
     colours
-        uint8, shape (M, 3), sRGB by material id: the nearer two colours, the rather one stands for the other. Without
-        them all materials are equally far apart.
+        uint8, shape (M, 3), sRGB by material id, entry 0 the background: the nearer two colours, the rather one stands
+        for the other. Without them all materials are equally far apart.
+    choose
+        Takes one of the candidates, the plain coarser world first. Without it, the one with the fewest voxels that
+        changed on the surface or appeared.
 
     Returns
     -------
@@ -115,13 +139,12 @@ def fit(octree: Octree, words: int, *, colours: NDArray[np.uint8] | None = None)
     shared = share(octree)
     if len(shared.words) <= words:
         return _measure(octree, shared, shared)
-    candidates = list(_candidates(shared, words, _recolour_costs(colours)))
-    fits = [_measure(octree, shared, candidate) for candidate in candidates]
-    return min(fits, key=lambda fitting: (fitting.changed + fitting.appeared, len(fitting.octree.words)))
+    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, _sight_costs(colours))]
+    return choose(fits) if choose else min(fits, key=lambda fit: (fit.changed + fit.appeared, len(fit.octree.words)))
 
 
-def _candidates(shared: Octree, words: int, costs: NDArray[np.uint16]) -> Iterator[Octree]:
-    """Memories of at most `words` words: the finest plain coarser world, and finer ones with merged blocks."""
+def _candidates(shared: Octree, words: int, costs: _SightCosts) -> Iterator[Octree]:
+    """Memories of at most `words` words: the finest plain coarser world, and finer ones with fewer different bricks."""
     worlds = [shared]
     while len(worlds[-1].words) > words and len(worlds) <= shared.depth - _LEVELS_KEPT:
         worlds.append(coarsen(shared, len(worlds)))
@@ -131,50 +154,11 @@ def _candidates(shared: Octree, words: int, costs: NDArray[np.uint16]) -> Iterat
             f"give it at least {len(worlds[-1].words)} words"
         )
     yield worlds[-1]
-    starts = 1 if shared.blocks > _MANY_BLOCKS else 2
-    for finest in range(max(0, len(worlds) - 1 - starts), len(worlds) - 1):
-        yield from _merged(worlds[finest], finest, words, costs)
-
-
-def _merged(world: Octree, finest: int, words: int, costs: NDArray[np.uint16]) -> Iterator[Octree]:
-    """Memories that fit at the least price for which they do.
-
-    First one price for all blocks; then, with blocks three levels above the voxels cheaper than that, the least price
-    for those two levels above them, which are shared more and so deserve one of their own.
-    """
+    finest = max(0, len(worlds) - (2 if shared.blocks > _MANY_BLOCKS else 3))
+    world = worlds[finest]
     hidden = _native.hidden_voxels(world.words, world.depth)
-
-    def merge(fine_exponent: float, coarse_exponent: float) -> Octree:
-        fine_price, coarse_price = int(2**fine_exponent), int(2**coarse_exponent)
-        words = _native.merge_blocks(world.words, hidden, world.depth, finest, costs, fine_price, coarse_price)
-        return Octree(world.depth, words)
-
-    exponent, found = _least_exponent(lambda e: merge(e, e), words, _EXPONENTS, 8)
-    if found is None:
-        return
-    yield found
-    around = (exponent + _FINE_EXPONENTS[0], exponent + _FINE_EXPONENTS[1])
-    _, found = _least_exponent(lambda e: merge(e, exponent - _COARSE_DISCOUNT), words, around, 4)
-    if found is not None:
-        yield found
-
-
-def _least_exponent(
-    merge: Callable[[float], Octree], words: int, exponents: tuple[float, float], steps: int
-) -> tuple[float, Octree | None]:
-    """Halve the range of exponents: the least found whose memory fits, and the largest memory that did."""
-    low, high = exponents
-    fitting: Octree | None = None
-    for _ in range(steps):
-        middle = (low + high) / 2
-        merged = merge(middle)
-        if len(merged.words) > words:
-            low = middle
-            continue
-        high = middle
-        if fitting is None or len(merged.words) >= len(fitting.words):
-            fitting = merged
-    return high, fitting
+    for found in _native.fit_bricks(world.words, hidden, world.depth, finest, *costs, words):
+        yield Octree(world.depth, found)
 
 
 def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
@@ -191,14 +175,35 @@ def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
     )
 
 
-def _recolour_costs(colours: NDArray[np.uint8] | None) -> NDArray[np.uint16]:
-    """Cost of showing one material for another, uint16 of shape (256, 256); 256 is that of a voxel that appears."""
-    costs = np.full((256, 256), 128, dtype=np.uint16)
+def _sight_costs(colours: NDArray[np.uint8] | None) -> _SightCosts:
+    """Mean squared differences of colour where a ray meets another material, another face, or a voxel that appeared.
+
+    Returns
+    -------
+    tuple
+        uint32 of the shapes (256, 256), (256, 256) and (256,): a material becomes another on a face that stays, on a
+        face that turns, and where a ray passed. 256 is a middling grey face that turns.
+    """
+    table = np.full((256, 3), 150.0)
     if colours is not None:
-        table = np.asarray(colours, dtype=np.float64)
-        if table.ndim != 2 or table.shape[1] != 3 or len(table) > 256:
-            raise ValueError(f"colours must have the shape (M, 3), M at most 256, not {table.shape}")
-        apart = np.linalg.norm(table[:, None] - table[None], axis=-1) / np.linalg.norm([255.0] * 3)
-        costs[: len(table), : len(table)] = np.maximum(8, np.rint(256 * apart))
-    np.fill_diagonal(costs, 0)
-    return costs
+        given = np.asarray(colours, dtype=np.float64)
+        if given.ndim != 2 or given.shape[1] != 3 or len(given) > 256:
+            raise ValueError(f"colours must have the shape (M, 3), M at most 256, not {given.shape}")
+        table[: len(given)] = given
+    turns = [(a, b) for a in _FACES for b in _FACES if a != b]
+    unit = 256 / np.mean([3 * (150 * (a - b)) ** 2 for a, b in turns])
+    same = _STANDING_OUT * unit * np.mean(_FACES**2) * _squares(table, table)
+    turned = same + unit * np.mean([_squares(a * table, b * table) for a, b in turns], axis=0)
+    if colours is None:
+        other = 128 * (1 - np.eye(256))
+        same, turned = same + other, turned + other
+    behind = unit * np.mean([_squares(a * table, table[:1])[:, 0] for a in _FACES], axis=0)
+    covering = _PASSED * np.diag(turned) + _BACKGROUND * behind
+    same, turned, covering = (np.maximum(8, np.rint(cost)).astype(np.uint32) for cost in (same, turned, covering))
+    np.fill_diagonal(same, 0)
+    return same, turned, covering
+
+
+def _squares(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    squares: NDArray[np.float64] = ((a[:, None] - b[None]) ** 2).sum(axis=-1)
+    return squares

@@ -18,7 +18,7 @@ _FRAME_LIMIT = 4095
 _PAUSE_CLOCKS = 1 << 15
 
 
-def open_rtl(config: str = "tiny") -> RegisterDevice:
+def open_rtl(config: str = "lit") -> RegisterDevice:
     """Open a simulated core of this configuration.
 
     Raises

@@ -15,6 +15,7 @@ Arrays: TypeAlias = tuple[
     NDArray[np.uint8],
     NDArray[np.int64],
     NDArray[np.uint8],
+    NDArray[np.int64],
     dict[str, float],
 ]
 

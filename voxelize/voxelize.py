@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     ]
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding", "open")
+_MODES = ("surface", "exact", "winding", "open", "turned")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 _NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -71,9 +71,9 @@ def voxelize(
     scene, grid
         What to voxelize and where. Whatever lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what surfaces enclose, holes or not, but not what stands open: a connected piece of an object
-        of which one opening is larger than 15 % of its area, unless other pieces close it. ``"surface"`` keeps shells
-        alone.
+        ``"solid"`` fills what surfaces enclose, holes or not and whichever way each closed piece faces, but not what
+        stands open: a connected piece of an object of which one opening is larger than 15 % of its area, unless other
+        pieces close it. ``"surface"`` keeps shells alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
@@ -109,7 +109,13 @@ def voxelize(
             "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
         )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[10])
+    if pieces := int(result[10].sum()):
+        parts.warn(
+            "turned-pieces",
+            "closed pieces that were inside out beside others of their object were turned: recalculate their normals",
+            pieces,
+        )
+    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[11])
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:

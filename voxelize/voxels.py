@@ -72,7 +72,8 @@ class ObjectReport:
     mode
         How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
         ``"winding"`` (open or self-intersecting: generalized winding number), ``"open"`` (some of it stands open, like
-        a room without a front, and has a shell alone; the rest as in ``"winding"``).
+        a room without a front, and has a shell alone; the rest as in ``"winding"``), ``"turned"`` (closed; connected
+        pieces that were inside out beside the others were turned, walls of cavities excepted).
     voxels
         Voxels that ended up belonging to it, first object first.
     moved

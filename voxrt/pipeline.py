@@ -114,7 +114,7 @@ def build(
     dialect: Dialect = "report",
     preview: str | os.PathLike[str] | bool = False,
     size: tuple[int, int] = PREVIEW_SIZE,
-    engine: Engine | None = None,
+    engine: Engine = "rtl",
     strict: bool = False,
     threads: int = 0,
     progress: Callable[[str], None] | None = None,
@@ -161,8 +161,7 @@ def build(
         How the memory's words spell a material.
     preview
         PNG file for a picture of the whole scene, `size` pixels wide and high, rendered by `engine`; True for
-        ``NAME.preview.png`` in `output`. None takes ``"rtl"``, and ``"model"`` where the scene has a light of its own,
-        which the verilated ray tracer does not cast.
+        ``NAME.preview.png`` in `output`. A light of the scene's own is cast.
     strict
         Refuse an asset of which something is not honoured as it stands, where it would be a warning.
     threads
@@ -225,10 +224,6 @@ def build(
             rom, budget_fit = fit_budget(rom, words, size, threads)
     view, lighting, unseen = _authored(scene, grid)
     warnings = scene.warnings + voxelization.warnings + unseen
-    if lighting is not None and picture_file is not None and engine == "rtl":
-        warnings += (
-            SceneWarning("light", "the scene's light is left out of the picture: the model's engine casts it"),
-        )
     _refuse(asset, warnings if strict else ())
     outputs: dict[str, Path] = {}
     if output is not None:
@@ -298,16 +293,16 @@ def _picture(
     lighting: export.Lighting | None,
     size: tuple[int, int],
     *,
-    engine: Engine | None,
+    engine: Engine,
     threads: int,
 ) -> Picture:
     if scene.viewpoint is not None and rom.grid is not None:
         camera = authored_camera(scene.viewpoint, rom.grid, size)
     else:
         camera = aim_camera(rom, size)
-    chosen: Engine = engine or ("rtl" if lighting is None else "model")
-    cast = lighting if chosen == "model" else None
-    return Picture(render(rom, camera, size=size, engine=chosen, lighting=cast, threads=threads), camera, chosen)
+    config = "tiny" if lighting is None else "lit"
+    frame = render(rom, camera, size=size, engine=engine, config=config, lighting=lighting, threads=threads)
+    return Picture(frame, camera, engine)
 
 
 def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
@@ -319,11 +314,10 @@ def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Ligh
             view = export.View(camera.position, camera.look, camera.right, camera.up)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
-    if scene.light is not None:
-        try:
-            lighting = authored_lighting(scene.light, grid)
-        except ViewpointError as error:
-            unseen.append(SceneWarning("light", str(error)))
+    try:
+        lighting = authored_lighting(scene, grid)
+    except ViewpointError as error:
+        unseen.append(SceneWarning("light", str(error)))
     return view, lighting, tuple(unseen)
 
 

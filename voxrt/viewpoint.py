@@ -20,9 +20,12 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Rom
     from voxrt.sim.camera import Triple
-    from voxrt.voxelize import Grid, PointLight, Viewpoint
+    from voxrt.voxelize import Grid, Scene, Viewpoint
 
     Vector = NDArray[np.float64]
+
+_BOUNCES = 4
+"""How many mirrors a ray may meet where nobody says."""
 
 _REGISTER = 2**15 - 1
 _UP = np.array((0.0, 1.0, 0.0))
@@ -109,19 +112,22 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         raise ViewpointError(f"the scene's camera: {error}") from error
 
 
-def authored_lighting(light: PointLight, grid: Grid) -> Lighting:
-    """Make the light that stands where the scene's author wants it.
+def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
+    """Make the shading that the scene's author wants: a light where it stands, mirrors where materials are some.
 
     Raises
     ------
     ViewpointError
-        It is too far away for the registers.
+        The light is too far away for the registers.
     """
-    place = np.floor(16 * (np.array(light.position) - grid.origin) / grid.voxel_size + 0.5)
+    bounces = _BOUNCES if any(material.mirror for material in scene.materials) else 0
+    if scene.light is None:
+        return Lighting(bounces=bounces) if bounces else None
+    place = np.floor(16 * (np.array(scene.light.position) - grid.origin) / grid.voxel_size + 0.5)
     if np.abs(place).max() >= 2**31:
         raise ViewpointError("the scene's light stands too far away; move it nearer")
     x, y, z = place.astype(np.int64).tolist()
-    return Lighting((x, y, z), Light((x, y, z)).ambient, on=True)
+    return Lighting((x, y, z), Light((x, y, z)).ambient, on=True, bounces=bounces)
 
 
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:

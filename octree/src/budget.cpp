@@ -1,190 +1,224 @@
 #include "budget.h"
 
 #include <algorithm>
-#include <map>
-#include <ranges>
-#include <set>
-#include <unordered_map>
+#include <cmath>
+#include <optional>
 
 #include "breadth_first.h"
-#include "brick.h"
-#include "hidden.h"
-#include "levels.h"
+#include "interrupt.h"
+#include "stand_ins.h"
 
 namespace voxrt::octree {
 namespace {
 
-using Fine = Pattern<1>;   // 4x4x4 cells of the finest side
-using Coarse = Pattern<8>; // 8x8x8
+constexpr double kHighest = 1e15; // price of a block, in units of cost; dearer than any brick is worth
+constexpr double kFall = 0.7;
+constexpr unsigned kHalvings = 4;
 
-constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 40; // more weigh the same; keeps costs in 64 bits
-
-class Merging {
+/// Chooses which stand-ins a memory has: a facility location problem, since to have one costs blocks, and each brick is
+/// shown as the one there is that looks most like it. Solved by adding and dropping (A. A. Kuehn and M. J. Hamburger,
+/// "A Heuristic Program for Locating Warehouses", 1963) at a falling price of a block: those are added that better the
+/// picture by more than they cost, and dropped that no longer do, until the memory is full.
+class Choice {
 public:
-    Merging(const Memory& base, const Memory& hidden, unsigned finest, const RecolourCosts& recolour,
-            std::uint64_t fine_price, std::uint64_t coarse_price)
-        : base_(base), hidden_(hidden), fine_level_(finest + 2), coarse_level_(finest + 3), recolour_(recolour),
-          fine_price_(fine_price), coarse_price_(coarse_price) {}
+    /// With `plain`, only bricks as they are and coarser ones. A block that nothing has yet costs its price divided by
+    /// how many stand-ins would share it, at most `sharing`.
+    Choice(const Memory& base, unsigned level, StandIns& stand_ins, bool plain, std::uint32_t sharing)
+        : base_(base), level_(level), stand_ins_(stand_ins), plain_(plain), sharing_(sharing), open_(stand_ins.count()),
+          uses_(stand_ins.pool().size()), sharers_(stand_ins.pool().size()) {
+        for (std::uint32_t i = 0; i < open_.size(); ++i) {
+            open_[i] = stand_ins_.uniform(i);
+            for (const Node part : stand_ins_.parts(i))
+                sharers_[part] = std::min(sharers_[part] + 1, sharing_);
+        }
+    }
 
-    std::vector<Word> words() {
-        const std::vector<std::vector<Occurrence>> levels = blocks_by_level(base_);
-        if (fine_level_ <= base_.depth)
-            merge_fine(levels[fine_level_]);
-        if (coarse_level_ <= base_.depth)
-            merge_coarse(levels[coarse_level_]);
-        return breadth_first_words(pool_, node(base_.root(), base_.depth));
+    std::optional<std::vector<Word>> fit(std::size_t words) {
+        std::vector<Word> best = built();
+        if (best.size() > words)
+            return std::nullopt;
+        const auto fits = [&] {
+            std::vector<Word> found = built();
+            if (found.size() > words)
+                return false;
+            best = std::move(found);
+            return true;
+        };
+        State kept = state();
+        double full = 0;
+        for (double price = kHighest; full == 0 && price > 1; price *= kFall) {
+            if (!settle(price))
+                continue;
+            if (fits())
+                kept = state();
+            else
+                full = price;
+        }
+        if (full == 0)
+            return best;
+        double room = full / kFall;
+        for (unsigned i = 0; i < kHalvings; ++i) {
+            restore(kept);
+            const double middle = std::sqrt(full * room);
+            settle(middle);
+            if (fits()) {
+                room = middle;
+                kept = state();
+            } else {
+                full = middle;
+            }
+        }
+        // What would be added first as the price falls on fills the rest.
+        restore(kept);
+        const std::vector<std::uint32_t> next = add_where_worth(kFall * full);
+        std::size_t fitting = 0;
+        for (std::size_t over = next.size() + 1; over - fitting > 1;) {
+            const std::size_t middle = (fitting + over) / 2;
+            restore(kept);
+            for (std::size_t i = 0; i < middle; ++i)
+                open(next[i]);
+            (fits() ? fitting : over) = middle;
+        }
+        return best;
     }
 
 private:
-    using Cells64 = std::array<std::uint8_t, 64>;
-    using Cells512 = std::array<std::uint8_t, 512>;
-
-    // The cells of an octant, Morton order; `count` = 8 ** levels above the finest side.
-    void read_cells(Word word, unsigned level, std::uint8_t* cells, unsigned count) const {
-        if (is_leaf(word)) {
-            std::fill_n(cells, count, material(word));
-            return;
-        }
-        for (unsigned octant = 0; octant < 8; ++octant)
-            read_cells(base_.child(word, octant, level), level - 1, cells + octant * (count / 8), count / 8);
+    struct State {
+        std::vector<bool> open;
+        std::vector<std::uint32_t> uses;
+    };
+    State state() const { return {open_, uses_}; }
+    void restore(const State& state) {
+        open_ = state.open;
+        uses_ = state.uses;
     }
 
-    template <unsigned Words> static Pattern<Words> pattern_of(const std::array<std::uint8_t, 64 * Words>& cells) {
-        Pattern<Words> pattern{{}, cells, 0, 0};
-        for (unsigned cell = 0; cell < 64 * Words; ++cell)
-            pattern.mask[cell / 64] |= std::uint64_t{cells[cell] != 0} << (cell % 64);
-        return pattern;
+    void open(std::uint32_t i) {
+        open_[i] = true;
+        for (const Node part : stand_ins_.parts(i))
+            ++uses_[part];
     }
 
-    // What the patterns become in a world that is coarser by one level, ascending by cells.
-    static std::vector<Fine> coarser(const std::vector<Fine>& patterns) {
-        std::set<Cells64> seen;
-        for (Cells64 cells : (patterns | std::views::transform(&Fine::cells))) {
-            for (unsigned octant = 0; octant < 8; ++octant) {
-                std::uint8_t* eight = cells.data() + 8 * octant;
-                std::array<unsigned, 256> counts{};
-                for (unsigned cell = 0; cell < 8; ++cell)
-                    counts[eight[cell]] += eight[cell] != 0;
-                std::fill_n(eight, 8, std::max_element(counts.begin(), counts.end()) - counts.begin());
-            }
-            seen.insert(cells);
-        }
-        std::vector<Fine> result;
-        for (const Cells64& cells : seen)
-            result.push_back(pattern_of<1>(cells));
+    // The uniform stand-ins hold every brick and are always open.
+    const Match& chosen(std::uint32_t pattern) const {
+        return *std::find_if(stand_ins_.choices(pattern).begin(), stand_ins_.choices(pattern).end(),
+                             [&](const Match& choice) { return open_[choice.brick]; });
+    }
+
+    std::vector<std::uint64_t> costs() const {
+        std::vector<std::uint64_t> result(stand_ins_.patterns());
+        for (std::uint32_t pattern = 0; pattern < result.size(); ++pattern)
+            result[pattern] = chosen(pattern).cost;
         return result;
     }
 
-    // Equal patterns once, their octants summed, ascending by cells; `cells_of(block)` says what a block shows.
-    template <unsigned Words, typename CellsOf>
-    std::map<std::array<std::uint8_t, 64 * Words>, std::array<std::uint8_t, 64 * Words>>
-    stand_ins(const std::vector<Occurrence>& blocks, unsigned level, CellsOf cells_of) {
-        using Cells = std::array<std::uint8_t, 64 * Words>;
-        const std::unordered_map<Word, std::uint64_t> hidden = hidden_octants(base_, hidden_, level);
-        std::map<Cells, std::pair<std::uint64_t, std::uint64_t>> sums; // octants, visible ones
-        for (unsigned id = 1; id < 256; ++id)
-            if (used_[id]) {
-                Cells uniform;
-                uniform.fill(static_cast<std::uint8_t>(id));
-                sums[uniform] = {kFree, 0};
-            }
-        for (const Occurrence& block : blocks) {
-            auto& [octants, visible] = sums[cells_of(block.block)];
-            if (octants == kFree)
+    // Blocks that come with a stand-in, or go with it: those below it with `users` users.
+    double blocks(std::uint32_t i, std::uint32_t users) const {
+        double result = 1;
+        for (const Node part : stand_ins_.parts(i))
+            if (uses_[part] == users)
+                result += 1.0 / sharers_[part];
+        return result;
+    }
+
+    std::vector<std::uint32_t> add_where_worth(double price) {
+        std::vector<std::uint64_t> cost = costs();
+        std::vector<std::uint32_t> added;
+        for (std::uint32_t i = 0; i < open_.size(); ++i) {
+            if (open_[i] || (plain_ && !stand_ins_.plain(i)))
                 continue;
-            const auto entry = hidden.find(block.block);
-            octants += block.octants;
-            visible += block.octants - (entry == hidden.end() ? 0 : entry->second);
+            std::uint64_t gain = 0;
+            for (const Match& user : stand_ins_.users(i))
+                gain += cost[user.brick] - std::min(cost[user.brick], user.cost);
+            if (static_cast<double>(gain) <= price || static_cast<double>(gain) <= price * blocks(i, 0))
+                continue;
+            open(i);
+            added.push_back(i);
+            for (const Match& user : stand_ins_.users(i))
+                cost[user.brick] = std::min(cost[user.brick], user.cost);
         }
-        std::vector<Pattern<Words>> patterns;
-        for (const auto& [cells, count] : sums) {
-            patterns.push_back(pattern_of<Words>(cells));
-            patterns.back().octants = count.first == kFree ? kFree : std::min(count.first, kMostOctants);
-            patterns.back().visible = std::min(count.second, kMostOctants);
-        }
-        std::vector<Pattern<Words>> seeds;
-        if constexpr (Words == 1)
-            seeds = coarser(patterns);
-        const StandIns<Words> found =
-            Clustering<Words>(patterns, seeds, recolour_, Words == 1 ? fine_price_ : coarse_price_).run();
-        std::map<Cells, Cells> result;
-        for (std::size_t i = 0; i < patterns.size(); ++i)
-            result.emplace(patterns[i].cells, found.cells[found.chosen[i]]);
-        return result;
+        return added;
     }
 
-    void merge_fine(const std::vector<Occurrence>& blocks) {
-        std::unordered_map<Word, Cells64> before;
-        for (const Occurrence& block : blocks) {
-            read_cells(block.block, fine_level_, before[block.block].data(), 64);
-            for (const std::uint8_t id : before[block.block])
-                used_[id] = true;
-        }
-        const auto after = stand_ins<1>(blocks, fine_level_, [&](Word block) { return before.at(block); });
-        for (const auto& [block, cells] : before)
-            fine_.emplace(block, after.at(cells));
-    }
-
-    void merge_coarse(const std::vector<Occurrence>& blocks) {
-        std::unordered_map<Word, Cells512> before;
-        for (const Occurrence& block : blocks) {
-            Cells512& cells = before[block.block];
-            for (unsigned octant = 0; octant < 8; ++octant) {
-                const Word child = base_.child(block.block, octant, coarse_level_);
-                if (const auto merged = fine_.find(child); merged != fine_.end())
-                    std::copy(merged->second.begin(), merged->second.end(), cells.begin() + 64 * octant);
-                else
-                    read_cells(child, fine_level_, cells.data() + 64 * octant, 64);
+    bool drop_where_not(double price) {
+        std::vector<std::uint64_t> cost = costs();
+        bool dropped = false;
+        for (std::uint32_t i = 0; i < open_.size(); ++i) {
+            if (!open_[i] || stand_ins_.uniform(i))
+                continue;
+            open_[i] = false;
+            std::uint64_t loss = 0;
+            for (const Match& user : stand_ins_.users(i))
+                if (cost[user.brick] == user.cost)
+                    loss += chosen(user.brick).cost - user.cost;
+            if (static_cast<double>(loss) > price * blocks(i, 1)) {
+                open_[i] = true;
+                continue;
             }
-            for (const std::uint8_t id : cells)
-                used_[id] = true;
+            dropped = true;
+            for (const Node part : stand_ins_.parts(i))
+                --uses_[part];
+            for (const Match& user : stand_ins_.users(i))
+                cost[user.brick] = chosen(user.brick).cost;
         }
-        const auto after = stand_ins<8>(blocks, coarse_level_, [&](Word block) { return before.at(block); });
-        for (const auto& [block, cells] : before)
-            coarse_.emplace(block, after.at(cells));
+        return dropped;
+    }
+
+    // Whether anything changed.
+    bool settle(double price) {
+        bool changed = false;
+        for (unsigned round = 0; round < 2; ++round) {
+            Interrupt::check();
+            const bool added = !add_where_worth(price).empty();
+            changed |= added | drop_where_not(price);
+        }
+        return changed;
+    }
+
+    std::vector<Word> built() {
+        nodes_.clear();
+        return breadth_first_words(stand_ins_.pool(), node(base_.root(), base_.depth));
     }
 
     Node node(Word word, unsigned level) {
         if (is_leaf(word))
             return word;
+        if (level == level_)
+            return stand_ins_.node(chosen(stand_ins_.pattern(word)).brick);
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
         if (const auto known = nodes_.find(key); known != nodes_.end())
             return known->second;
-        Node result;
-        if (level == coarse_level_) {
-            result = bricks_.from_cells(coarse_.at(word).data());
-        } else if (level == fine_level_) {
-            result = bricks_.from_cells64(fine_.at(word).data());
-        } else {
-            Block children;
-            for (unsigned octant = 0; octant < 8; ++octant)
-                children[octant] = node(base_.child(word, octant, level), level - 1);
-            result = pool_.intern(children);
-        }
-        nodes_.emplace(key, result);
-        return result;
+        Block children;
+        for (unsigned octant = 0; octant < 8; ++octant)
+            children[octant] = node(base_.child(word, octant, level), level - 1);
+        return nodes_[key] = stand_ins_.pool().intern(children);
     }
 
     Memory base_;
-    Memory hidden_;
-    unsigned fine_level_;
-    unsigned coarse_level_;
-    const RecolourCosts& recolour_;
-    std::uint64_t fine_price_;
-    std::uint64_t coarse_price_;
-    std::array<bool, 256> used_{};
-    std::unordered_map<Word, Cells64> fine_;
-    std::unordered_map<Word, Cells512> coarse_;
+    unsigned level_;
+    StandIns& stand_ins_;
+    bool plain_;
+    std::uint32_t sharing_;
+    std::vector<bool> open_;
+    std::vector<std::uint32_t> uses_;    // of a block in the pool, by open stand-ins
+    std::vector<std::uint32_t> sharers_; // stand-ins that have the block, open or not
     std::unordered_map<std::uint64_t, Node> nodes_;
-    BlockPool pool_;
-    BrickBuilder bricks_{pool_};
 };
 
 } // namespace
 
-std::vector<Word> merge_blocks(const Memory& base, const Memory& hidden, unsigned finest, const RecolourCosts& recolour,
-                               std::uint64_t fine_price, std::uint64_t coarse_price) {
-    return Merging(base, hidden, finest, recolour, fine_price, coarse_price).words();
+std::vector<std::vector<Word>> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest,
+                                          const SightCosts& costs, std::size_t words) {
+    const unsigned level = finest + 3;
+    if (base.depth < level || is_leaf(base.root()))
+        return {};
+    StandIns stand_ins(base, hidden, finest, costs);
+    std::vector<std::vector<Word>> result;
+    for (const bool plain : {true, false})
+        for (const std::uint32_t sharing : {1u, 3u})
+            if (auto found = Choice(base, level, stand_ins, plain, sharing).fit(words))
+                result.push_back(std::move(*found));
+    return result;
 }
 
 } // namespace voxrt::octree

@@ -1,18 +1,17 @@
-// A memory made smaller by giving up detail where that changes least.
+// A memory made smaller by giving up detail where that is seen least.
 #pragma once
 
 #include <vector>
 
-#include "cluster.h"
+#include "appearance.h"
 #include "memory.h"
 
 namespace voxrt::octree {
 
-/// The memory of `base` after its blocks two levels above side 2**finest let others stand for them, each at a cost of
-/// at most `fine_price`, and after them those three levels above, at most `coarse_price` each. No voxel that is solid
-/// becomes empty. Nothing in `base` may be finer than 2**finest; `hidden` are its hidden voxels (hidden.h), whose
-/// material costs nothing. The GIL must not be held.
-std::vector<Word> merge_blocks(const Memory& base, const Memory& hidden, unsigned finest, const RecolourCosts& recolour,
-                               std::uint64_t fine_price, std::uint64_t coarse_price);
+/// Memories of at most `words` words in which bricks of 8x8x8 cells of side 2**finest stand for others, chosen in
+/// several ways; none where not even uniform bricks would fit. No voxel that is solid in `base` is empty in them.
+/// Nothing in `base` may be finer than 2**finest; `hidden` are its hidden voxels (hidden.h). The GIL must not be held.
+std::vector<std::vector<Word>> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest,
+                                          const SightCosts& costs, std::size_t words);
 
 } // namespace voxrt::octree

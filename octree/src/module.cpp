@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -254,21 +255,27 @@ auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     return words_to_numpy(std::move(coarse));
 }
 
-auto bind_merge_blocks(
-    const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
-    const nb::ndarray<const std::uint16_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>& costs,
-    std::uint64_t fine_price, std::uint64_t coarse_price) {
+using MaterialPairs = nb::ndarray<const std::uint32_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>;
+
+auto bind_fit_bricks(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
+                     const MaterialPairs& same_face, const MaterialPairs& turned,
+                     const nb::ndarray<const std::uint32_t, nb::shape<256>, nb::c_contig, nb::device::cpu>& covering,
+                     std::size_t most) {
     const Memory memory = memory_of(words, depth);
     const Memory behind = memory_of(hidden, depth);
-    require(std::max(fine_price, coarse_price) <= std::uint64_t{1} << 60, "the price is above 2**60");
-    auto recolour = std::make_unique<RecolourCosts>();
-    std::copy_n(costs.data(), 256 * 256, (*recolour)[0].data());
-    std::vector<Word> merged;
+    auto costs = std::make_unique<SightCosts>();
+    std::copy_n(same_face.data(), 256 * 256, costs->same_face[0].data());
+    std::copy_n(turned.data(), 256 * 256, costs->turned[0].data());
+    std::copy_n(covering.data(), 256, costs->covering.data());
+    std::vector<std::vector<Word>> fits;
     {
         nb::gil_scoped_release release;
-        merged = merge_blocks(memory, behind, finest, *recolour, fine_price, coarse_price);
+        fits = fit_bricks(memory, behind, finest, *costs, most);
     }
-    return words_to_numpy(std::move(merged));
+    nb::list result;
+    for (std::vector<Word>& fit : fits)
+        result.append(words_to_numpy(std::move(fit)));
+    return result;
 }
 
 std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& first, const Vector<Word>& second,
@@ -369,8 +376,8 @@ NB_MODULE(_native, m) {
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
-    m.def("merge_blocks", &bind_merge_blocks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
-          "costs"_a.noconvert(), "fine_price"_a, "coarse_price"_a);
+    m.def("fit_bricks", &bind_fit_bricks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
+          "same_face"_a.noconvert(), "turned"_a.noconvert(), "covering"_a.noconvert(), "most"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);

@@ -38,7 +38,6 @@ def yard(tmp_path):
 
 def test_the_preview_has_the_light(yard, tmp_path):
     lit = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE)
-    assert lit.preview.engine == "model"
     assert lit.warnings == ()
     origin, voxel = np.array(lit.rom.grid.origin), lit.rom.grid.voxel_size
     place = tuple(int(x) for x in np.rint((np.array([4, 6, 1]) - origin) / voxel * 16))
@@ -49,6 +48,19 @@ def test_the_preview_has_the_light(yard, tmp_path):
     plain = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, engine="model")
     assert plain.lighting is None
     assert (plain.preview.frame.colour != expected.colour).any()
+
+
+def test_the_preview_has_the_mirrors(yard, tmp_path):
+    yard.write_text(
+        YARD.replace("[150, 150, 160]", "[150, 150, 160], mirror = true").replace("[light]\nposition = [4, 6, 1]\n", "")
+    )
+    built = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE)
+    assert built.lighting == Lighting(bounces=4)
+    expected = render_frame(built.rom, built.preview.camera, SIZE, engine="model", shading=Shading(bounces=4))
+    assert np.array_equal(built.preview.frame.colour, expected.colour)
+    plain = render_frame(built.rom, built.preview.camera, SIZE, engine="model")
+    assert (plain.colour != expected.colour).any()
+    assert load_scene(tmp_path / "yard.mem").lighting.features == {"mirrors"}
 
 
 def test_camera_and_light_stand_in_manifest_blob_and_board(yard, tmp_path):

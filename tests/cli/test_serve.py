@@ -54,7 +54,7 @@ def test_upload_to_a_device(voxrt):
 def test_upload_to_the_simulated_hardware(voxrt):
     pytest.importorskip("voxrt.sim._rtl")
     assert voxrt("build", "house.obj", "--depth", 4).code == 0
-    for config in ("tiny", "quad"):
+    for config in ("tiny", "lit"):
         finished = voxrt("upload", "house.mem", "--device", "sim", "--config", config)
         assert finished.code == 0
         assert "house.mem: runs now" in finished.err

@@ -6,7 +6,8 @@ from oracles.octree import reference_words, unshared_words
 from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
-from voxrt.voxelize import DoesNotFitError
+from voxrt.fitting import Views, fit_budget
+from voxrt.voxelize import DoesNotFitError, Material
 
 
 def surface(cube):
@@ -112,6 +113,45 @@ def test_closer_than_a_coarser_world_of_the_same_size(materials, level):
     found = octree.fit(tree, len(plain.words))
     assert len(found.octree.words) <= len(plain.words)
     assert found.changed + found.appeared < plain_changed + octree.diff(tree, plain).appeared
+
+
+@pytest.mark.parametrize("materials", [1, 3])
+@pytest.mark.parametrize("level", [1, 2])
+def test_pictures_are_closer_too(materials, level):
+    """Views from six sides: both figures of the pictures and the surface, none at the price of another."""
+    colours = ((0, 0, 0), (200, 80, 60), (70, 160, 90), (80, 110, 200))[: materials + 1]
+    whole = octree.Rom(
+        "lumps",
+        octree.from_dense(lumps(7, materials)),
+        tuple(Material(f"material {number}", colour) for number, colour in enumerate(colours)),
+    )
+    plain = octree.coarsen(whole.octree, level)
+    fitted = fit_budget(whole, len(plain.words), (64, 48), 0)[0].octree
+    views = Views(whole)
+    assert len(fitted.words) <= len(plain.words)
+    assert octree.surface_change(whole.octree, fitted).changed < octree.surface_change(whole.octree, plain).changed
+    for ours, theirs in zip(views.likeness(fitted), views.likeness(plain), strict=True):
+        assert ours > theirs
+
+
+def test_a_fit_may_be_chosen():
+    tree = octree.from_dense(lumps(6))
+    plain = octree.coarsen(tree, 1)
+    found = octree.fit(tree, len(plain.words), choose=lambda fits: fits[0])
+    np.testing.assert_array_equal(found.octree.words, plain.words)
+
+
+def test_no_material_moves_to_where_it_stands_out():
+    """A white ball beside one of blue stripes takes no blue, though patterns of the stripes may fit it better."""
+    grid = np.stack(np.indices((64,) * 3), -1) + 0.5
+    cube = np.zeros((64,) * 3, np.uint8)
+    cube[np.linalg.norm(grid - (20, 20, 20), axis=-1) < 15] = 1
+    striped = np.linalg.norm(grid - (44, 44, 44), axis=-1) < 15
+    cube[striped] = 2 + (np.indices(cube.shape)[1][striped] // 3) % 2
+    colours = np.array([[0, 0, 0], [255, 255, 255], [20, 30, 220], [40, 60, 240]], np.uint8)
+    tree = octree.from_dense(cube)
+    shown = octree.to_dense(octree.fit(tree, len(tree.words) // 2, colours=colours).octree)
+    assert not (surface(shown) & (cube == 1) & (shown > 1)).any()
 
 
 def test_hidden_materials_go_first():

@@ -22,6 +22,16 @@ def box_mesh(low, high, material=1, *, inverted=False):
     return Mesh(low + unit * (high - low), triangles, np.full(12, material, np.uint8))
 
 
+def joined(*meshes):
+    """Give one mesh of several, without welding."""
+    firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes[:-1])])
+    return Mesh(
+        np.concatenate([mesh.positions for mesh in meshes]),
+        np.concatenate([mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]).astype(np.int32),
+        np.concatenate([mesh.materials for mesh in meshes]),
+    )
+
+
 def icosphere(level, centre=(0, 0, 0), radius=1.0, material=1):
     g = (1 + 5**0.5) / 2
     points = [

@@ -38,7 +38,8 @@ def rom_of(name, seed):
 
 
 @pytest.mark.parametrize(
-    ("engine", "opened"), [("model", ModelDevice), ("tiny", open_rtl), ("quad", partial(open_rtl, "quad"))]
+    ("engine", "opened"),
+    [("model", ModelDevice), ("tiny", partial(open_rtl, "tiny")), ("lit", partial(open_rtl, "lit"))],
 )
 def test_swapped_scenes(engine, opened):
     try:
@@ -68,25 +69,37 @@ def test_swapped_scenes(engine, opened):
     assert (len(roots) > 1) == device.identity.movable_root
 
 
-def test_features_and_background():
+@pytest.mark.parametrize("opened", [ModelDevice, partial(open_rtl, "lit")])
+def test_features_and_background(opened):
     rom = rom_of("world", 1)
     mirrors = tuple(replace(material, mirror=i % 2 == 1) for i, material in enumerate(rom.materials))
     rom = replace(rom, materials=(replace(mirrors[0], colour=(1, 2, 3)), *mirrors[1:]))
     scene = board_scene(Blob(rom))
-    device = ModelDevice()
+    try:
+        device = opened()
+    except SimulatorError as error:
+        pytest.skip(str(error))
+    assert device.identity.features == {"flat", "shadows", "mirrors"}
     SceneMemory(device).swap(scene, ignore)
-    camera = Camera(scene.camera.position, scene.camera.look, scene.camera.right, scene.camera.up)
-    seen = {}
+    size = (80, 60)
+    seen = refit(scene.camera, (640, 480), size)
+    camera = Camera(seen.position, seen.look, seen.right, seen.up)
+    pictures = set()
     for features, shading in (
         ((), Shading()),
         (("flat",), Shading(flat=True)),
-        (("shadows",), Shading(light=Light((400, 900, 100), 20))),
-        (("mirrors", "shadows"), Shading(light=Light((400, 900, 100), 20), bounces=3)),
+        (("shadows",), Shading(light=Light((400, 900, -100), 20))),
+        (("mirrors", "shadows"), Shading(light=Light((400, 900, -100), 20), bounces=3)),
     ):
-        view = View(scene.camera, (160, 120), (1, 2, 3), (400, 900, 100), 20, frozenset(features), 3)
-        seen[features] = device.frame(view).colour
-        assert (seen[features] == render(rom, camera, (160, 120), engine="model", shading=shading).colour).all()
-    assert len({picture.tobytes() for picture in seen.values()}) == 4
+        view = View(seen, size, (1, 2, 3), (400, 900, -100), 20, frozenset(features), 3)
+        picture = device.frame(view).colour
+        assert (picture == render(rom, camera, size, engine="model", shading=shading).colour).all()
+        pictures.add(picture.tobytes())
+    assert len(pictures) == 4
+
+
+def test_a_core_without_features():
+    assert rtl_device().identity.features == frozenset()
 
 
 def test_faults():
@@ -109,7 +122,7 @@ def test_faults():
 
 def rtl_device():
     try:
-        return open_rtl()
+        return open_rtl("tiny")
     except SimulatorError as error:
         pytest.skip(str(error))
 
@@ -127,7 +140,7 @@ def test_every_width_of_the_stream():
 
 def test_an_unknown_configuration():
     rtl_device()
-    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are quad, tiny"):
+    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are lit, tiny"):
         open_rtl("huge")
 
 

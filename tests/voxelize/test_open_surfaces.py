@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.meshes import box_mesh, icosphere, one_object, scene_of
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
 from oracles.voxels import dense, snap, winding_at
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
@@ -20,15 +20,6 @@ def without(mesh, drop):
     keep = np.ones(len(mesh.triangles), bool)
     keep[drop] = False
     return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
-
-
-def joined(*meshes):
-    firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes[:-1])])
-    return Mesh(
-        np.concatenate([mesh.positions for mesh in meshes]),
-        np.concatenate([mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]).astype(np.int32),
-        np.concatenate([mesh.materials for mesh in meshes]),
-    )
 
 
 def asked(cells):

@@ -1,5 +1,7 @@
 #include "boundary_loops.h"
 
+#include "parallel.h"
+
 namespace voxrt {
 namespace {
 
@@ -35,6 +37,7 @@ std::vector<BoundaryLoop> cut_into_loops(std::vector<BoundaryEdge> edges, size_t
                 ++edge;
             if (edge >= edges.size() || edges[edge].from != path.back())
                 break; // at the start again, and all its edges are walked
+            pulse(5);
             --edges[edge].times;
             const uint32_t to = edges[edge].to;
             const size_t so_far = turned.back() + (edges[edge].turned ? 1 : 0);

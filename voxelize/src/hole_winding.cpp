@@ -1,5 +1,7 @@
 #include "hole_winding.h"
 
+#include "parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -143,6 +145,7 @@ HoleWinding::HoleWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
 }
 
 int32_t HoleWinding::build(uint32_t first, uint32_t last) {
+    pulse(10 * (last - first));
     Node node;
     node.first = first;
     node.last = last;
@@ -220,10 +223,12 @@ void HoleWinding::look(const HoleView& from, const Point& centre, double reach, 
     to.crossed = false;
     AngleSum far, near;
     int32_t stack[64];
+    uint32_t looked_at = 0;
     for (const uint32_t root : from.open) {
         int depth = 0;
         stack[depth++] = int32_t(root);
         while (depth > 0) {
+            ++looked_at;
             const int32_t index = stack[--depth];
             const Node& node = nodes_[index];
             const Point d = minus(node.centre, centre);
@@ -275,6 +280,7 @@ void HoleWinding::look(const HoleView& from, const Point& centre, double reach, 
             }
         }
     }
+    pulse(2 * looked_at);
     to.far.angle += far.over_four_pi();
     to.near.angle += near.over_four_pi();
 }
@@ -287,7 +293,9 @@ double HoleWinding::at(const Point& q, double tolerance) const {
     if (!nodes_.empty())
         stack[depth++] = 0;
     const double share = nodes_.empty() ? 0 : tolerance / nodes_[0].area;
+    uint32_t looked_at = 0;
     while (depth > 0) {
+        ++looked_at;
         const Node& node = nodes_[stack[--depth]];
         const Point d = minus(node.centre, q);
         const double square = dot(d, d), distance = std::sqrt(square), t = node.radius / distance;
@@ -300,6 +308,7 @@ double HoleWinding::at(const Point& q, double tolerance) const {
             add_solid_angle(near, caps_[node.first], q);
         }
     }
+    pulse(2 * looked_at);
     return total + near.over_four_pi();
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "hole_winding.h"
+#include "parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,10 @@ public:
         const auto [x0, x1] = lines(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), low_.x, step_.x);
         const auto [y0, y1] = lines(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), low_.y, step_.y);
         for (int j = y0; j <= y1; ++j)
-            for (int i = x0; i <= x1; ++i)
+            for (int i = x0; i <= x1; ++i) {
+                pulse(1);
                 cross(a, b, c, i, j);
+            }
     }
 
     struct Enclosure {

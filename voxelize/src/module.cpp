@@ -139,7 +139,7 @@ nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Input
         seconds[stage] = value;
     return nb::make_tuple(give(out.brick_codes), give(out.brick_masks), give(out.brick_materials), give(out.brick_rows),
                           give(out.cells), give(out.octant_codes), give(out.octant_levels), give(out.octant_materials),
-                          give(out.object_voxels), give(out.object_modes), seconds);
+                          give(out.object_voxels), give(out.object_modes), give(out.object_turned), seconds);
 }
 
 nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<double> frame) {
@@ -190,7 +190,7 @@ threads
 Returns
 -------
 The arrays of :class:`voxrt.voxelize.Voxels` in the order of its attributes, then int64 voxels and uint8 modes
-(0 surface, 1 exact, 2 winding, 3 open) by object, then wall seconds by stage.
+(0 surface, 1 exact, 2 winding, 3 open, 4 turned) and int64 pieces turned by object, then wall seconds by stage.
 
 Raises
 ------

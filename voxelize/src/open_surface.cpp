@@ -2,6 +2,8 @@
 
 #include "boundary_loops.h"
 #include "inside_probes.h"
+#include "parallel.h"
+#include "vertex_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,24 +19,6 @@ constexpr double kRoom = 0.75; // what stands open encloses something where this
 
 constexpr double kLeastOpening = 1e-300; // of a piece that does not close
 
-class Groups {
-public:
-    explicit Groups(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t of(uint32_t i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = of(a);
-        b = of(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
-
 /// Area, as a vector along the normal.
 Point area(const Point& a, const Point& b, const Point& c) {
     const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
@@ -47,7 +31,9 @@ double length(const Point& a) { return std::hypot(a.x, a.y, a.z); }
 std::vector<uint32_t> weld(const std::vector<Point>& points) {
     std::vector<uint32_t> order(points.size()), first(points.size());
     std::iota(order.begin(), order.end(), 0u);
+    Pulse& pulse = Pulse::own();
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        pulse.count(1);
         const Point &p = points[a], &q = points[b];
         return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     });
@@ -72,8 +58,11 @@ std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<ui
             if (a != b)
                 edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
         }
-    std::sort(edges.begin(), edges.end(),
-              [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+    Pulse& pulse = Pulse::own();
+    std::sort(edges.begin(), edges.end(), [&pulse](const Edge& a, const Edge& b) {
+        pulse.count(1);
+        return a.low != b.low ? a.low < b.low : a.high < b.high;
+    });
     std::vector<BoundaryEdge> boundary;
     for (size_t i = 0; i < edges.size();) {
         int sum = 0;
@@ -101,6 +90,7 @@ public:
           opening_(points.size(), 0) {
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
             const auto [a, b, c] = corners(t);
+            pulse(5);
             groups_.join(a, b);
             groups_.join(a, c);
         }
@@ -161,7 +151,7 @@ private:
     const MeshView& mesh_;
     const std::vector<Point>& points_;
     std::vector<uint32_t> welded_;
-    Groups groups_;
+    VertexGroups groups_;
     std::vector<BoundaryLoop> loops_;
     std::vector<double> own_, opening_; // by piece: area of the surface, of its largest loop closed
 };

@@ -94,6 +94,7 @@ private:
     }
 
     void sweep(TileVoxels& tile, ObjectLayer& layer, int column, int k, int highest, uint8_t interior, Claim& result) {
+        pulse(20 * uint32_t(layer.height()));
         ColumnWinding winding;
         const int slices = std::min(layer.side(), kBrickSide);
         while (k < layer.height()) {
@@ -139,6 +140,7 @@ private:
         ColumnWinding winding;
         OpenInside::Brick last;
         for (int k = 0; k < layer.height(); ++k) {
+            pulse(10);
             const ShellBrick* brick = layer.find(column, k);
             if (brick != nullptr) {
                 const Crossings crossings(*brick);
@@ -161,6 +163,7 @@ private:
         static const ShellBrick nothing;
         ColumnWinding winding;
         for (int k = 0; k < layer.height(); ++k) {
+            pulse(10);
             const ShellBrick* found = layer.find(column, k);
             const ShellBrick& brick = found != nullptr ? *found : nothing;
             const OpenInside::Verdict verdict = inside_.verdict(column, k);

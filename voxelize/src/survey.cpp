@@ -27,6 +27,7 @@ struct Tally {
 Tally tally(const MeshView& mesh, const std::vector<Vertex>& vertices, size_t from, size_t to) {
     Tally sum;
     const Vertex& origin = vertices[mesh.triangles[0]];
+    pulse(5 * uint32_t(to - from));
     for (size_t t = from; t < to; ++t) {
         const int32_t* corner = mesh.triangles.data() + 3 * t;
         const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
@@ -44,7 +45,21 @@ struct SharedMesh {
     bool closed = false;
     double volume6 = 0;
     std::shared_ptr<const Boundary> boundary; // where not closed
+    std::shared_ptr<const TurnedPieces> turned;
 };
+
+/// Points in a lattice of their own: so fine that those of a float32 file stay apart.
+std::vector<Vertex> in_lattice(const std::vector<Point>& points, const Point& low, const Point& high) {
+    const double scale = double(kReach) / std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
+    std::vector<Vertex> vertices;
+    vertices.reserve(points.size());
+    auto whole = [scale](double v, double from) {
+        return int32_t(std::clamp(std::nearbyint((v - from) * scale), 0.0, double(kReach)));
+    };
+    for (const Point& p : points)
+        vertices.push_back({whole(p.x, low.x), whole(p.y, low.y), whole(p.z, low.z)});
+    return vertices;
+}
 
 SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     SharedMesh shared;
@@ -61,6 +76,7 @@ SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     const Point& o = points[mesh.triangles[0]];
     uint64_t sum = 0;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        pulse(5);
         const int32_t* corner = mesh.triangles.data() + 3 * t;
         sum += boundary_key(keys[corner[0]], keys[corner[1]], keys[corner[2]]);
         shared.volume6 += volume6(points[corner[0]], points[corner[1]], points[corner[2]], o);
@@ -73,6 +89,8 @@ SharedMesh survey_shared(const MeshView& mesh, uint32_t object, bool fill) {
     shared.closed = sum == 0;
     if (fill && !shared.closed)
         shared.boundary = std::make_shared<const Boundary>(find_boundary(mesh, points));
+    if (shared.closed || fill)
+        shared.turned = find_turned_pieces(mesh, in_lattice(points, shared.low, shared.high), shared.boundary.get());
     return shared;
 }
 
@@ -139,7 +157,7 @@ public:
             sum.boundary = shared->closed ? 0 : 1;
             sum.volume6 = shared->volume6 * determinant(part.frame);
             if (stays_whole(sum.bounds, triangle_count)) {
-                conclude(mesh, part, sum, shared, [&](uint32_t v) { return snap_vertex(part, v); });
+                conclude(mesh, part, sum, shared);
                 list_whole(emit(), sum.bounds, index);
                 return;
             }
@@ -161,7 +179,9 @@ public:
         });
         for (const Tally& t : tallies)
             sum.add(t);
-        conclude(mesh, part, sum, shared, [&](uint32_t v) { return mesh.vertices[v]; });
+        conclude(mesh, part, sum, shared);
+        if (mesh.boundary)
+            mesh.open = std::make_unique<OpenSurface>(mesh.boundary, [&](uint32_t v) { return mesh.vertices[v]; });
         if (stays_whole(sum.bounds, triangle_count)) {
             mesh.vertices = {};
             list_whole(emit(), sum.bounds, index);
@@ -184,15 +204,20 @@ private:
     }
 
     /// Draws the conclusions; an open part to be filled is looked at closely.
-    template <class At>
-    void conclude(SurveyedMesh& mesh, const PartView& part, const Tally& sum, const SharedMesh* shared, At&& at) const {
+    void conclude(SurveyedMesh& mesh, const PartView& part, const Tally& sum, const SharedMesh* shared) const {
         mesh.closed = sum.boundary == 0;
         mesh.inverted = mesh.closed && sum.volume6 < 0;
         for (int i = 0; i < 3; ++i) {
             mesh.box.low[i] = voxel_floor(sum.bounds.min[i]);
             mesh.box.high[i] = voxel_below(sum.bounds.max[i]);
         }
-        if (!fill_ || mesh.closed)
+        if (mesh.closed) {
+            mesh.turned = shared != nullptr ? shared->turned : find_turned_pieces(*part.mesh, mesh.vertices, nullptr);
+            if (mesh.turned)
+                mesh.inverted = shared != nullptr && determinant(part.frame) < 0;
+            return;
+        }
+        if (!fill_)
             return;
         auto boundary = shared != nullptr ? shared->boundary : nullptr;
         if (!boundary) {
@@ -201,7 +226,9 @@ private:
                 points[v] = in_voxels(mesh.vertices[v]);
             boundary = std::make_shared<const Boundary>(find_boundary(*part.mesh, points));
         }
-        mesh.open = std::make_unique<OpenSurface>(std::move(boundary), at);
+        mesh.turned =
+            shared != nullptr ? shared->turned : find_turned_pieces(*part.mesh, mesh.vertices, boundary.get());
+        mesh.boundary = std::move(boundary);
     }
 
     void list_triangles(std::vector<TiledItem>& out, const MeshView& mesh, const std::vector<Vertex>& vertices,

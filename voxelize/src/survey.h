@@ -6,10 +6,10 @@
 // Bound: 30 ns a triangle, in parallel; the listing's counting sort, 5 ns an item, is serial.
 #pragma once
 
-#include "open_surface.h"
 #include "parallel.h"
 #include "stage_seconds.h"
 #include "tiling.h"
+#include "turned_pieces.h"
 
 #include <memory>
 
@@ -26,7 +26,9 @@ struct SurveyedMesh {
     bool closed = false;
     bool inverted = false; // closed, its normals pointing inside
     VoxelBox box{};
-    std::unique_ptr<OpenSurface> open; // where not closed and to be filled
+    std::shared_ptr<const Boundary> boundary;   // where not closed and to be filled
+    std::unique_ptr<OpenSurface> open;          // the same; null in an instance whose tiles make it themselves
+    std::shared_ptr<const TurnedPieces> turned; // null where none is; the rest is then as `inverted` says
 };
 
 struct Survey {

@@ -85,6 +85,7 @@ private:
             for (int c = 0; c < 8; ++c)
                 emit(tile, level - 1, 8 * i + c, code << 3 | uint64_t(c), out);
         } else {
+            pulse(10);
             const OwnedBrick& brick = tile.brick(place);
             out.brick_codes.push_back(code);
             out.brick_masks.push_back(morton_order(brick.mask));

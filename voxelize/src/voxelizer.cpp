@@ -6,6 +6,8 @@
 #include "tile_order.h"
 #include "tint.h"
 
+#include <optional>
+
 namespace voxrt {
 namespace {
 
@@ -83,42 +85,61 @@ private:
         }
         s.layer.start(window.x0, window.y0);
         Lap lap;
+        // What every instance kept of its holes would be more than all the rest.
+        std::optional<OpenSurface> own;
+        if (!surveyed.open && surveyed.boundary)
+            own.emplace(surveyed.boundary, [vertices](uint32_t v) { return (*vertices)[v]; });
+        const OpenSurface* open = own ? &*own : surveyed.open.get();
+        s.seconds.holes += lap();
         if (fill_)
-            cover<true>(part, surveyed, *vertices, items, window, s.layer);
+            cover<true>(part, surveyed, open, *vertices, items, window, s.layer);
         else
-            cover<false>(part, surveyed, *vertices, items, window, s.layer);
+            cover<false>(part, surveyed, open, *vertices, items, window, s.layer);
         s.seconds.coverage += lap();
-        const bool has_holes = surveyed.open && !surveyed.open->holes.empty();
+        const bool has_holes = open != nullptr && !open->holes.empty();
         if (s.layer.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim =
-            !fill_      ? s.fill.claim_shell(s.tile, s.layer)
-            : has_holes ? s.fill.claim_open_solid(s.tile, s.layer, interior, surveyed.open->holes, surveyed.box, window)
-                        : s.fill.claim_solid(s.tile, s.layer, interior);
+        const Claim claim = !fill_ ? s.fill.claim_shell(s.tile, s.layer)
+                            : has_holes
+                                ? s.fill.claim_open_solid(s.tile, s.layer, interior, open->holes, surveyed.box, window)
+                                : s.fill.claim_solid(s.tile, s.layer, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.complex[index] |= !claim.simple;
         (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
+    /// At most, in a tile.
+    static uint32_t columns_under(const Vertex& a, const Vertex& b, const Vertex& c) {
+        const int64_t x = int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x});
+        const int64_t y = int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y});
+        auto voxels = [](int64_t extent) { return std::min<uint32_t>(uint32_t(extent >> kFractionBits), kTileSide); };
+        return voxels(x) * voxels(y);
+    }
+
     template <bool Cross>
-    void cover(const PartView& part, const SurveyedMesh& surveyed, const std::vector<Vertex>& vertices,
-               std::span<const Item> items, const Window& window, ObjectLayer& layer) const {
+    void cover(const PartView& part, const SurveyedMesh& surveyed, const OpenSurface* open,
+               const std::vector<Vertex>& vertices, std::span<const Item> items, const Window& window,
+               ObjectLayer& layer) const {
         const MeshView& mesh = *part.mesh;
         layer.set_material(part.material);
-        const OpenSurface* open = surveyed.open.get();
+        const TurnedPieces* turned = surveyed.turned.get();
         auto close = [&](size_t cap) {
+            pulse(10);
             const auto& [a, b, c] = open->caps[cap];
             cross_triangle(a, b, c, window, layer);
         };
         auto add = [&](size_t t) {
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+            pulse(10 + columns_under(a, b, c));
             if (part.material == 0)
                 layer.set_material(mesh.materials[t]);
             auto add_to = [&](auto& sink) {
                 if (open != nullptr && open->is_shell_only(t))
                     cover_triangle<false>(a, b, c, window, false, sink);
+                else if (turned != nullptr && turned->is_turned(t))
+                    cover_triangle<Cross>(a, c, b, window, surveyed.inverted, sink);
                 else
                     cover_triangle<Cross>(a, b, c, window, surveyed.inverted, sink);
             };
@@ -143,6 +164,7 @@ private:
         const int64_t x0 = window.x0 * kUnit, x1 = (window.x1 + 1) * kUnit;
         const int64_t y0 = window.y0 * kUnit, y1 = (window.y1 + 1) * kUnit;
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            pulse(1);
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (std::max({a.x, b.x, c.x}) >= x0 && std::min({a.x, b.x, c.x}) <= x1 && std::max({a.y, b.y, c.y}) >= y0 &&
@@ -279,8 +301,16 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
     for (size_t p = 0; fill && p < parts.size(); ++p)
         if (parts[p].kind == PartKind::mesh && !survey.meshes[p].closed)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::winding);
+    out.object_turned.allocate(objects);
+    std::fill_n(out.object_turned.data.get(), objects, 0);
+    for (size_t p = 0; p < parts.size(); ++p)
+        if (survey.meshes[p].turned) {
+            out.object_turned.data[parts[p].object] += survey.meshes[p].turned->count;
+            if (survey.meshes[p].closed && fill)
+                out.object_modes.data[parts[p].object] = uint8_t(Mode::turned);
+        }
     for (size_t p = 0; fill && p < parts.size(); ++p)
-        if (parts[p].kind == PartKind::mesh && survey.meshes[p].open && survey.meshes[p].open->boundary->stands_open)
+        if (parts[p].kind == PartKind::mesh && survey.meshes[p].boundary && survey.meshes[p].boundary->stands_open)
             out.object_modes.data[parts[p].object] = uint8_t(Mode::open);
     scratch.clear();
     survey = {}; // memory stands highest in what follows

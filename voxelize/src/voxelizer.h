@@ -45,12 +45,14 @@ struct SparseVoxels {
     Array<uint8_t> octant_levels;
     Array<uint8_t> octant_materials;
     Array<int64_t> object_voxels;
-    Array<uint8_t> object_modes; // Mode
+    Array<uint8_t> object_modes;  // Mode
+    Array<int64_t> object_turned; // connected pieces taken the other way round
     StageSeconds seconds;
 };
 
-/// open: what it encloses stands open, like a room without a front, and was not filled.
-enum class Mode : uint8_t { surface = 0, exact = 1, winding = 2, open = 3 };
+/// open: what it encloses stands open, like a room without a front, and was not filled. turned: it closes, and some of
+/// its pieces were inside out.
+enum class Mode : uint8_t { surface = 0, exact = 1, winding = 2, open = 3, turned = 4 };
 
 /// Voxelizes parts (ascending by object) on a grid of 2^depth voxels a side, depth 1 … 16.
 ///

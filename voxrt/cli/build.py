@@ -35,7 +35,7 @@ def build(
     board: Annotated[str | None, Parameter(metavar="NAME")] = None,
     preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
     size: Pixels = (640, 480),
-    engine: Annotated[Literal["rtl", "model"] | None, Parameter(show_default=False)] = None,
+    engine: Literal["rtl", "model"] = "rtl",
     dialect: Literal["report", "seed-rtl", "msb"] = "report",
     strict: Annotated[bool, Parameter(show_default=False)] = False,
     profile: Annotated[bool, Parameter(show_default=False)] = False,
@@ -87,8 +87,8 @@ def build(
     size
         Width and height of the preview, pixels. [default: 640x480]
     engine
-        What renders the preview: the verilated hardware, or the exact model of it. [default: rtl; model for a scene
-        with a light of its own, which rtl does not cast]
+        What renders the preview: the verilated hardware, or the exact model of it. A light of the scene's own is
+        cast by both.
     dialect
         How the memory spells a material: report is this project's; seed-rtl is what the published bitstreams read,
         msb what their C++ program reads.

@@ -29,7 +29,7 @@ _port = Parameter(converter=whole, metavar="PORT")
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
     device: Literal["model", "sim", "pynq"] = "model",
-    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
     port: Annotated[int, _port] = 8080,
@@ -49,7 +49,7 @@ def serve(
     device
         What renders: the exact model, the verilated hardware, which is slow, or the PYNQ board that this runs on.
     config
-        The configuration of the verilated hardware.
+        The configuration of the verilated hardware: tiny has no features, lit has all of them.
     bitstream
         The .bit of the PYNQ board, its .hwh beside it.
     host

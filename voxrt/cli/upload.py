@@ -27,7 +27,7 @@ def upload(
     *,
     to: Annotated[str | None, Parameter(metavar="URL")] = None,
     device: Literal["model", "sim"] | None = None,
-    config: Annotated[str, Parameter(metavar="NAME")] = "tiny",
+    config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     dry_run: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -42,7 +42,7 @@ def upload(
     device
         Instead of a server: a device of this machine, to try the upload on.
     config
-        The configuration of the verilated hardware.
+        The configuration of the verilated hardware: tiny or lit.
     dry_run
         Check everything, write nothing.
     reporting

@@ -17,6 +17,7 @@
 #include "surface.h"
 #include "validate.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <random>
@@ -148,11 +149,14 @@ void exercise_grid(Random& random, unsigned depth) {
     solid_bounds(memory);
     BlockPool pool;
     coarsen(memory, 1, pool);
-    const auto costs = std::make_unique<RecolourCosts>();
-    for (auto& row : *costs)
+    const auto costs = std::make_unique<SightCosts>();
+    for (auto& row : costs->same_face)
         row.fill(128);
-    const std::vector<Word> merged = merge_blocks(memory, memory_of(hidden, depth), 0, *costs, 1 << 12, 1 << 14);
-    expect(validate(merged.data(), merged.size(), depth).fault == Fault::none, "merged blocks", depth);
+    for (auto& row : costs->turned)
+        row.fill(256);
+    costs->covering.fill(128);
+    for (const std::vector<Word>& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size / 2))
+        expect(validate(fit.data(), fit.size(), depth).fault == Fault::none, "fitted bricks", depth);
 }
 
 /// Bricks of one material and of many, and octants among them, on one thread and on three.

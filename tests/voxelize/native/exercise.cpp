@@ -1,8 +1,9 @@
 // Runs the native voxelizer without Python, for the sanitizers: `make sanitize` builds it with each of them.
 //
-// Random soups, closed and holed spheres, huge and tiny triangles, instances, analytic solids and hulls, with and
-// without materials that vary over triangles, on grids of every small depth, filled or not. Every scene is voxelized on
-// one thread and on three; the results must be equal. Prints a line and exits with 1 where they are not.
+// Random soups, closed and holed spheres, open ones and such inside out in one object, huge and tiny triangles,
+// instances, analytic solids and hulls, with and without materials that vary over triangles, on grids of every small
+// depth, filled or not. Every scene is voxelized on one thread and on three; the results must be equal. Then long work
+// is stopped in the midst of its jobs. Prints a line and exits with 1 where anything is not as it should.
 #include "convex_hull.h"
 #include "voxelizer.h"
 
@@ -40,6 +41,20 @@ struct Mesh {
             for (int i = 0; i < columns * rows; ++i)
                 tints.push_back(uint8_t(material(random)));
         }
+    }
+    void add(const Mesh& other) {
+        for (const int32_t v : other.triangles)
+            triangles.push_back(v + int32_t(positions.size() / 3));
+        positions.insert(positions.end(), other.positions.begin(), other.positions.end());
+        materials.insert(materials.end(), other.materials.begin(), other.materials.end());
+    }
+    /// Leaves out the triangles above a height.
+    void cut(double height) {
+        for (size_t t = materials.size(); t-- > 0;)
+            if (positions[3 * triangles[3 * t] + 2] > height) {
+                triangles.erase(triangles.begin() + ptrdiff_t(3 * t), triangles.begin() + ptrdiff_t(3 * t + 3));
+                materials.erase(materials.begin() + ptrdiff_t(t));
+            }
     }
     void add(const double (&corners)[9], uint8_t material) {
         for (int i = 0; i < 3; ++i) {
@@ -114,6 +129,7 @@ uint64_t fingerprint(const SparseVoxels& voxels) {
     add(voxels.octant_materials);
     add(voxels.object_voxels);
     add(voxels.object_modes);
+    add(voxels.object_turned);
     return hash;
 }
 
@@ -136,16 +152,28 @@ struct Scene {
     }
 };
 
-bool agree(const Scene& scene, int depth) {
-    std::vector<MeshView> views;
-    for (const Mesh& mesh : scene.meshes)
-        views.push_back(mesh.view());
-    std::vector<PartView> parts;
-    for (size_t p = 0; p < scene.kinds.size(); ++p) {
-        const bool mesh = scene.kinds[p] == PartKind::mesh;
-        parts.push_back({scene.kinds[p], mesh ? &views[scene.mesh_of[p]] : nullptr, scene.frames[p].data(),
-                         uint8_t(mesh ? 0 : 4), uint32_t(p)});
+/// The parts of a scene.
+class Parts {
+public:
+    explicit Parts(const Scene& scene) {
+        for (const Mesh& mesh : scene.meshes)
+            views_.push_back(mesh.view());
+        for (size_t p = 0; p < scene.kinds.size(); ++p) {
+            const bool mesh = scene.kinds[p] == PartKind::mesh;
+            parts_.push_back({scene.kinds[p], mesh ? &views_[scene.mesh_of[p]] : nullptr, scene.frames[p].data(),
+                              uint8_t(mesh ? 0 : 4), uint32_t(p)});
+        }
     }
+    const std::vector<PartView>& get() const { return parts_; }
+
+private:
+    std::vector<MeshView> views_;
+    std::vector<PartView> parts_;
+};
+
+bool agree(const Scene& scene, int depth) {
+    const Parts held(scene);
+    const std::vector<PartView>& parts = held.get();
     for (const bool fill : {false, true}) {
         Workers one(1, [] {}), three(3, [] {});
         const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, one));
@@ -155,6 +183,40 @@ bool agree(const Scene& scene, int depth) {
         }
     }
     return true;
+}
+
+struct Stopped {};
+
+/// Whether work that is one job on one thread can be stopped at each of its beats, and leaves nothing behind; `least`
+/// beats are asked for.
+bool stops(const Scene& scene, int least) {
+    const Parts held(scene);
+    const std::vector<PartView>& parts = held.get();
+    constexpr int depth = 5; // a single tile
+    int beats = 0;
+    Workers counting(1, [&beats] { ++beats; });
+    const uint64_t whole = fingerprint(voxelize(depth, parts, parts.size(), true, counting));
+    const int all = beats;
+    if (all < least) {
+        std::printf("%d beats, fewer than %d\n", all, least);
+        return false;
+    }
+    for (const int threads : {1, 3})
+        for (int last = 1; last <= (threads == 1 ? all : 1); last += std::max(1, all / 8)) {
+            beats = 0;
+            Workers workers(threads, [&beats, last] {
+                if (++beats >= last)
+                    throw Stopped();
+            });
+            try {
+                voxelize(depth, parts, parts.size(), true, workers);
+                std::printf("went on after beat %d of %d\n", last, all);
+                return false;
+            } catch (const Stopped&) {
+            }
+        }
+    Workers quiet(1, [] {});
+    return fingerprint(voxelize(depth, parts, parts.size(), true, quiet)) == whole;
 }
 
 } // namespace
@@ -173,12 +235,25 @@ int main() {
                         sphere(side / 2, side / 3, side / 2, side * 0.7, 6, 0, true)};
         scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 0, false));
         scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 9, false));
-        for (const size_t mesh : {0, 1, 2, 6, 7})
+        // Pieces that stand open, are holed, closed and inside out, or the wall of a cavity, in one object; split and
+        // alike in another, which stands mirrored too.
+        Mesh mixed = sphere(side / 2, side / 2, side / 2, side * 0.4, 9, 0, false);
+        mixed.add(sphere(side / 2, side / 2, side / 2, side * 0.2, 7, 0, true));
+        mixed.add(sphere(side * 0.8, side / 2, side / 2, side * 0.3, 8, 0, true));
+        scene.meshes.push_back(mixed);
+        mixed.add(sphere(side * 0.2, side / 2, side / 2, side * 0.25, 8, 11, false));
+        Mesh bowl = sphere(side / 2, side * 0.8, side / 2, side * 0.3, 8, 0, false);
+        bowl.cut(side * 0.55);
+        mixed.add(bowl);
+        scene.meshes.push_back(mixed);
+        for (const size_t mesh : {0, 1, 2, 6, 7, 8, 9})
             scene.meshes[mesh].tint(random);
         for (size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
             scene.add(mesh, 1, 0);
         for (int i = 0; i < 5; ++i) // instances
             scene.add(i % 2 == 0 ? 3 : 4, 0.3, side * i / 7);
+        for (const size_t mesh : {8, 9})
+            scene.add(PartKind::mesh, mesh, {-0.7, 0, 0, side, 0, 0.7, 0.1, 0, 0, 0, 0.7, 0});
         scene.add(PartKind::box, 0, {1, 1, 1, side / 2, side * 2, side / 3});
         scene.add(PartKind::ball, 0, {side / 2, side / 2, 0, side / 3});
         scene.add(PartKind::ellipsoid, 0,
@@ -190,6 +265,15 @@ int main() {
         for (int i = 0; i < 200; ++i)
             points.push_back({coordinate(random) * 4096, coordinate(random) * 4096, coordinate(random) * 4096});
         good = convex_hull(points).size() >= 12 && good;
+    }
+
+    Scene closed, holed; // the work is in coverage and pieces; in boundaries and holes
+    closed.meshes = {sphere(16, 16, 16, 12, 110, 0, false)};
+    closed.meshes[0].add(sphere(16, 16, 16, 9, 110, 0, true));
+    holed.meshes = {sphere(16, 16, 16, 12, 110, 9, false)};
+    for (Scene* scene : {&closed, &holed}) {
+        scene->add(0, 1, 0);
+        good = stops(*scene, 4) && good;
     }
     return good ? 0 : 1;
 }
