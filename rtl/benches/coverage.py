@@ -171,7 +171,7 @@ def main() -> int:
             "Of all benches together: "
             + ", ".join(BUILDS)
             + ". `line if` and `line else` are branches, `elsif` chains count",
-            "each; what a generate block leaves out in every build has no points, and voxrt_pkg.sv's functions give constants.",
+            "each. No points: what generate blocks leave out in every build; the functions of voxrt_pkg.sv, which give constants.",
             "",
             *lines_covered(),
             "",
