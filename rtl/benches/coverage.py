@@ -171,7 +171,7 @@ def main() -> int:
             "Of all benches together: "
             + ", ".join(BUILDS)
             + ". `line if` and `line else` are branches, `elsif` chains count",
-            "each. No points: what generate blocks leave out in every build; functions of voxrt_pkg.sv, which give constants.",
+            "each. No points: what no build generates; voxrt_pkg.sv, whose functions give constants.",
             "",
             *lines_covered(),
             "",
