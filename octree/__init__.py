@@ -21,6 +21,7 @@ from voxrt.octree.pane import DrawnRay, Pane, Preview
 from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
 from voxrt.octree.rom import Rom
 from voxrt.octree.surface import SurfaceChange, surface_change
+from voxrt.octree.vdb import from_vdb
 from voxrt.octree.view import picture, plot, turntable
 from voxrt.octree.vox import read_vox
 from voxrt.octree.window import Window
@@ -59,6 +60,7 @@ __all__ = [
     "fit",
     "from_dense",
     "from_points",
+    "from_vdb",
     "hidden_voxels",
     "leaves",
     "material_at",
