@@ -14,6 +14,7 @@ import platform
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -26,6 +27,7 @@ RESULTS = Path(__file__).resolve().parent / "results" / "voxelize.md"
 ASSETS = Path(os.environ.get("VOXRT_ASSETS", Path(__file__).resolve().parents[2] / "shared" / "assets"))
 SKULL = ASSETS / "obj" / "odedstein-meshes" / "skull" / "skull.obj"
 INSTANCES = ASSETS / "gltf" / "glTF-Blender-IO" / "24_gpu_instancing.gltf"
+SPHERES = {"sphere-70k": 133, "sphere-810k": 451}
 ROWS = [
     ("sphere-70k", 9),
     ("sphere-70k", 10),
@@ -74,12 +76,15 @@ def displaced_sphere(rings: int) -> Scene:
 
 
 def scene_of(name: str) -> Scene:
-    """Give a benchmark scene by its name in the table."""
-    if name == "sphere-70k":
-        return displaced_sphere(133)
-    if name == "sphere-810k":
-        return displaced_sphere(451)
-    return load(SKULL if name == "skull" else INSTANCES)
+    """Give a benchmark scene by its name in the table; spheres are made by a process of their own."""
+    if name not in SPHERES:
+        return load(SKULL if name == "skull" else INSTANCES)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "mesh.npz"
+        subprocess.run([sys.executable, __file__, "--mesh", name, file], check=True)
+        with np.load(file) as arrays:
+            mesh = Mesh(arrays["positions"], arrays["triangles"], arrays["materials"])
+    return Scene("sphere", (SceneObject("sphere", mesh),), (EMPTY, Material("stone", (150, 150, 150))))
 
 
 def measure(name: str, depth: int, threads: int) -> dict[str, object]:
@@ -87,7 +92,9 @@ def measure(name: str, depth: int, threads: int) -> dict[str, object]:
     scene = scene_of(name)
     grid = fit_grid(scene, depth=depth)
     seconds = {"voxels": float("inf"), "processor": float("inf"), "octree": float("inf")}
+    result, tree = None, None
     for _ in range(5 if depth < 12 else 2):
+        del result, tree
         start, processor = time.perf_counter(), time.process_time()
         result = voxelize(scene, grid, threads=threads)
         middle, processor = time.perf_counter(), time.process_time() - processor
@@ -113,7 +120,12 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--row", nargs=2, metavar=("SCENE", "DEPTH"), help="measure one row and print it as JSON")
+    parser.add_argument("--mesh", nargs=2, metavar=("SPHERE", "FILE"), help="write a sphere's arrays")
     arguments = parser.parse_args()
+    if arguments.mesh:
+        mesh = displaced_sphere(SPHERES[arguments.mesh[0]]).objects[0].mesh
+        np.savez(arguments.mesh[1], positions=mesh.positions, triangles=mesh.triangles, materials=mesh.materials)
+        return
     if arguments.row:
         print(json.dumps(measure(arguments.row[0], int(arguments.row[1]), arguments.threads)))
         return
