@@ -239,8 +239,10 @@ def _likeness(meshes: View, voxels: View) -> Likeness:
 def _open3d() -> Any:  # noqa: ANN401 - Open3D has no types
     try:
         import open3d  # noqa: PLC0415 - 900 MB that few need
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise SimulatorError(
             "comparing with the source meshes needs Open3D, which is not installed; pip install 'voxrt[compare]'"
         ) from error
+    except ImportError as error:
+        raise SimulatorError(f"Open3D cannot be loaded: {error}; on Debian: apt install libegl1 libgl1") from error
     return open3d
