@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize import AssetError
+from voxrt.voxelize.asset_bytes import read_asset
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -103,10 +104,7 @@ def read_chunks(path: Path) -> VoxFile:
     AssetError
         Where the file cannot be read or breaks the format: names the chunk and its offset.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}") from None
+    data = read_asset(path)
     reader = _Reader(path, data, 0, len(data), "header")
     if reader.take(4) != b"VOX ":
         raise AssetError(path, "does not start with 'VOX '", fix="name a MagicaVoxel file")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -14,10 +13,9 @@ from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
+from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
@@ -146,14 +144,8 @@ def shader_features(config: str) -> frozenset[str]:
     return frozenset(_ray_tracer(config).FEATURES[config])
 
 
-def _ray_tracer(config: str) -> ModuleType:
-    try:
-        _rtl = import_module("voxrt.sim._rtl")
-    except ImportError as error:
-        raise SimulatorError(
-            "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "render with --engine model"
-        ) from error
+def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be absent
+    _rtl = import_verilated("render with --engine model")
     if config not in _rtl.CONFIGS:
         raise NoSuchConfigurationError(config, _rtl.CONFIGS)
     return _rtl

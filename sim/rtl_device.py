@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from voxrt.board.errors import DeviceError
 from voxrt.board.register_device import RegisterDevice
-from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+from voxrt.sim.errors import NoSuchConfigurationError
+from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,13 +28,7 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
     SimulatorError
         The verilated core is not in this installation.
     """
-    try:
-        module: Any = import_module("voxrt.sim._rtl")
-    except ImportError as error:
-        raise SimulatorError(
-            "this installation has no verilated ray tracer (it is built on Linux x86-64 and macOS arm64); "
-            "use --device model"
-        ) from error
+    module = import_verilated("use --device model")
     if config not in module.CORES:
         raise NoSuchConfigurationError(config, module.CORES)
     core = module.PixelGenerator(config)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.asset_bytes import read_asset
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
@@ -45,10 +46,7 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file cannot be read, is cut short, or has no triangles.
     """
     path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+    data = read_asset(path)
     notes = Notes()
     tints = None
     if _is_binary(data):

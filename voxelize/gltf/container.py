@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from voxrt.voxelize.asset_bytes import read_asset
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.gltf.schema import Gltf
 from voxrt.voxelize.gltf.schema_errors import explain
@@ -37,10 +38,7 @@ def read_container(path: Path) -> tuple[Gltf, memoryview | None]:
     AssetError
         The container is broken, or its JSON is not glTF 2.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from error
+    data = read_asset(path)
     if data[:4] == _MAGIC:
         text, binary = _split_glb(path, data)
     else:

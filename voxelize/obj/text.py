@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from voxrt.voxelize.asset_bytes import read_asset
 from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
@@ -86,10 +87,7 @@ def read_text(path: Path) -> Text:
     AssetError
         The file cannot be read, or its bytes are not what its byte order mark says.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+    data = read_asset(path)
     return as_text(path, _to_ascii_compatible(path, data))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.asset_bytes import read_asset
 from voxrt.voxelize.colour import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.frames import scene_transform
@@ -43,10 +44,7 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file cannot be read, contradicts its header, or has no faces.
     """
     path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+    data = read_asset(path)
     notes = Notes()
     tables = read_tables(path, data)
     positions, counts, corners, kept = _geometry(path, tables, notes)
