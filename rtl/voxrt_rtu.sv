@@ -155,26 +155,13 @@ module voxrt_rtu
     end
   end
 
-  // Rays of the camera: a ray goes to the lane whose turn it is when its queue has a place. Shadow rays go first, at any
-  // clock that they come.
-  logic                         corner, direction_valid, issues;
-  logic signed [  ScanBits-1:0] line_step[3], direction[3], way[3], ray_direction[3];
-  logic        [     Lanes-1:0] turn_q;  // One-hot.
-  logic        [     Lanes-1:0] has_place;
+  logic                         corner;
+  logic signed [  ScanBits-1:0] line_step[3], way[3];
+  logic        [     Lanes-1:0] has_place, promise;
   logic                         shadow_valid;
   logic        [     Lanes-1:0] shadow_lane;
   logic        [   TagBits-1:0] shadow_tag;
   logic signed [   LitBits-1:0] lit_point[3];
-  logic                         unused_first, unused_line_end, unused_last;
-
-  assign issues = direction_valid && (has_place & turn_q) != '0 && !shadow_valid;
-
-  always_comb for (int unsigned a = 0; a < 3; a++) ray_direction[a] = shadow_valid ? way[a] : direction[a];
-
-  always_ff @(posedge clk_i) begin
-    if (issues) turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
-    if (!rst_ni || start_q) turn_q <= Lanes'(1);
-  end
 
   voxrt_scan u_scan (
     .clk_i,
@@ -187,23 +174,6 @@ module voxrt_rtu
     .half_height_i(height_q[SizeBits-1:1]),
     .corner_o     (corner),
     .line_step_o  (line_step)
-  );
-
-  voxrt_ray_generator u_ray_generator (
-    .clk_i,
-    .rst_ni,
-    .start_i    (start_q),
-    .corner_i   (corner),
-    .line_step_i(line_step),
-    .right_i    (right_q),
-    .width_i    (width_q),
-    .height_i   (height_q),
-    .valid_o    (direction_valid),
-    .ready_i    (issues),
-    .direction_o(direction),
-    .first_o    (unused_first),
-    .line_end_o (unused_line_end),
-    .last_o     (unused_last)
   );
 
   logic                           ray_valid, overflow, ray_resolved, ray_shadow, ray_lit;
@@ -219,27 +189,34 @@ module voxrt_rtu
   // With Light or Mirrors the lanes go into a root that is a leaf: its faces are lit and reflect too.
   localparam bit ResolvesRoot = !Light && !Mirrors;
 
-  voxrt_ray_setup #(
+  voxrt_rays #(
+    .Lanes       (Lanes),
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Lanes       (Lanes),
     .TagBits     (TagBits),
     .Light       (Light)
-  ) u_ray_setup (
+  ) u_rays (
     .clk_i,
     .rst_ni,
+    .start_i          (start_q),
+    .corner_i         (corner),
+    .line_step_i      (line_step),
+    .right_i          (right_q),
+    .width_i          (width_q),
+    .height_i         (height_q),
     .origin_i         (origin_q),
     .mirrored_origin_i(mirrored_origin_q),
     .depth_i          (depth_q),
     .world_i          (world_q),
     .root_leaf_i      (ResolvesRoot && root[PayloadBits]),
     .root_material_i  (!ResolvesRoot || root[8] ? '0 : root[7:0]),
-    .valid_i          (issues || shadow_valid),
-    .lane_i           (shadow_valid ? shadow_lane : turn_q),
-    .direction_i      (ray_direction),
-    .shadow_i         (shadow_valid),
-    .lit_i            (lit_point),
-    .tag_i            (shadow_tag),
+    .has_place_i      (has_place),
+    .promise_o        (promise),
+    .shadow_valid_i   (shadow_valid),
+    .shadow_lane_i    (shadow_lane),
+    .shadow_tag_i     (shadow_tag),
+    .lit_point_i      (lit_point),
+    .way_i            (way),
     .valid_o          (ray_valid),
     .lane_o           (ray_lane),
     .resolved_o       (ray_resolved),
@@ -288,12 +265,12 @@ module voxrt_rtu
       .root_i                (root),
       .light_i               (shading_q.light),
       .bounces_i             (shading_q.bounces),
-      .before_light_i    (before_light),
-      .to_light_i        (to_light),
+      .before_light_i        (before_light),
+      .to_light_i            (to_light),
       .table_write_i,
       .table_material_i,
       .table_row_i,
-      .promise_i             (issues && turn_q[i]),
+      .promise_i             (promise[i]),
       .has_place_o           (has_place[i]),
       .ray_valid_i           (ray_valid && ray_lane[i]),
       .ray_resolved_i        (ray_resolved),
