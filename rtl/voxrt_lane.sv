@@ -269,7 +269,7 @@ module voxrt_lane
   end
 
   // 6 to 10: the next cell.
-  logic                finished9, leaves9, leaves_world9, smallest9, renews;
+  logic                finishes9, goes_on9, leaves9, smallest9, renews;
   logic [CellBits-1:0] top_size, corner8[3], corner9[3], size10, corner11[3], size11;
   logic [         2:0] set9, turned_set9, mirrored9, octant11;
   logic [ KeyBits-1:0] exit_time9[3];
@@ -295,9 +295,9 @@ module voxrt_lane
     .size_i        (size_q[6+Extra]),
     .corner8_o     (corner8),
     .key_face8_o   (key_face8),
-    .finished_o    (finished9),
+    .finishes_o    (finishes9),
+    .goes_on_o     (goes_on9),
     .leaves_cell_o (leaves9),
-    .leaves_world_o(leaves_world9),
     .corner9_o     (corner9),
     .key_face9_o   (key_face9),
     .set_o         (set9),
@@ -343,8 +343,8 @@ module voxrt_lane
     .material3_i  (material3_q),
     .corner8_i    (corner8),
     .key_face8_i  (key_face8),
-    .active_i     (active_q[9+Extra]),
-    .finishes_i   (finished9 || leaves_world9),
+    .finishes_i   (finishes9),
+    .goes_on_i    (goes_on9),
     .material_i   (material9_q),
     .key_face_i   (key_face9),
     .mirrored_i   (mirrored_q[9+Extra]),
@@ -381,7 +381,7 @@ module voxrt_lane
     .request_place_o
   );
 
-  assign releases_o     = resolves || (active_q[9+Extra] && !continues);
+  assign releases_o     = resolves || ((finishes9 || goes_on9) && !continues);
   assign released_row_o = resolves ? ray_row_i : row_q[9+Extra];
 
   // FaceNone stands for a new ray's time.

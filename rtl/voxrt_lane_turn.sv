@@ -50,8 +50,8 @@ module voxrt_lane_turn
   input  logic        [CellBits-1:0] corner8_i          [3],
   input  face_e                      key_face8_i,
   // Stage 9: the ray at hand.
-  input  logic                       active_i,
-  input  logic                       finishes_i,
+  input  logic                       finishes_i,              // It has hit, left the world, or met an error ...
+  input  logic                       goes_on_i,               // ... or not; both low where no ray is.
   input  material_t                  material_i,
   input  face_e                      key_face_i,
   input  logic        [         2:0] mirrored_i,
@@ -92,7 +92,7 @@ module voxrt_lane_turn
 );
   logic [TagBits-1:0] tag_q[Slots];
   face_e              face;  // FaceNone without material.
-  logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends;
+  logic               meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends;
   logic               sinks9, shadow9, turned_away;
   pixel_t             pixel;
   material_t          sinking_material;
@@ -100,17 +100,16 @@ module voxrt_lane_turn
   mirrors_t           met;
 
   assign face         = material_i == '0 ? FaceNone : key_face_i;
-  assign finishes     = active_i && finishes_i;
-  assign meets_face   = finishes && face != FaceNone && !shadow9;
+  assign meets_face   = finishes_i && face != FaceNone && !shadow9;
   assign is_lightable = Light && meets_face && light_i && !reflects_o && !reflects_out && !shows_mean;
   assign sinks        = is_lightable && !turned_away;
-  assign requests     = Light && active_i && sinks9 && smallest_i &&
+  assign requests     = Light && (finishes_i || goes_on_i) && sinks9 && smallest_i &&
       (request_ready_i || (ray_valid_i && ray_shadow_i && !ray_resolved_i));
-  assign ends         = finishes && !reflects_o && !sinks;
-  assign continues_o  = active_i && !ends && !requests;
+  assign ends         = finishes_i && !reflects_o && !sinks;
+  assign continues_o  = (goes_on_i || (finishes_i && (reflects_o || sinks))) && !requests;
 
   assign starts_o = ray_valid_i && !ray_resolved_i && (ray_shadow_i || take_ready_i) && !continues_o;
-  assign resolves_o = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
+  assign resolves_o = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes_i && !requests;
 
   assign ray_ready_o = starts_o || resolves_o;
   assign take_o      = ray_ready_o && !ray_shadow_i;
@@ -119,14 +118,14 @@ module voxrt_lane_turn
 
   // Pixels. A shadow ray has its own stored already.
   assign fill_o     = ends || resolves_o;
-  assign fill_tag_o = finishes || requests ? tag_q[slot_i[9]] : ray_shadow_i ? ray_tag_i : take_tag_i;
+  assign fill_tag_o = finishes_i || requests ? tag_q[slot_i[9]] : ray_shadow_i ? ray_tag_i : take_tag_i;
   assign store_o    = (ends && !shadow9) || (resolves_o && !ray_shadow_i) || requests;
 
   always_comb begin
     pixel = '{material: material_i, face: face};
     if (reflects_out) pixel = '{material: '0, face: FaceNone};
     if (requests) pixel = '{material: sinking_material, face: key_face_i};
-    else if (!finishes) pixel = ray_pixel_i;
+    else if (!finishes_i) pixel = ray_pixel_i;
     shade = requests || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
   end
 
@@ -247,7 +246,7 @@ module voxrt_lane_turn
       end
     end
 
-    assign fill_lit_o         = finishes ? shadow9 && (material_i == '0 || !in_shadow) : ray_lit_i;
+    assign fill_lit_o         = finishes_i ? shadow9 && (material_i == '0 || !in_shadow) : ray_lit_i;
     assign request_o          = requests;
     assign request_tag_o      = tag_q[slot_i[9]];
     assign request_face_o     = key_face_i;

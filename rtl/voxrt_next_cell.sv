@@ -35,9 +35,9 @@ module voxrt_next_cell
   output logic [CellBits-1:0] corner8_o      [3],
   output face_e               key_face8_o,
   // Stage 9: what the ray has done, and its next key, where it leaves.
-  output logic                finished_o,
+  output logic                finishes_o,         // It has hit, left the world, or met an error ...
+  output logic                goes_on_o,          // ... or not; both low where no ray is.
   output logic                leaves_cell_o,
-  output logic                leaves_world_o,
   output logic [CellBits-1:0] corner9_o      [3],
   output face_e               key_face9_o,
   output logic [         2:0] set_o,              // Axes on which the corner gets the next size's bit.
@@ -126,45 +126,48 @@ module voxrt_next_cell
   assign key_face8_o = key_face8_q;
 
   // 8 add.
-  logic [CellBits:0]   sum9_q;
-  logic [CellBits-1:0] place9_q, inner_size9_q, corner9_q[3];
+  logic [CellBits-1:0] sum, sum9_q, place9_q, inner_size9_q, corner9_q[3];
   logic [ KeyBits-1:0] time9_q[3];
   logic [         2:0] set9_q;
-  logic                leaves9_q, finished9_q;
+  logic                finished, leaves_world, leaves9_q, finishes9_q, goes_on9_q;
   face_e               exit_face9_q, key_face9_q;
+
+  assign {leaves_world, sum} = {1'b0, place8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
+  assign finished = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
 
   always_ff @(posedge clk_i) begin
     if (active_i[8]) begin
       time9_q   <= time8_q;
       corner9_q <= corner8_q;
     end
-    sum9_q        <= {1'b0, place8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
+    sum9_q        <= sum;
     place9_q      <= place8_q;
     inner_size9_q <= action8_q == Leave ? '0 : descends8_q ? size8_q >> 1 : size8_q;
     set9_q        <= set8_q;
     exit_face9_q  <= exit_face8_q;
     leaves9_q     <= action8_q == Leave;
-    finished9_q   <= action8_q == Finish || (action8_q == Leave && dead8_q);
+    finishes9_q   <= active_i[8] && finished;
+    goes_on9_q    <= active_i[8] && !finished;
     key_face9_q   <= key_face8_q;
   end
 
-  assign finished_o     = finished9_q;
-  assign leaves_cell_o  = leaves9_q;
-  assign leaves_world_o = sum9_q[CellBits];
-  assign corner9_o      = corner9_q;
-  assign key_face9_o    = key_face9_q;
-  assign set_o          = set9_q;
-  assign smallest_o     = inner_size9_q[0];
-  assign exit_time_o    = time9_q;
-  assign exit_face_o    = exit_face9_q;
+  assign finishes_o    = finishes9_q;
+  assign goes_on_o     = goes_on9_q;
+  assign leaves_cell_o = leaves9_q;
+  assign corner9_o     = corner9_q;
+  assign key_face9_o   = key_face9_q;
+  assign set_o         = set9_q;
+  assign smallest_o    = inner_size9_q[0];
+  assign exit_time_o   = time9_q;
+  assign exit_face_o   = exit_face9_q;
 
   // 9 turn.
   logic [CellBits-1:0] corner10_q[3], size10_q, cleared10_q;
   logic [         2:0] set10_q;
 
   always_ff @(posedge clk_i) begin
-    size10_q    <= renews_i ? top_size_i : inner_size9_q | (sum9_q[CellBits-1:0] & ~place9_q);
-    cleared10_q <= place9_q & ~sum9_q[CellBits-1:0];
+    size10_q    <= renews_i ? top_size_i : inner_size9_q | (sum9_q & ~place9_q);
+    cleared10_q <= place9_q & ~sum9_q;
     set10_q     <= set_i;
     corner10_q  <= corner9_q;
     if (renews_i) corner10_q <= '{default: '0};

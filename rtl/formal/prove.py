@@ -18,7 +18,7 @@ BIN = Path(sys.executable).parent
 
 PROOFS = {
     "voxrt_fifo": ("prove", 4),
-    "voxrt_pixel_buffer": ("bmc", 15),
+    "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 8),
 }

@@ -3,7 +3,7 @@
 // taken and not filled, and stores in it once, no later than it fills it.
 module voxrt_pixel_buffer_properties #(
   parameter  int unsigned Width   = 3,
-  parameter  int unsigned Depth   = 2,
+  parameter  int unsigned Depth   = 4,
   localparam int unsigned TagBits = $clog2(Depth) + 1
 ) (
   input logic               clk_i,
