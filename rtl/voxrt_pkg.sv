@@ -40,6 +40,14 @@ package voxrt_pkg;
     face_e     face;
   } pixel_t;
 
+  // What a ray does with the word of its cell.
+  typedef enum logic [1:0] {
+    Retry,    // No word came.
+    Descend,  // Into the block of a pointer.
+    Leave,    // An empty leaf, through one of its faces.
+    Finish    // The ray has ended: hit or error.
+  } action_e;
+
   typedef struct packed {
     logic [7:0] red;
     logic [7:0] green;

@@ -80,7 +80,7 @@ async def frame(dut, count, sending, taking):
     position = [random.choice([16 * random.randint(-4, 12), random.randint(-50, 178)]) for _ in range(3)]
     directions = [some_direction() for _ in range(count)]
     rays = [ray_of(position, direction, SIDE) for direction in directions]
-    drive(dut, world_i=SIDE, root_i=encoded(int(words[0])))
+    drive(dut, world_i=SIDE, beyond_i=(1 << 6) - SIDE, root_i=encoded(int(words[0])))
     drive(dut, origin_i=position, mirrored_origin_i=[16 * SIDE - place for place in position])
     surroundings = Surroundings(dut, words, taking)
     runner = cocotb.start_soon(surroundings.run())
