@@ -4,7 +4,8 @@ Usage: ``python bench/threads.py [--threads N] [--rounds N] [--size WxH] [--writ
 
 Builds the extension module twice by the project's own CMake, as it is shipped and with ``verilator --threads``, into
 ``build/threads``; loads each in a process of its own and lets them render the same frame in turn, round after round.
-Ratios are the medians of those of single rounds, so that what else the machine does counts for both. All pictures must
+The shipped one also renders as many frames at once as there are threads, each by a tracer and a thread of its own.
+Ratios are the medians of those of single rounds, so that what else the machine does counts for all. All pictures must
 be the same. ``--write`` puts the table into ``bench/results/threads.md`` as well.
 
 Needs CMake and, in this environment, nanobind and verilator: build-system.requires of pyproject.toml.
@@ -21,7 +22,7 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -43,13 +44,21 @@ MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 
 
 @dataclass(frozen=True)
+class Way:
+    """A way to simulate: a module, and the frames that it renders at the same time."""
+
+    name: str
+    module: Path
+    frames: int
+
+
+@dataclass(frozen=True)
 class Run:
-    """A frame rendered: seconds by the clock and by all processors, and what was made."""
+    """Frames rendered at the same time: seconds a frame, by the clock and by all processors, and what was made."""
 
     wall: float
     processor: float
-    picture: str
-    cycles: int
+    made: frozenset[tuple[str, int]]
 
 
 def build(threads: int) -> Path:
@@ -82,71 +91,84 @@ def load(module: Path) -> ModuleType:
 
 
 @functools.cache
-def tracer(module: Path, configuration: str) -> Any:  # noqa: ANN401 - a class of the module just built
-    """Make a tracer, once a process."""
-    return load(module).Tracer(configuration)
+def tracers(module: Path, configuration: str, count: int) -> list[Any]:
+    """Make tracers, once a process."""
+    return [load(module).Tracer(configuration) for _ in range(count)]
 
 
-def render(module: Path, configuration: str, scene: Scene, size: tuple[int, int]) -> Run:
-    """Render a frame, in the process of its module."""
-    simulated = tracer(module, configuration)
-    simulated.load(scene.words)
-    wall, processor = time.perf_counter(), time.process_time()
-    frame = simulated.render(scene.camera, *size, scene.depth, MATERIALS)
-    wall, processor = time.perf_counter() - wall, time.process_time() - processor
-    planes = b"".join(frame[plane].tobytes() for plane in ("colour", "material", "face"))
-    return Run(wall, processor, hashlib.sha256(planes).hexdigest(), frame["cycles"])
+def render(way: Way, configuration: str, scene: Scene, size: tuple[int, int]) -> Run:
+    """Render in one way, in the process of its module."""
+    at_work = tracers(way.module, configuration, way.frames)
+    for tracer in at_work:
+        tracer.load(scene.words)
+    with ThreadPoolExecutor(way.frames) as pool:
+        wall, processor = time.perf_counter(), time.process_time()
+        frames = list(pool.map(lambda tracer: tracer.render(scene.camera, *size, scene.depth, MATERIALS), at_work))
+        wall, processor = time.perf_counter() - wall, time.process_time() - processor
+    made = set()
+    for frame in frames:
+        planes = b"".join(frame[plane].tobytes() for plane in ("colour", "material", "face"))
+        made.add((hashlib.sha256(planes).hexdigest(), frame["cycles"]))
+    return Run(wall / way.frames, processor / way.frames, frozenset(made))
 
 
-def compare(modules: dict[int, Path], scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
-    """Let the modules render in turn, and give the table's rows."""
+def compare(ways: list[Way], scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
+    """Let the ways, of which the first is what the others stand beside, render in turn; give the table's rows."""
     spawn = multiprocessing.get_context("spawn")
-    pools = {threads: ProcessPoolExecutor(1, mp_context=spawn) for threads in modules}
+    processes = {way: ProcessPoolExecutor(1, mp_context=spawn) for way in ways}
+    pixels = size[0] * size[1] / 1e6
     rows = []
     for configuration in CONFIGURATIONS:
-        runs: dict[int, list[Run]] = {threads: [] for threads in modules}
+        runs: dict[Way, list[Run]] = {way: [] for way in ways}
+        # Memory and caches are cold in the first round, which does not count.
         for number in range(rounds + 1):
-            for threads in sorted(modules, reverse=number % 2 == 1):
-                task = pools[threads].submit(render, modules[threads], configuration, scene, size)
-                runs[threads].append(task.result())
-        made = {(run.picture, run.cycles) for each in runs.values() for run in each}
+            for way in ways if number % 2 else reversed(ways):
+                run = processes[way].submit(render, way, configuration, scene, size).result()
+                if number:
+                    runs[way].append(run)
+        made = frozenset[tuple[str, int]]().union(*(run.made for each in runs.values() for run in each))
         assert len(made) == 1, f"{configuration}: the pictures differ"
-        # The first round is the one that memory and caches are cold in.
-        base = runs[1][1:]
-        for threads, each in runs.items():
-            paired = list(zip(base, each[1:], strict=True))
-            pixels = size[0] * size[1] / 1e6
+        base = runs[ways[0]]
+        for way, each in runs.items():
+            paired = list(zip(base, each, strict=True))
+            least = min(run.wall for run in each)
             rows.append(
-                f"| {configuration} | {threads} | {pixels / median(run.wall for run in each[1:]):.3f} "
-                f"| {pixels / min(run.wall for run in each[1:]):.3f} "
+                f"| {configuration} | {way.name} | {pixels / median(run.wall for run in each):.3f} "
+                f"| {pixels / least:.3f} "
                 f"| {median(one.wall / run.wall for one, run in paired):.2f} "
-                f"| {min(one.wall for one in base) / min(run.wall for run in each[1:]):.2f} "
+                f"| {min(one.wall for one in base) / least:.2f} "
                 f"| {median(run.processor / one.processor for one, run in paired):.2f} |"
             )
-    for pool in pools.values():
-        pool.shutdown()
+    for process in processes.values():
+        process.shutdown()
     return rows
 
 
 def main() -> None:
     """Build, measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--threads", type=int, default=2, help="beside one")
+    parser.add_argument("--threads", type=int, default=2, help="beside one, default 2")
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--size", default="128x128")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     width, height = (int(side) for side in options.size.split("x"))
     (scene,) = (each for each in scenes(ROOT, (width, height)) if each.name.startswith(SCENE))
-    modules = {threads: build(threads) for threads in (1, options.threads)}
-    heads = ["configuration", "threads", "million pixels/s, median", "fastest round", "speed beside one thread, median"]
-    heads += ["of the fastest rounds", "processor time beside one thread, median"]
+    shipped, threaded = build(1), build(options.threads)
+    ways = [
+        Way("one thread, as shipped", shipped, 1),
+        Way(f"{options.threads} threads", threaded, 1),
+        Way(f"{options.threads} frames at once, a thread each", shipped, options.threads),
+    ]
+    heads = ["configuration", "simulated by", "million pixels/s, median", "fastest round", "beside one thread, median"]
+    heads += ["of the fastest rounds", "processor time a frame beside one thread, median"]
     before = os.getloadavg()[0]
-    rows = compare(modules, scene, (width, height), options.rounds)
+    rows = compare(ways, scene, (width, height), options.rounds)
+    after = os.getloadavg()[0]
     lines = [
-        f"{scene.name}, {width}x{height} pixels, {options.rounds} rounds on {os.cpu_count()} processors that other work",
-        f"shares: {before:.1f} processes wanted them before, {os.getloadavg()[0]:.1f} after. By the wall's clock; all",
-        "pictures and cycle counts the same.",
+        f"{scene.name}, {width}x{height} pixels, {options.rounds} rounds on {os.cpu_count()} processors, which other",
+        f"work shares: {before:.1f} processes wanted them before, {after:.1f} after. Speeds by the wall clock;",
+        "pictures and cycles are the same.",
         "",
         f"| {' | '.join(heads)} |",
         "|---" * len(heads) + "|",
