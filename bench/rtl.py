@@ -74,7 +74,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--size", nargs="+", default=["256x256", "640x480"])
     parser.add_argument("--memories", type=Path, default=ROOT.parent / "shared" / "seed-memories")
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     heads = ["scene", "configuration", "frame", "lanes", "words a pixel", "cycles a pixel", "bound", "of the bound"]
