@@ -167,8 +167,8 @@ def main() -> None:
     after = os.getloadavg()[0]
     lines = [
         f"{scene.name}, {width}x{height} pixels, {options.rounds} rounds on {os.cpu_count()} processors, which other",
-        f"work shares: {before:.1f} processes wanted them before, {after:.1f} after. Speeds by the wall clock;",
-        "pictures and cycles are the same.",
+        f"work shares: {before:.1f} processes wanted them before, {after:.1f} after; these at a nice value of",
+        f"{os.getpriority(os.PRIO_PROCESS, 0)}. Speeds by the wall clock. Pictures and cycles are the same.",
         "",
         f"| {' | '.join(heads)} |",
         "|---" * len(heads) + "|",
