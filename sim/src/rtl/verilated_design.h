@@ -17,7 +17,7 @@ namespace voxrt::rtl {
 template <class Model> class VerilatedDesign final : public Design {
 public:
     explicit VerilatedDesign(const Limits& limits) : limits_(limits) {
-        context_.threads(1);
+        context_.threads(VOXRT_RTL_THREADS);
         enter();
         model_ = std::make_unique<Model>(&context_, "TOP");
         model_->rst_ni = 0;
