@@ -20,7 +20,7 @@ PROOFS = {
     "voxrt_fifo": ("prove", 4),
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
-    "voxrt_registers": ("bmc", 8),
+    "voxrt_registers": ("bmc", 11),
 }
 
 # What a module is made of.

@@ -47,8 +47,8 @@ module voxrt_registers (
     logic cpuif_wr_ack;
     logic cpuif_wr_err;
 
-    // Max Outstanding Transactions: 2
-    logic [1:0] axil_n_in_flight;
+    // Max Outstanding Transactions: 4
+    logic [2:0] axil_n_in_flight;
     logic axil_prev_was_rd;
     logic axil_arvalid;
     logic [10:0] axil_araddr;
@@ -127,7 +127,7 @@ module voxrt_registers (
         axil_ar_accept = '0;
         axil_aw_accept = '0;
 
-        if(axil_n_in_flight < 2'd2) begin
+        if(axil_n_in_flight < 3'd4) begin
             // Can safely issue more transactions without overwhelming response buffer
             if(axil_arvalid && !axil_prev_was_rd) begin
                 cpuif_req = '1;
@@ -150,16 +150,16 @@ module voxrt_registers (
 
 
     // AXI4-Lite Response Logic
-    logic axil_resp_buffer_is_wr[2];
-    logic axil_resp_buffer_err[2];
-    logic [31:0] axil_resp_buffer_rdata[2];
+    logic axil_resp_buffer_is_wr[4];
+    logic axil_resp_buffer_err[4];
+    logic [31:0] axil_resp_buffer_rdata[4];
 
-    logic [1:0] axil_resp_wptr;
-    logic [1:0] axil_resp_rptr;
+    logic [2:0] axil_resp_wptr;
+    logic [2:0] axil_resp_rptr;
 
     always_ff @(posedge clk) begin
         if(~rst_n) begin
-            for(int i=0; i<2; i++) begin
+            for(int i=0; i<4; i++) begin
                 axil_resp_buffer_is_wr[i] <= '0;
                 axil_resp_buffer_err[i] <= '0;
                 axil_resp_buffer_rdata[i] <= '0;
@@ -170,13 +170,13 @@ module voxrt_registers (
             // Store responses in buffer until AXI response channel accepts them
             if(cpuif_rd_ack || cpuif_wr_ack) begin
                 if(cpuif_rd_ack) begin
-                    axil_resp_buffer_is_wr[axil_resp_wptr[0:0]] <= '0;
-                    axil_resp_buffer_err[axil_resp_wptr[0:0]] <= cpuif_rd_err;
-                    axil_resp_buffer_rdata[axil_resp_wptr[0:0]] <= cpuif_rd_data;
+                    axil_resp_buffer_is_wr[axil_resp_wptr[1:0]] <= '0;
+                    axil_resp_buffer_err[axil_resp_wptr[1:0]] <= cpuif_rd_err;
+                    axil_resp_buffer_rdata[axil_resp_wptr[1:0]] <= cpuif_rd_data;
 
                 end else if(cpuif_wr_ack) begin
-                    axil_resp_buffer_is_wr[axil_resp_wptr[0:0]] <= '1;
-                    axil_resp_buffer_err[axil_resp_wptr[0:0]] <= cpuif_wr_err;
+                    axil_resp_buffer_is_wr[axil_resp_wptr[1:0]] <= '1;
+                    axil_resp_buffer_err[axil_resp_wptr[1:0]] <= cpuif_wr_err;
                 end
                 axil_resp_wptr <= axil_resp_wptr + 1'b1;
             end
@@ -193,7 +193,7 @@ module voxrt_registers (
         s_axil_bvalid = '0;
         s_axil_rvalid = '0;
         if(axil_resp_rptr != axil_resp_wptr) begin
-            if(axil_resp_buffer_is_wr[axil_resp_rptr[0:0]]) begin
+            if(axil_resp_buffer_is_wr[axil_resp_rptr[1:0]]) begin
                 s_axil_bvalid = '1;
                 if(s_axil_bready) axil_resp_acked = '1;
             end else begin
@@ -202,8 +202,8 @@ module voxrt_registers (
             end
         end
 
-        s_axil_rdata = axil_resp_buffer_rdata[axil_resp_rptr[0:0]];
-        if(axil_resp_buffer_err[axil_resp_rptr[0:0]]) begin
+        s_axil_rdata = axil_resp_buffer_rdata[axil_resp_rptr[1:0]];
+        if(axil_resp_buffer_err[axil_resp_rptr[1:0]]) begin
             s_axil_bresp = 2'b10;
             s_axil_rresp = 2'b10;
         end else begin
@@ -215,10 +215,19 @@ module voxrt_registers (
     logic cpuif_req_masked;
     logic external_pending;
 
-    // Read & write latencies are balanced. Stalls not required
-    // except if external
+    // Read latency > write latency. May need to delay next write that follows a read
+    logic [1:0] cpuif_req_stall_sr;
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            cpuif_req_stall_sr <= '0;
+        end else if(cpuif_req && !cpuif_req_is_wr) begin
+            cpuif_req_stall_sr <= '1;
+        end else begin
+            cpuif_req_stall_sr <= (cpuif_req_stall_sr >> 'd1);
+        end
+    end
     assign cpuif_req_stall_rd = external_pending;
-    assign cpuif_req_stall_wr = external_pending;
+    assign cpuif_req_stall_wr = cpuif_req_stall_sr[0] | external_pending;
     assign cpuif_req_masked = cpuif_req
                             & !(!cpuif_req_is_wr & cpuif_req_stall_rd)
                             & !(cpuif_req_is_wr & cpuif_req_stall_wr);
@@ -1070,8 +1079,13 @@ module voxrt_registers (
     end
 
     logic readback_external_rd_ack;
-
-    assign readback_external_rd_ack = readback_external_rd_ack_c;
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            readback_external_rd_ack <= '0;
+        end else begin
+            readback_external_rd_ack <= readback_external_rd_ack_c;
+        end
+    end
 
     logic [10:0] rd_mux_addr;
     logic [10:0] pending_rd_addr;
@@ -1088,107 +1102,179 @@ module voxrt_registers (
     logic readback_err;
     logic readback_done;
     logic [31:0] readback_data;
+    function automatic bit [5:0] ad_low(bit [10:0] addr);
+        return addr[5:0];
+    endfunction
+    function automatic bit [4:0] ad_hi(bit [10:0] addr);
+        return addr[10:6];
+    endfunction
+
+    // readback stage 1
+    logic [31:0] readback_data_rt_c[32];
+    always_comb begin
+        automatic logic [31:0] readback_data_var[32];
+        for(int i=0; i<32; i++) readback_data_var[i] = '0;
+        if(ad_low(rd_mux_addr) == ad_low(11'h0)) begin
+            readback_data_var[ad_hi(11'h0)][31:0] = 32'h56585254;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h4)) begin
+            readback_data_var[ad_hi(11'h4)][7:0] = 8'h2;
+            readback_data_var[ad_hi(11'h4)][15:8] = 8'h0;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h8)) begin
+            readback_data_var[ad_hi(11'h8)][7:0] = hwif_in.configuration.lanes.next;
+            readback_data_var[ad_hi(11'h8)][12:8] = hwif_in.configuration.max_depth.next;
+            readback_data_var[ad_hi(11'h8)][21:16] = hwif_in.configuration.position_bits.next;
+            readback_data_var[ad_hi(11'h8)][28:24] = hwif_in.configuration.block_bits.next;
+            readback_data_var[ad_hi(11'h8)][31] = hwif_in.configuration.banked.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'hc)) begin
+            readback_data_var[ad_hi(11'hc)][0] = field_storage.control.start.value;
+            readback_data_var[ad_hi(11'hc)][1] = field_storage.control.continuous.value;
+            readback_data_var[ad_hi(11'hc)][2] = field_storage.control.hold.value;
+            readback_data_var[ad_hi(11'hc)][3] = field_storage.control.soft_reset.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h10)) begin
+            readback_data_var[ad_hi(11'h10)][0] = hwif_in.status.busy.next;
+            readback_data_var[ad_hi(11'h10)][1] = field_storage.status.frame_done.value;
+            readback_data_var[ad_hi(11'h10)][8] = field_storage.status.direction_overflow.value;
+            readback_data_var[ad_hi(11'h10)][9] = field_storage.status.bad_pointer.value;
+            readback_data_var[ad_hi(11'h10)][10] = field_storage.status.step_limit.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h14)) begin
+            readback_data_var[ad_hi(11'h14)][11:0] = field_storage.size.width.value;
+            readback_data_var[ad_hi(11'h14)][27:16] = field_storage.size.height.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h18)) begin
+            readback_data_var[ad_hi(11'h18)][4:0] = field_storage.depth.depth.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h1c)) begin
+            readback_data_var[ad_hi(11'h1c)][0] = hwif_in.features.flat.next;
+            readback_data_var[ad_hi(11'h1c)][1] = hwif_in.features.light.next;
+            readback_data_var[ad_hi(11'h1c)][2] = hwif_in.features.mirrors.next;
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(ad_low(rd_mux_addr) == ad_low(11'h20 + (11)'(i0) * 11'h4)) begin
+                readback_data_var[ad_hi(11'h20 + (11)'(i0) * 11'h4)][31:0] = field_storage.position[i0].value.value;
+            end
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(ad_low(rd_mux_addr) == ad_low(11'h30 + (11)'(i0) * 11'h4)) begin
+                readback_data_var[ad_hi(11'h30 + (11)'(i0) * 11'h4)][15:0] = field_storage.look[i0].value.value;
+            end
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(ad_low(rd_mux_addr) == ad_low(11'h40 + (11)'(i0) * 11'h4)) begin
+                readback_data_var[ad_hi(11'h40 + (11)'(i0) * 11'h4)][15:0] = field_storage.right[i0].value.value;
+            end
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(ad_low(rd_mux_addr) == ad_low(11'h50 + (11)'(i0) * 11'h4)) begin
+                readback_data_var[ad_hi(11'h50 + (11)'(i0) * 11'h4)][15:0] = field_storage.up[i0].value.value;
+            end
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h60)) begin
+            readback_data_var[ad_hi(11'h60)][31:0] = hwif_in.cycles.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h64)) begin
+            readback_data_var[ad_hi(11'h64)][31:0] = hwif_in.rays.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h68)) begin
+            readback_data_var[ad_hi(11'h68)][31:0] = hwif_in.words_read.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h6c)) begin
+            readback_data_var[ad_hi(11'h6c)][31:0] = hwif_in.hits.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h70)) begin
+            readback_data_var[ad_hi(11'h70)][31:0] = hwif_in.stalls.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h74)) begin
+            readback_data_var[ad_hi(11'h74)][0] = field_storage.shading.flat.value;
+            readback_data_var[ad_hi(11'h74)][1] = field_storage.shading.light.value;
+            readback_data_var[ad_hi(11'h74)][15:8] = field_storage.shading.ambient.value;
+            readback_data_var[ad_hi(11'h74)][19:16] = field_storage.shading.bounces.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h78)) begin
+            readback_data_var[ad_hi(11'h78)][31:0] = field_storage.root.address.value;
+        end
+        for(int i0=0; i0<3; i0++) begin
+            if(ad_low(rd_mux_addr) == ad_low(11'h80 + (11)'(i0) * 11'h4)) begin
+                readback_data_var[ad_hi(11'h80 + (11)'(i0) * 11'h4)][31:0] = field_storage.light[i0].value.value;
+            end
+        end
+        readback_data_rt_c = readback_data_var;
+    end
+
+    logic [31:0] readback_data_rt[32];
+    logic readback_done_rt;
+    logic readback_err_rt;
+    logic [10:0] readback_addr_rt;
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            for(int i=0; i<32; i++) readback_data_rt[i] <= '0;
+            readback_done_rt <= '0;
+            readback_err_rt <= '0;
+            readback_addr_rt <= '0;
+        end else begin
+            readback_data_rt <= readback_data_rt_c;
+            readback_err_rt <= decoded_err;
+            readback_done_rt <= decoded_req & ~decoded_req_is_wr & ~decoded_req_is_external;
+            readback_addr_rt <= rd_mux_addr;
+        end
+    end
+
+
+    logic [31:0] readback_ext_block_data_rt_c;
+    logic readback_is_ext_block_c;
     always_comb begin
         automatic logic [31:0] readback_data_var;
+        automatic logic is_external_block_var;
         readback_data_var = '0;
-        if(rd_mux_addr == 11'h0) begin
-            readback_data_var[31:0] = 32'h56585254;
-        end
-        if(rd_mux_addr == 11'h4) begin
-            readback_data_var[7:0] = 8'h2;
-            readback_data_var[15:8] = 8'h0;
-        end
-        if(rd_mux_addr == 11'h8) begin
-            readback_data_var[7:0] = hwif_in.configuration.lanes.next;
-            readback_data_var[12:8] = hwif_in.configuration.max_depth.next;
-            readback_data_var[21:16] = hwif_in.configuration.position_bits.next;
-            readback_data_var[28:24] = hwif_in.configuration.block_bits.next;
-            readback_data_var[31] = hwif_in.configuration.banked.next;
-        end
-        if(rd_mux_addr == 11'hc) begin
-            readback_data_var[0] = field_storage.control.start.value;
-            readback_data_var[1] = field_storage.control.continuous.value;
-            readback_data_var[2] = field_storage.control.hold.value;
-            readback_data_var[3] = field_storage.control.soft_reset.value;
-        end
-        if(rd_mux_addr == 11'h10) begin
-            readback_data_var[0] = hwif_in.status.busy.next;
-            readback_data_var[1] = field_storage.status.frame_done.value;
-            readback_data_var[8] = field_storage.status.direction_overflow.value;
-            readback_data_var[9] = field_storage.status.bad_pointer.value;
-            readback_data_var[10] = field_storage.status.step_limit.value;
-        end
-        if(rd_mux_addr == 11'h14) begin
-            readback_data_var[11:0] = field_storage.size.width.value;
-            readback_data_var[27:16] = field_storage.size.height.value;
-        end
-        if(rd_mux_addr == 11'h18) begin
-            readback_data_var[4:0] = field_storage.depth.depth.value;
-        end
-        if(rd_mux_addr == 11'h1c) begin
-            readback_data_var[0] = hwif_in.features.flat.next;
-            readback_data_var[1] = hwif_in.features.light.next;
-            readback_data_var[2] = hwif_in.features.mirrors.next;
-        end
-        for(int i0=0; i0<3; i0++) begin
-            if(rd_mux_addr == 11'h20 + (11)'(i0) * 11'h4) begin
-                readback_data_var[31:0] = field_storage.position[i0].value.value;
-            end
-        end
-        for(int i0=0; i0<3; i0++) begin
-            if(rd_mux_addr == 11'h30 + (11)'(i0) * 11'h4) begin
-                readback_data_var[15:0] = field_storage.look[i0].value.value;
-            end
-        end
-        for(int i0=0; i0<3; i0++) begin
-            if(rd_mux_addr == 11'h40 + (11)'(i0) * 11'h4) begin
-                readback_data_var[15:0] = field_storage.right[i0].value.value;
-            end
-        end
-        for(int i0=0; i0<3; i0++) begin
-            if(rd_mux_addr == 11'h50 + (11)'(i0) * 11'h4) begin
-                readback_data_var[15:0] = field_storage.up[i0].value.value;
-            end
-        end
-        if(rd_mux_addr == 11'h60) begin
-            readback_data_var[31:0] = hwif_in.cycles.value.next;
-        end
-        if(rd_mux_addr == 11'h64) begin
-            readback_data_var[31:0] = hwif_in.rays.value.next;
-        end
-        if(rd_mux_addr == 11'h68) begin
-            readback_data_var[31:0] = hwif_in.words_read.value.next;
-        end
-        if(rd_mux_addr == 11'h6c) begin
-            readback_data_var[31:0] = hwif_in.hits.value.next;
-        end
-        if(rd_mux_addr == 11'h70) begin
-            readback_data_var[31:0] = hwif_in.stalls.value.next;
-        end
-        if(rd_mux_addr == 11'h74) begin
-            readback_data_var[0] = field_storage.shading.flat.value;
-            readback_data_var[1] = field_storage.shading.light.value;
-            readback_data_var[15:8] = field_storage.shading.ambient.value;
-            readback_data_var[19:16] = field_storage.shading.bounces.value;
-        end
-        if(rd_mux_addr == 11'h78) begin
-            readback_data_var[31:0] = field_storage.root.address.value;
-        end
-        for(int i0=0; i0<3; i0++) begin
-            if(rd_mux_addr == 11'h80 + (11)'(i0) * 11'h4) begin
-                readback_data_var[31:0] = field_storage.light[i0].value.value;
-            end
-        end
+        is_external_block_var = '0;
         if((rd_mux_addr >= 11'h400) && (rd_mux_addr <= 11'h400 + 11'h3ff)) begin
             readback_data_var = hwif_in.materials.rd_data;
+            is_external_block_var = 1'b1;
         end
-        readback_data = readback_data_var;
-        readback_done = decoded_req & ~decoded_req_is_wr & ~decoded_req_is_external;
+        readback_ext_block_data_rt_c = readback_data_var;
+        readback_is_ext_block_c = is_external_block_var;
+    end
+
+    logic [31:0] readback_ext_block_data_rt;
+    logic readback_is_ext_block;
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            readback_ext_block_data_rt <= '0;
+            readback_is_ext_block <= '0;
+        end else begin
+            readback_ext_block_data_rt <= readback_ext_block_data_rt_c;
+            readback_is_ext_block <= readback_is_ext_block_c;
+        end
+    end
+
+
+    // readback stage 2
+    always_comb begin
+        if(readback_is_ext_block) begin
+            readback_data = readback_ext_block_data_rt;
+        end else begin
+            readback_data = readback_data_rt[readback_addr_rt[10:6]];
+        end
+        readback_done = readback_done_rt;
         readback_err = '0;
     end
 
-    assign external_rd_ack = readback_external_rd_ack;
-    assign cpuif_rd_ack = readback_done | readback_external_rd_ack;
-    assign cpuif_rd_data = readback_data;
-    assign cpuif_rd_err = readback_err;
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            cpuif_rd_ack <= '0;
+            cpuif_rd_data <= '0;
+            cpuif_rd_err <= '0;
+            external_rd_ack <= '0;
+        end else begin
+            external_rd_ack <= readback_external_rd_ack;
+            cpuif_rd_ack <= readback_done | readback_external_rd_ack;
+            cpuif_rd_data <= readback_data;
+            cpuif_rd_err <= readback_err;
+        end
+    end
+
 endmodule
