@@ -2,15 +2,16 @@
 // different banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want
 // one bank: word {row, bank ^ lowest bits of row}.
 //
-// The first eight blocks, which is the octree's top where blocks are ordered breadth-first, are in distributed memory
-// as well, with a read port for each lane: near the root, where all rays pass, lanes do not meet.
+// The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, stand in private copies as
+// well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Without these copies one request
+// of twelve is refused, with them one of a hundred or two. (In a memory of few blocks, a quarter of them.)
 //
 // Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
 // Every lane that wants one of these rows gets it; the others get no ack_o and ask again at their ray's next turn.
 // A word comes five clocks after its address:
 //   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register; which lane is served | 4 to the lanes
 //
-// The access port takes port A of its bank.
+// The access port takes port A of its bank; when it writes to the top, it takes port A of every copy.
 module voxrt_banked_memory
   import voxrt_pkg::*;
 #(
@@ -43,28 +44,14 @@ module voxrt_banked_memory
   logic [BankRowBits-1:0] row   [Lanes];
   logic [BankRowBits-1:0] row_q [1:2] [Lanes];
 
-  // Of the first blocks.
-  localparam int unsigned TopBits = 6;
-  // Public, so that a simulation can fill it.
-  logic [PayloadBits:0] top_q[2**TopBits]  /* verilator public_flat_rw */;
-  logic [    Lanes-1:0] in_top, in_top_q[1:4];
-  logic [  TopBits-1:0] place_q[1:4] [Lanes];
+  localparam int unsigned TopBlockBits = BlockBits < 10 ? BlockBits - 2 : 8;
+  localparam int unsigned TopRowBits = TopBlockBits + 3 - BankBits;
 
-  always_ff @(posedge clk_i) begin
-    if (access_i && access_write_i && access_row_i[RowBits-1:TopBits] == '0) begin
-      top_q[access_row_i[TopBits-1:0]] <= access_word_i;
-    end
-    in_top_q[1] <= in_top & read_i;
-    for (int unsigned i = 0; i < Lanes; i++) place_q[1][i] <= TopBits'({block_i[i], octant_i[i]});
-    for (int unsigned s = 2; s <= 4; s++) begin
-      in_top_q[s] <= in_top_q[s-1];
-      place_q[s]  <= place_q[s-1];
-    end
-  end
+  logic [Lanes-1:0] in_top, in_top_q[1:2];
 
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      in_top[i] = block_i[i][BlockBits-1:TopBits-3] == '0;
+      in_top[i] = block_i[i][BlockBits-1:TopBlockBits] == '0;
       row[i]  = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
       bank[i] = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
     end
@@ -74,6 +61,8 @@ module voxrt_banked_memory
     read_q[1] <= rst_ni ? read_i & ~in_top : '0;
     read_q[2] <= rst_ni ? read_q[1] : '0;
     read_q[3] <= rst_ni ? read_q[2] : '0;
+    in_top_q[1] <= read_i & in_top;
+    in_top_q[2] <= in_top_q[1];
     bank_q[1] <= bank;
     bank_q[2] <= bank_q[1];
     bank_q[3] <= bank_q[2];
@@ -90,7 +79,7 @@ module voxrt_banked_memory
   // The access port, kept in step.
   logic                 access_q     [1:4];
   logic                 access_write_q;
-  logic [BankRowBits-1:0] access_row_q;
+  logic [BankRowBits-1:0] access_row_q[1:2];
   logic [   BankBits-1:0] access_bank_q[1:4];
   logic [PayloadBits:0] access_word_q[1:2];
   logic                 access_write2_q;
@@ -98,7 +87,8 @@ module voxrt_banked_memory
   always_ff @(posedge clk_i) begin
     access_q[1]      <= access_i && rst_ni;
     access_write_q   <= access_write_i;
-    access_row_q     <= access_row_i[RowBits-1:BankBits];
+    access_row_q[1]  <= access_row_i[RowBits-1:BankBits];
+    access_row_q[2]  <= access_row_q[1];
     access_bank_q[1] <= access_row_i[BankBits-1:0] ^ access_row_i[2*BankBits-1:BankBits];
     access_word_q[1] <= access_word_i;
     access_word_q[2] <= access_word_q[1];
@@ -148,7 +138,7 @@ module voxrt_banked_memory
       last_q        <= mirror(downwards & -downwards);
       accessed2_q   <= access_q[1] && access_bank_q[1] == BankBits'(k);
       a_lane2_q[k]  <= !(access_q[1] && access_bank_q[1] == BankBits'(k));
-      a_row2_q[k]  <= access_q[1] && access_bank_q[1] == BankBits'(k) ? access_row_q : a_row;
+      a_row2_q[k]  <= access_q[1] && access_bank_q[1] == BankBits'(k) ? access_row_q[1] : a_row;
       b_row2_q[k]  <= b_row;
     end
 
@@ -168,6 +158,39 @@ module voxrt_banked_memory
     );
   end
 
+  // 2 the top, where a word stands in the row that its bank and the row in it make.
+  logic [TopBlockBits-1:0] top_block [Lanes];
+  logic [             2:0] top_octant[Lanes];
+  logic [       Lanes-1:0] from_top;
+  logic [   PayloadBits:0] top_word  [Lanes], unused_top_access;
+  logic                    writes_top;
+
+  assign writes_top = access_q[2] && access_write2_q && access_row_q[2][BankRowBits-1:TopRowBits] == '0;
+
+  always_comb begin
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      {top_block[i], top_octant[i]} = {row_q[2][i][TopRowBits-1:0], bank_q[2][i]};
+    end
+  end
+
+  voxrt_private_memory #(
+    .Lanes      (Lanes),
+    .BlockBits  (TopBlockBits),
+    .PayloadBits(PayloadBits)
+  ) u_top (
+    .clk_i,
+    .access_i      (writes_top),
+    .access_write_i(1'b1),
+    .access_row_i  ({access_row_q[2][TopRowBits-1:0], access_bank_q[2]}),
+    .access_word_i (access_word_q[2]),
+    .access_word_o (unused_top_access),
+    .read_i        (in_top_q[2]),
+    .block_i       (top_block),
+    .octant_i      (top_octant),
+    .ack_o         (from_top),
+    .word_o        (top_word)
+  );
+
   // 2, 3 which lane is served; 4 to the lanes.
   logic [Lanes-1:0]     from_a_q[3:4], from_b_q[3:4], ack_q;
   logic [PayloadBits:0] word_q[Lanes], access_out_q;
@@ -176,17 +199,16 @@ module voxrt_banked_memory
     for (int unsigned i = 0; i < Lanes; i++) begin
       from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_row2_q[bank_q[2][i]] == row_q[2][i];
       from_b_q[3][i] <= read_q[2][i] && b_row2_q[bank_q[2][i]] == row_q[2][i];
-      word_q[i]      <= in_top_q[4][i] ? top_q[place_q[4][i]] :
-          from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
+      word_q[i]      <= from_top[i] ? top_word[i] : from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
     end
     from_a_q[4]  <= from_a_q[3];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | in_top_q[4] : '0;
+    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | from_top : '0;
     access_out_q <= a_word[access_bank_q[4]];
   end
 
   logic unused;
-  assign unused        = access_q[4] ^ (^read_q[3]);
+  assign unused        = access_q[4] ^ (^read_q[3]) ^ (^unused_top_access);
   assign ack_o         = ack_q;
   assign word_o        = word_q;
   assign access_word_o = access_out_q;
