@@ -6,10 +6,10 @@
 // well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 a side,
 // one request in 12 is refused without these copies, and one in 150 with them. (A quarter of a memory of few blocks.)
 //
-// Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
-// Every lane that asks for the same word gets it; the others get no ack_o and ask again at their ray's next turn.
-// A word comes five clocks after its address:
-//   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register; which lane is served | 4 to the lanes
+// Each bank serves two lanes a clock: the first that asks from a rotating start upwards, and the last. The others get no
+// ack_o and ask again at their ray's next turn, even for a word that another lane gets: a ray reads a word but once, so
+// that no word can be in demand more than once a pixel. A word comes five clocks after its address:
+//   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register | 4 to the lanes
 //
 // The access port takes port A of its bank; when it writes to the top, it takes port A of every copy.
 module voxrt_banked_memory
@@ -92,7 +92,7 @@ module voxrt_banked_memory
   // 0 choose: a lane is the first, or the last, of those that ask its bank. Lanes from the rotating start on go before
   // the others.
   logic [Lanes-1:0] late_q, first, last, first_q, last_q;
-  logic [Lanes-1:0] same_bank[Lanes], same_bank_q[Lanes], in_bank_q[Banks];
+  logic [Lanes-1:0] same_bank[Lanes], in_bank_q[Banks];
 
   function automatic logic is_before(int unsigned i, int unsigned j, logic i_late, logic j_late);
     return i_late == j_late ? i < j : j_late;
@@ -116,10 +116,9 @@ module voxrt_banked_memory
   end
 
   always_ff @(posedge clk_i) begin
-    late_q      <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
-    first_q     <= first;
-    last_q      <= last;
-    same_bank_q <= same_bank;
+    late_q  <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
+    first_q <= first;
+    last_q  <= last;
     for (int unsigned k = 0; k < Banks; k++) begin
       for (int unsigned i = 0; i < Lanes; i++) in_bank_q[k][i] <= bank[i] == BankBits'(k);
     end
@@ -195,24 +194,19 @@ module voxrt_banked_memory
     .word_o        (top_word)
   );
 
-  // 1 who wants the words that are read; 2, 3 which lane is served; 4 to the lanes.
-  logic [Lanes-1:0]     a_lane2_q, b_lane2_q, same_word2_q[Lanes];
-  logic [Lanes-1:0]     from_a_q[3:4], from_b_q[3:4], ack_q;
+  // 4 to the lanes.
+  logic [Lanes-1:0]     from_a_q[2:4], from_b_q[2:4], ack_q;
   logic [PayloadBits:0] word_q[Lanes], access_out_q;
 
   always_ff @(posedge clk_i) begin
-    b_lane2_q <= last_q;
     for (int unsigned i = 0; i < Lanes; i++) begin
-      a_lane2_q[i] <= first_q[i] && !(access_q[1] && access_bank_q[1] == bank_q[1][i]);
-      for (int unsigned j = 0; j <= i; j++) begin
-        same_word2_q[i][j] <= same_bank_q[i][j] && row_q[1][i] == row_q[1][j];
-        same_word2_q[j][i] <= same_bank_q[i][j] && row_q[1][i] == row_q[1][j];
-      end
-      from_a_q[3][i] <= (a_lane2_q & same_word2_q[i]) != '0;
-      from_b_q[3][i] <= (b_lane2_q & same_word2_q[i]) != '0;
+      from_a_q[2][i] <= first_q[i] && !(access_q[1] && access_bank_q[1] == bank_q[1][i]);
       word_q[i]      <= from_top[i] ? top_word[i] : from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
     end
+    from_a_q[3]  <= from_a_q[2];
     from_a_q[4]  <= from_a_q[3];
+    from_b_q[2]  <= last_q;
+    from_b_q[3]  <= from_b_q[2];
     from_b_q[4]  <= from_b_q[3];
     ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | from_top : '0;
     access_out_q <= a_word[access_bank_q[4]];
