@@ -53,11 +53,12 @@ public:
             for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
                     variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
-            std::vector<uint32_t*> tops = copies(memory + ".gen_banked.u_memory.u_top");
+            const std::size_t top_rows = 8 * 256; // voxrt_banked_memory copies 256 blocks.
+            const std::vector<uint32_t*> tops = copies(memory + ".gen_banked.u_memory.u_top");
             for (std::size_t row = 0; row + 1 < words.size(); ++row) {
                 const std::size_t bank = (row ^ row >> 4) & 15;
                 banks[bank][row >> 4] = memory_word(words[row + 1]);
-                if (row < 2048)
+                if (row < top_rows)
                     for (uint32_t* top : tops)
                         top[(row & ~std::size_t{15}) | bank] = memory_word(words[row + 1]);
             }
