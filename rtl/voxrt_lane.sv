@@ -2,31 +2,27 @@
 // octree word. A memory that takes longer than two clocks adds a stage and a ray a clock, before stage 1.
 //
 //   stage     work                                                                        state of a slot, read
-//   0 fetch   the memory takes the address                                                mirrored, dead
+//   0 fetch   the memory takes the address                                                -
 //   1 wait    the memory's output register; distance to the cell's near planes            -
-//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weight
+//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weights, by row
 //   3 product distance x weight, in parts; the pointer goes onto the stack                -
 //   4         parts                                                                       -
-//   5         T of three planes                                                           key, dead
-//   6 compare leaf: T among themselves; pointer: T with the ray's key                     corner, size
+//   5         T of three planes                                                           key
+//   6 compare leaf: T among themselves; pointer: T with the ray's key                     -
 //   7 exit    leaf: the axis that it is left by, and the corner's place on that axis      -
 //   8 add     the size to that place                                                      -
 //   9 turn    the size of the next cell; the smallest T is the new key; a new ray in the  tag
 //             place of one that ended
-//   10 corner the next cell's corner and octant; the stack is read                        mirrored
+//   10 corner the next cell's corner and octant; the stack is read                        -
 //   11 block  the block from the stack, or the root's                                     -
+//
+// What many stages want of a ray goes round with it, in registers: its cell, which axes are mirrored and dead. The rest
+// stands in memories, by slot; its weights where they were put when the ray came, by row.
 //
 // A ray's key (T, face) is the last plane that it crossed. Corner and size (one-hot) are those of the cell read; its
 // octant is the corner's bit at size. Planes of cells at that time crossed are those with keys <= the ray's key, so
 // no two planes tie and a pointer's child is found by three compares. All T that are ever compared lie within the
 // world's side of each other, so that T modulo 2**KeyBits is enough.
-//
-// The next corner is the old one with one bit set, that of the next size:
-//   pointer   size / 2, on the axes whose middle plane is behind
-//   leaf      place + size on the exit axis sets one bit and clears those below it, down to size. The bit set is the
-//             size of the cell that follows, below the common ancestor, whose block is on the stack under that size;
-//             the bits cleared are cleared on all axes. Outside the world when the bit is the world's own size.
-//   new ray   half the world, on the axes of its first octant; all other bits are cleared
 //
 // The ring never stops: rays start only when the pixel buffer has a place for them. A word that the memory did not
 // deliver (mem_ack_i low) is asked for again at the ray's next turn.
@@ -41,6 +37,7 @@ module voxrt_lane
   parameter  int unsigned BlockBits    = 12,
   parameter  int unsigned TagBits      = 8,
   parameter  int unsigned MemoryClocks = 2,
+  parameter  int unsigned RowBits      = 5,
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
@@ -55,6 +52,7 @@ module voxrt_lane
   input  logic signed [  OriginBits-1:0] origin_i          [3],
   input  logic signed [  OriginBits-1:0] mirrored_origin_i [3],
   input  logic        [      MaxDepth:0] world_i,                // One-hot: the world's side.
+  input  logic        [    MaxDepth-1:0] beyond_i,               // The bits above the world's places.
   input  logic        [   PayloadBits:0] root_i,                 // A leaf only with Light or Mirrors.
   input  logic                           light_i,
   input  logic        [  BounceBits-1:0] bounces_i,              // 0: no material is a mirror.
@@ -65,6 +63,12 @@ module voxrt_lane
   input  logic                           table_write_i,
   input  material_t                      table_material_i,
   input  row_t                           table_row_i,
+  // A ray has come, and will be offered below: its weights, in a free row of the memory that holds them until it ends.
+  input  logic                           arrives_i,
+  input  logic        [     RowBits-1:0] arrival_row_i,
+  input  logic        [  WeightBits-1:0] arrival_weight_i  [3],
+  output logic                           releases_o,             // A row is free again.
+  output logic        [     RowBits-1:0] released_row_o,
   // Rays, as voxrt_ray_setup makes them; taken in order.
   input  logic                           ray_valid_i,
   output logic                           ray_ready_o,
@@ -73,7 +77,7 @@ module voxrt_lane
   input  logic        [             2:0] ray_mirrored_i,
   input  logic        [             2:0] ray_dead_i,
   input  logic        [             2:0] ray_octant_i,
-  input  logic        [  WeightBits-1:0] ray_weight_i      [3],
+  input  logic        [     RowBits-1:0] ray_row_i,
   input  logic        [     KeyBits-1:0] ray_entry_time_i,
   input  face_e                          ray_entry_face_i,
   // With Light or Mirrors; mirrored frame. A shadow ray has its place in the pixel buffer already.
@@ -110,7 +114,7 @@ module voxrt_lane
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
   localparam int unsigned Stages = 12;
   localparam int unsigned Extra = MemoryClocks - 2;
-  localparam int unsigned Slots = Stages + Extra;
+  localparam int unsigned Slots = lane_slots(MemoryClocks);
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
 
@@ -130,22 +134,29 @@ module voxrt_lane
 
   always_comb for (int unsigned s = 0; s < Stages; s++) slot[s] = slot_q[s+Extra];
 
+  // What goes round with a ray, and from stage 0 to 6. Registers keep what they have where no ray is.
+  localparam int unsigned CellStages = 7 + Extra;
+  logic [         2:0] mirrored_q[Slots], dead_q[Slots];
+  logic [ RowBits-1:0] row_q     [Slots];
+  logic [CellBits-1:0] corner_q  [CellStages][3];
+  logic [CellBits-1:0] size_q    [CellStages];
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned s = 1; s < CellStages; s++) begin
+      if (active_q[s-1]) begin
+        corner_q[s] <= corner_q[s-1];
+        size_q[s]   <= size_q[s-1];
+      end
+    end
+  end
+
   // State by slot.
-  logic [         2:0] mirrored_q[Slots];
-  logic [         2:0] dead_q    [Slots];
-  logic [ KeyBits-1:0] key_time_q[Slots];
-  face_e               key_face_q[Slots];
-  logic [CellBits-1:0] corner_x_q[Slots], corner_y_q[Slots], corner_z_q[Slots];
-  logic [CellBits-1:0] size_q    [Slots];
+  logic [KeyBits-1:0] key_time_q[Slots];
+  face_e              key_face_q[Slots];
 
   // 0 fetch.
   logic [BlockBits-1:0] block0_q;
   logic [2:0]           octant0_q;
-  logic [CellBits-1:0]  corner0_q[Extra+1][3];
-  logic [CellBits-1:0]  size0_q  [Extra+1];
-  logic [CellBits-1:0]  corner1_q[3];
-  logic [CellBits-1:0]  size1_q;
-  logic [2:0]           mirrored1_q, dead1_q;
   logic                 sinks0, sinks2, sinks3;  // The ray has hit, and looks for the sub-cell.
   logic                 shadow1, shadow2;        // It is a shadow ray.
   logic                 root_is_leaf;
@@ -156,49 +167,28 @@ module voxrt_lane
   assign mem_block_o  = block0_q;
   assign mem_octant_o = octant0_q;
 
-  always_ff @(posedge clk_i) begin
-    for (int unsigned s = 1; s <= Extra; s++) begin
-      corner0_q[s] <= corner0_q[s-1];
-      size0_q[s]   <= size0_q[s-1];
-    end
-    corner1_q   <= corner0_q[Extra];
-    size1_q     <= size0_q[Extra];
-    mirrored1_q <= mirrored_q[slot[0]];
-    dead1_q     <= dead_q[slot[0]];
-  end
-
-  // 1 wait.
-  logic [CellBits-1:0] size2_q;
-
-  always_ff @(posedge clk_i) size2_q <= size1_q;
-
   // 2 decode.
-  typedef enum logic [1:0] {
-    Retry,    // No word came.
-    Descend,  // Into the block of a pointer.
-    Leave,    // An empty leaf, through one of its faces.
-    Finish    // The ray has ended: hit or error.
-  } action_e;
-
   logic                 leaf, bad_pointer, step_limit, arrived;
   logic [PayloadBits:0] word;
   action_e              action;
+  logic [CellBits-1:0]  size2;
 
+  assign size2       = size_q[2+Extra];
   assign word        = root_is_leaf ? root_i : mem_word_i;
   assign arrived     = (mem_ack_i || root_is_leaf) && !sinks2;
   assign leaf        = word[PayloadBits];
   assign bad_pointer = leaf && word[8];
-  assign step_limit  = !leaf && size2_q[SubBits];
+  assign step_limit  = !leaf && size2[SubBits];
 
   always_comb begin
     action = Finish;
-    if (sinks2) action = size2_q[0] ? Retry : Descend;
+    if (sinks2) action = size2[0] ? Retry : Descend;
     else if (!arrived) action = Retry;
-    else if (!leaf && !size2_q[SubBits]) action = Descend;
+    else if (!leaf && !size2[SubBits]) action = Descend;
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
-  action_e              action3_q, action4_q, action5_q, action6_q, action7_q, action8_q;
+  action_e              action3_q, action4_q, action5_q, action6_q;
   logic [BlockBits-1:0] block3_q;
   material_t            material3_q, material4_q, material5_q, material6_q;
   material_t            material7_q, material8_q, material9_q;
@@ -215,7 +205,7 @@ module voxrt_lane
     action3_q      <= action;
     block3_q       <= word[BlockBits-1:0];
     material3_q    <= leaf && !bad_pointer ? word[7:0] : '0;
-    child_level3_q <= level_of(size2_q >> 1);
+    child_level3_q <= level_of(size2 >> 1);
     bad_pointer_q  <= active_q[2+Extra] && arrived && bad_pointer;
     step_limit_q   <= active_q[2+Extra] && arrived && step_limit;
   end
@@ -225,7 +215,7 @@ module voxrt_lane
 
   // 1 to 5: T of planes. A ray that hits, or looks for the sub-cell, needs the middle planes of its leaf.
   logic                       starts, reflects;
-  face_e                      key_face9_q;
+  face_e                      key_face9;
   logic        [KeyBits-1:0]  time6[3];
   logic signed [MaxDepth+1:0] shift9;
 
@@ -233,34 +223,36 @@ module voxrt_lane
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Slots       (Slots),
+    .RowBits     (RowBits),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_times (
     .clk_i,
     .origin_i,
     .mirrored_origin_i,
+    .arrives_i,
+    .arrival_row_i,
+    .weight_i    (arrival_weight_i),
     .slot1_i     (slot[1]),
-    .corner1_i   (corner1_q),
-    .mirrored1_i (mirrored1_q),
-    .dead1_i     (dead1_q),
+    .corner1_i   (corner_q[1+Extra]),
+    .mirrored1_i (mirrored_q[1+Extra]),
+    .dead1_i     (dead_q[1+Extra]),
     .shadow1_i   (shadow1),
-    .slot2_i     (slot[2]),
-    .size2_i     (size2_q),
+    .row2_i      (row_q[2+Extra]),
+    .size2_i     (size2),
     .shadow2_i   (shadow2),
     .takes_far_i (Light ? action == Leave : leaf),
     .slot9_i     (slot[9]),
     .starts_i    (starts),
-    .weight_i    (ray_weight_i),
     .ray_origin_i,
     .reflects_i  (reflects),
-    .face_i      (key_face9_q),
+    .face_i      (key_face9),
     .shift_i     (shift9),
     .time_o      (time6)
   );
 
   logic [KeyBits-1:0] key_time6_q;
   face_e              key_face6_q;
-  logic [        2:0] dead6_q;
 
   always_ff @(posedge clk_i) begin
     action4_q   <= action3_q;
@@ -269,116 +261,61 @@ module voxrt_lane
     material4_q <= material3_q;
     material5_q <= material4_q;
     material6_q <= material5_q;
+    material7_q <= material6_q;
+    material8_q <= material7_q;
+    material9_q <= material8_q;
     key_time6_q <= key_time_q[slot[5]];
     key_face6_q <= key_face_q[slot[5]];
-    dead6_q     <= dead_q[slot[5]];
   end
 
-  // 6 compare. Leaf: is x before y, y before z, z before x; pointer: is the middle plane before the key, on a dead
-  // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
-  logic        [ KeyBits-1:0] other    [3];
-  logic        [   KeyBits:0] difference[3];
-  logic        [         2:0] first;  // Of equals.
-  logic        [         2:0] before7_q;
-  logic        [ KeyBits-1:0] time7_q  [3];
-  face_e                      key_face7_q, key_face8_q;
-  logic        [CellBits-1:0] corner7_q[3], size7_q;
-  logic        [         2:0] dead7_q;
+  // 6 to 10: the next cell.
+  logic                finished9, leaves9, leaves_world9, smallest9, renews;
+  logic [CellBits-1:0] top_size, corner8[3], corner9[3], size10, corner11[3], size11;
+  logic [         2:0] set9, turned_set9, mirrored9, octant11;
+  logic [ KeyBits-1:0] exit_time9[3];
+  face_e               key_face8, exit_face9;
 
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      other[a]      = action6_q == Leave ? time6[(a+1)%3] : key_time6_q;
-      first[a]      = action6_q == Leave ? a != 2 : 2'(a) <= key_face6_q;
-      difference[a] = {time6[a], 1'b0} - {other[a], first[a]};
-    end
-  end
-
-  always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      before7_q[a] <= difference[a][KeyBits];
-      if (dead6_q[a] && action6_q != Leave) before7_q[a] <= time6[a][KeyBits-1];
-    end
-  end
-
-  always_ff @(posedge clk_i) begin
-    time7_q      <= time6;
-    key_face7_q  <= key_face6_q;
-    corner7_q[0] <= corner_x_q[slot[6]];
-    corner7_q[1] <= corner_y_q[slot[6]];
-    corner7_q[2] <= corner_z_q[slot[6]];
-    size7_q      <= size_q[slot[6]];
-    dead7_q      <= dead6_q;
-    action7_q    <= action6_q;
-    material7_q  <= material6_q;
-  end
-
-  // 7 exit.
-  logic                      x_before_y, y_before_z, x_before_z;
-  logic       [         2:0] exit;  // One-hot.
-  face_e                     exit_face, exit_face8_q, exit_face9_q;
-  logic       [ KeyBits-1:0] time8_q  [3], time9_q[3];
-  logic       [CellBits-1:0] corner8_q[3], corner9_q[3];
-  logic       [CellBits-1:0] size8_q, place8_q;
-  logic       [         2:0] set8_q, set9_q;  // Axes on which the corner gets the next size's bit.
-  logic                      dead8_q, descends7, descends8_q;
-
-  assign x_before_y = !dead7_q[0] && (dead7_q[1] || before7_q[0]);
-  assign y_before_z = !dead7_q[1] && (dead7_q[2] || before7_q[1]);
-  assign x_before_z = !dead7_q[0] && (dead7_q[2] || !before7_q[2]);
-  assign exit       = {!x_before_z && !y_before_z, !x_before_y && y_before_z, x_before_y && x_before_z};
-  assign exit_face  = exit[0] ? FaceX : exit[1] ? FaceY : FaceZ;
-  assign descends7  = action7_q == Descend || (Light && action7_q == Finish);
-
-  always_ff @(posedge clk_i) begin
-    // Registers keep what they have where no ray is.
-    if (active_q[7+Extra]) begin
-      time8_q   <= time7_q;
-      corner8_q <= corner7_q;
-    end
-    action8_q    <= action7_q;
-    material8_q  <= material7_q;
-    key_face8_q  <= key_face7_q;
-    exit_face8_q <= exit_face;
-    size8_q      <= size7_q;
-    place8_q     <= corner7_q[exit_face];
-    dead8_q      <= dead7_q == '1;
-    descends8_q  <= descends7;
-    set8_q       <= action7_q == Leave ? exit : descends7 ? before7_q : '0;
-  end
-
-  // 8 add.
-  logic [CellBits:0]   sum9_q;
-  logic [CellBits-1:0] place9_q, inner_size9_q;
-  logic                leaves9_q, finished9_q;
-  face_e               face9_q;
-
-  always_ff @(posedge clk_i) begin
-    if (active_q[8+Extra]) begin
-      time9_q   <= time8_q;
-      corner9_q <= corner8_q;
-    end
-    sum9_q        <= {1'b0, place8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
-    place9_q      <= place8_q;
-    inner_size9_q <= action8_q == Leave ? '0 : descends8_q ? size8_q >> 1 : size8_q;
-    set9_q        <= set8_q;
-    exit_face9_q  <= exit_face8_q;
-    leaves9_q     <= action8_q == Leave;
-    finished9_q   <= action8_q == Finish || (action8_q == Leave && dead8_q);
-    material9_q   <= material8_q;
-    face9_q       <= material8_q == '0 ? FaceNone : key_face8_q;
-    key_face9_q   <= key_face8_q;
-  end
-
-  // 9 turn.
-  logic                leaves, continues, renews;
-  logic [CellBits-1:0] corner10_q[3], size10_q, cleared10_q, top_size;
-  logic [         2:0] set10_q, set9, mirrored9;
-  logic [ KeyBits-1:0] keys     [4];
-  face_e               key_face;
-
-  assign leaves   = (sum9_q[CellBits:SubBits] & world_i) != '0;
   assign renews   = starts || reflects;
   assign top_size = CellBits'(world_i[MaxDepth:1]) << SubBits;
+
+  voxrt_next_cell #(
+    .MaxDepth(MaxDepth),
+    .Light   (Light)
+  ) u_next_cell (
+    .clk_i,
+    .beyond_i,
+    .top_size_i    (top_size),
+    .active_i      (active_q[8+Extra:6+Extra]),
+    .action_i      (action6_q),
+    .time_i        (time6),
+    .key_time_i    (key_time6_q),
+    .key_face_i    (key_face6_q),
+    .dead_i        (dead_q[6+Extra]),
+    .corner_i      (corner_q[6+Extra]),
+    .size_i        (size_q[6+Extra]),
+    .corner8_o     (corner8),
+    .key_face8_o   (key_face8),
+    .finished_o    (finished9),
+    .leaves_cell_o (leaves9),
+    .leaves_world_o(leaves_world9),
+    .corner9_o     (corner9),
+    .key_face9_o   (key_face9),
+    .set_o         (set9),
+    .smallest_o    (smallest9),
+    .exit_time_o   (exit_time9),
+    .exit_face_o   (exit_face9),
+    .renews_i      (renews),
+    .set_i         (starts ? ray_octant_i : turned_set9),
+    .size10_o      (size10),
+    .corner11_o    (corner11),
+    .size11_o      (size11),
+    .octant11_o    (octant11)
+  );
+
+  // 9 turn.
+  logic               continues, resolves;
+  logic [KeyBits-1:0] keys[4];
+  face_e              key_face;
 
   voxrt_lane_turn #(
     .MaxDepth(MaxDepth),
@@ -404,17 +341,16 @@ module voxrt_lane
     .shadow2_o    (shadow2),
     .sinks3_o     (sinks3),
     .material3_i  (material3_q),
-    .corner8_i    (corner8_q),
-    .key_face8_i  (key_face8_q),
+    .corner8_i    (corner8),
+    .key_face8_i  (key_face8),
     .active_i     (active_q[9+Extra]),
-    .finishes_i   (finished9_q || leaves),
+    .finishes_i   (finished9 || leaves_world9),
     .material_i   (material9_q),
-    .face_i       (face9_q),
-    .key_face_i   (key_face9_q),
-    .mirrored_i   (mirrored_q[slot[9]]),
-    .corner_i     (corner9_q),
-    .set_i        (set9_q),
-    .smallest_i   (inner_size9_q[0]),
+    .key_face_i   (key_face9),
+    .mirrored_i   (mirrored_q[9+Extra]),
+    .corner_i     (corner9),
+    .set_i        (set9),
+    .smallest_i   (smallest9),
     .ray_valid_i,
     .ray_ready_o,
     .ray_resolved_i,
@@ -425,9 +361,10 @@ module voxrt_lane
     .starts_o     (starts),
     .reflects_o   (reflects),
     .continues_o  (continues),
+    .resolves_o   (resolves),
     .shift_o      (shift9),
     .mirrored_o   (mirrored9),
-    .set_o        (set9),
+    .set_o        (turned_set9),
     .take_o,
     .take_ready_i,
     .take_tag_i,
@@ -444,60 +381,62 @@ module voxrt_lane
     .request_place_o
   );
 
+  assign releases_o     = resolves || (active_q[9+Extra] && !continues);
+  assign released_row_o = resolves ? ray_row_i : row_q[9+Extra];
+
   // FaceNone stands for a new ray's time.
-  assign key_face = face_e'(exit_face9_q | {2{starts}});
-  assign keys     = '{time9_q[0], time9_q[1], time9_q[2], ray_entry_time_i};
+  assign key_face = face_e'(exit_face9 | {2{starts}});
+  assign keys     = '{exit_time9[0], exit_time9[1], exit_time9[2], ray_entry_time_i};
 
   always_ff @(posedge clk_i) begin
-    size10_q    <= renews ? top_size : inner_size9_q | (sum9_q[CellBits-1:0] & ~place9_q);
-    cleared10_q <= place9_q & ~sum9_q[CellBits-1:0];
-    set10_q     <= starts ? ray_octant_i : set9;
-    corner10_q  <= corner9_q;
-    if (renews) corner10_q <= '{default: '0};
-    active_q          <= {active_q[Slots-2:0], active_q[Slots-1]};
+    for (int unsigned s = 1; s < Slots; s++) begin
+      if (active_q[s-1]) begin
+        mirrored_q[s] <= mirrored_q[s-1];
+        dead_q[s]     <= dead_q[s-1];
+        row_q[s]      <= row_q[s-1];
+      end
+    end
+    if (active_q[Slots-1]) begin
+      mirrored_q[0] <= mirrored_q[Slots-1];
+      dead_q[0]     <= dead_q[Slots-1];
+      row_q[0]      <= row_q[Slots-1];
+    end
+    if (renews) mirrored_q[10+Extra] <= starts ? ray_mirrored_i : mirrored9;
+    if (starts) begin
+      dead_q[10+Extra] <= ray_dead_i;
+      row_q[10+Extra]  <= ray_row_i;
+    end
+    active_q           <= {active_q[Slots-2:0], active_q[Slots-1]};
     active_q[10+Extra] <= starts || continues;
     if (!rst_ni) active_q <= '0;
-    if (starts || leaves9_q) begin
+    if (starts || leaves9) begin
       key_time_q[slot[9]] <= keys[key_face];
-      key_face_q[slot[9]] <= starts ? ray_entry_face_i : exit_face9_q;
+      key_face_q[slot[9]] <= starts ? ray_entry_face_i : exit_face9;
     end
-    if (starts) dead_q[slot[9]] <= ray_dead_i;
-    if (renews) mirrored_q[slot[9]] <= starts ? ray_mirrored_i : mirrored9;
   end
 
   // 10 corner. The stack has the blocks of cells by slot and size, in block RAM.
   (* ram_style = "block" *)
   logic [BlockBits-1:0] stack_q[2 ** (SlotBits + LevelBits)];
-  logic [CellBits-1:0]  corner11_q[3], size11_q;
   logic [BlockBits-1:0] block11_q;
-  logic [2:0]           octant11_q;
+  logic [          2:0] mirrored11;
   logic                 top11_q;
+
+  assign mirrored11 = mirrored_q[11+Extra];
 
   always_ff @(posedge clk_i) begin
     if (action3_q == Descend && !sinks3) stack_q[{slot[3], child_level3_q}] <= block3_q;
-    block11_q <= stack_q[{slot[10], level_of(size10_q)}];
-  end
-
-  always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      corner11_q[a] <= (corner10_q[a] & ~cleared10_q) | (set10_q[a] ? size10_q : '0);
-      octant11_q[a] <= (set10_q[a] || (corner10_q[a] & size10_q) != '0) != mirrored_q[slot[10]][a];
-    end
-    size11_q <= size10_q;
-    top11_q  <= (size10_q & top_size) != '0;
+    block11_q <= stack_q[{slot[10], level_of(size10)}];
+    top11_q   <= (size10 & top_size) != '0;
   end
 
   // 11 block.
   always_ff @(posedge clk_i) begin
-    block0_q     <= top11_q ? root_i[BlockBits-1:0] : block11_q;
-    octant0_q    <= octant11_q;
-    corner0_q[0] <= corner11_q;
-    size0_q[0]   <= size11_q;
-
-    corner_x_q[slot[11]] <= corner11_q[0];
-    corner_y_q[slot[11]] <= corner11_q[1];
-    corner_z_q[slot[11]] <= corner11_q[2];
-    size_q[slot[11]]     <= size11_q;
+    block0_q  <= top11_q ? root_i[BlockBits-1:0] : block11_q;
+    octant0_q <= octant11 ^ mirrored11;
+    if (active_q[11+Extra]) begin
+      corner_q[0] <= corner11;
+      size_q[0]   <= size11;
+    end
   end
-
 endmodule

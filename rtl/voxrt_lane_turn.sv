@@ -53,7 +53,6 @@ module voxrt_lane_turn
   input  logic                       active_i,
   input  logic                       finishes_i,
   input  material_t                  material_i,
-  input  face_e                      face_i,                  // FaceNone without material.
   input  face_e                      key_face_i,
   input  logic        [         2:0] mirrored_i,
   input  logic        [CellBits-1:0] corner_i           [3],
@@ -71,6 +70,7 @@ module voxrt_lane_turn
   output logic                       starts_o,                // The ray that waited starts.
   output logic                       reflects_o,              // The ray at hand does, anew.
   output logic                       continues_o,             // The slot keeps its ray.
+  output logic                       resolves_o,              // The ray that waited has its answer, and needs no slot.
   output logic signed [MaxDepth+1:0] shift_o,                 // Of a reflected ray: side - 2 plane ...
   output logic        [         2:0] mirrored_o,              // ... and its frame.
   output logic        [         2:0] set_o,                   // Of a reflected ray: the root's octant; else set_i.
@@ -91,15 +91,17 @@ module voxrt_lane_turn
   output logic        [PlaceBits-1:0] request_place_o   [3]
 );
   logic [TagBits-1:0] tag_q[Slots];
-  logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends, resolves;
+  face_e              face;  // FaceNone without material.
+  logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends;
   logic               sinks9, shadow9, turned_away;
   pixel_t             pixel;
   material_t          sinking_material;
   shade_e             shade;
   mirrors_t           met;
 
+  assign face         = material_i == '0 ? FaceNone : key_face_i;
   assign finishes     = active_i && finishes_i;
-  assign meets_face   = finishes && face_i != FaceNone && !shadow9;
+  assign meets_face   = finishes && face != FaceNone && !shadow9;
   assign is_lightable = Light && meets_face && light_i && !reflects_o && !reflects_out && !shows_mean;
   assign sinks        = is_lightable && !turned_away;
   assign requests     = Light && active_i && sinks9 && smallest_i &&
@@ -108,20 +110,20 @@ module voxrt_lane_turn
   assign continues_o  = active_i && !ends && !requests;
 
   assign starts_o = ray_valid_i && !ray_resolved_i && (ray_shadow_i || take_ready_i) && !continues_o;
-  assign resolves = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
+  assign resolves_o = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
 
-  assign ray_ready_o = starts_o || resolves;
+  assign ray_ready_o = starts_o || resolves_o;
   assign take_o      = ray_ready_o && !ray_shadow_i;
 
   always_ff @(posedge clk_i) if (starts_o) tag_q[slot_i[9]] <= ray_shadow_i ? ray_tag_i : take_tag_i;
 
   // Pixels. A shadow ray has its own stored already.
-  assign fill_o     = ends || resolves;
+  assign fill_o     = ends || resolves_o;
   assign fill_tag_o = finishes || requests ? tag_q[slot_i[9]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_o    = (ends && !shadow9) || (resolves && !ray_shadow_i) || requests;
+  assign store_o    = (ends && !shadow9) || (resolves_o && !ray_shadow_i) || requests;
 
   always_comb begin
-    pixel = '{material: material_i, face: face_i};
+    pixel = '{material: material_i, face: face};
     if (reflects_out) pixel = '{material: '0, face: FaceNone};
     if (requests) pixel = '{material: sinking_material, face: key_face_i};
     else if (!finishes) pixel = ray_pixel_i;
@@ -234,10 +236,10 @@ module voxrt_lane_turn
 
     // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
     always_comb begin
-      in_shadow   = face_i == FaceNone;
+      in_shadow   = face == FaceNone;
       turned_away = 1'b0;
       for (int unsigned a = 0; a < 3; a++) begin
-        if (face_i == 2'(a)) begin
+        if (face == 2'(a)) begin
           in_shadow   = {1'b0, corner_i[a][CellBits-1:SubBits]} < before_light_i[mirrored_i[a]][a];
           turned_away = {1'b0, corner_i[a][CellBits-1:SubBits]} < to_light_i[mirrored_i[a]][a];
         end

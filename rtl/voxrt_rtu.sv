@@ -82,7 +82,8 @@ module voxrt_rtu
   logic signed [  CameraBits-1:0] look_q  [3], right_q          [3], up_q[3];
   logic        [    SizeBits-1:0] width_q, height_q;
   logic        [   DepthBits-1:0] depth_q;
-  logic        [      MaxDepth:0] world_q;  // One-hot: the world's side.
+  logic        [      MaxDepth:0] world_q;   // One-hot: the world's side.
+  logic        [    MaxDepth-1:0] beyond_q;  // The bits above the world's places.
   logic        [   PayloadBits:0] first_word, root;
   shading_t                       shading_q;
   logic signed [   LightBits-1:0] light_q [3];
@@ -103,6 +104,7 @@ module voxrt_rtu
       height_q  <= height_i;
       depth_q   <= depth_i;
       world_q   <= (MaxDepth + 1)'(1) << depth_i;
+      beyond_q  <= '1 << depth_i;
       shading_q <= '{
           flat: Flat && shading_i.flat,
           light: Light && shading_i.light,
@@ -282,6 +284,7 @@ module voxrt_rtu
       .origin_i              (origin_q),
       .mirrored_origin_i     (mirrored_origin_q),
       .world_i               (world_q),
+      .beyond_i              (beyond_q),
       .root_i                (root),
       .light_i               (shading_q.light),
       .bounces_i             (shading_q.bounces),

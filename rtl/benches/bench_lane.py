@@ -10,7 +10,7 @@ from oracles.ray import FACE_NONE, trace
 from rays import ray_of, some_direction
 from streams import PACES, drive, pace, reset, send, start
 
-LEAF, DEPTH = 1 << 9, 3
+LEAF, DEPTH, ROWS = 1 << 9, 3, 32
 SIDE = 1 << DEPTH
 
 
@@ -20,7 +20,7 @@ def encoded(word):
 
 
 class Surroundings:
-    """Memory and pixel buffer of the lane."""
+    """Memory, pixel buffer and free rows of the lane."""
 
     def __init__(self, dut, words, taking):
         self.dut = dut
@@ -29,6 +29,7 @@ class Surroundings:
         self.taken = 0
         self.pixels = {}
         self.errors = 0
+        self.free_rows = list(range(ROWS))
 
     async def run(self):
         """Serve for ever."""
@@ -48,6 +49,10 @@ class Surroundings:
                 assert self.pixels[tag] is None, "filled twice"
                 pixel = dut.store_pixel_o.value.to_unsigned()
                 self.pixels[tag] = (pixel >> 2, pixel & 3)
+            if int(dut.releases_o.value):
+                row = dut.released_row_o.value.to_unsigned()
+                assert row not in self.free_rows, "released twice"
+                self.free_rows.append(row)
             self.errors += int(dut.bad_pointer_o.value) + int(dut.step_limit_o.value)
             answer = None if asked is None or not next(self.acknowledges) else asked
             drive(dut, mem_ack_i=answer is not None, mem_word_i=random.randrange(1 << 10) if answer is None else answer)
@@ -56,15 +61,18 @@ class Surroundings:
                 asked = self.words[1 + 8 * dut.mem_block_o.value.to_unsigned() + dut.mem_octant_o.value.to_unsigned()]
 
 
-def inputs(ray):
-    """Give a ray as the lane takes it."""
+def inputs(ray, row):
+    """Give a ray as the lane takes it, which comes when it is offered."""
     return {
+        "arrives_i": 1,
+        "arrival_row_i": row,
+        "arrival_weight_i": [weight % (1 << 40) for weight in ray.weight],
+        "ray_row_i": row,
         "ray_resolved_i": ray.resolved,
         "ray_pixel_i": FACE_NONE,
         "ray_mirrored_i": ray.mirrored,
         "ray_dead_i": ray.dead,
         "ray_octant_i": ray.octant,
-        "ray_weight_i": [weight % (1 << 40) for weight in ray.weight],
         "ray_entry_time_i": ray.entry_time % KEY,
         "ray_entry_face_i": ray.entry_face,
     }
@@ -80,12 +88,14 @@ async def frame(dut, count, sending, taking):
     position = [random.choice([16 * random.randint(-4, 12), random.randint(-50, 178)]) for _ in range(3)]
     directions = [some_direction() for _ in range(count)]
     rays = [ray_of(position, direction, SIDE) for direction in directions]
-    drive(dut, world_i=SIDE, root_i=encoded(int(words[0])))
+    drive(dut, world_i=SIDE, beyond_i=(1 << 6) - SIDE, root_i=encoded(int(words[0])))
     drive(dut, origin_i=position, mirrored_origin_i=[16 * SIDE - place for place in position])
     surroundings = Surroundings(dut, words, taking)
     runner = cocotb.start_soon(surroundings.run())
     try:
-        await send(dut, [inputs(ray) for ray in rays], sending, valid="ray_valid_i", ready="ray_ready_o")
+        free_rows = surroundings.free_rows
+        offers = (inputs(ray, free_rows.pop(random.randrange(len(free_rows)))) for ray in rays)
+        await send(dut, offers, sending, valid="ray_valid_i", ready="ray_ready_o")
         for _ in range(200):
             if surroundings.taken == count and None not in surroundings.pixels.values():
                 break
@@ -96,6 +106,7 @@ async def frame(dut, count, sending, taking):
         wanted = (0, FACE_NONE) if ray.overflow else trace(voxels, position, direction)
         assert surroundings.pixels[tag] == wanted, (position, direction)
     assert not surroundings.errors
+    assert len(free_rows) == ROWS
 
 
 async def begin(dut):
