@@ -3,13 +3,13 @@
 // one bank: word {row, bank ^ lowest bits of row}.
 //
 // The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, stand in private copies as
-// well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 a side,
-// one request in 8 would be refused without these copies, and one in 117 is with them. (Of a memory of few blocks, a
-// quarter stands in copies.)
+// well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 a
+// side, one request in 8 would be refused without these copies, and one in 117 is with them. (Of a memory of few
+// blocks, a quarter stands in copies.)
 //
-// Each bank serves two lanes a clock: the first that asks from a rotating start upwards, and the last. The others get no
-// ack_o and ask again at their ray's next turn, even for a word that another lane gets: a ray reads a word but once, so
-// that no word can be in demand more than once a pixel. A word comes five clocks after its address:
+// Each bank serves two lanes a clock: the first that asks from a rotating start upwards, and the last. The others get
+// no ack_o and ask again at their ray's next turn, even for a word that another lane gets: a ray reads a word but once,
+// so that no word can be in demand more than once a pixel. A word comes five clocks after its address:
 //   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register | 4 to the lanes
 //
 // The access port takes port A of its bank; when it writes to the top, it takes port A of every copy.
