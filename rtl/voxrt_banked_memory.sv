@@ -2,15 +2,17 @@
 // different banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want
 // one bank: word {row, bank ^ lowest bits of row}.
 //
-// The first eight blocks, which is the octree's top where blocks are ordered breadth-first, are in distributed memory
-// as well, with a read port for each lane: near the root, where all rays pass, lanes do not meet.
+// The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, stand in private copies as
+// well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 a
+// side, one request in 8 would be refused without these copies, and one in 117 is with them. (Of a memory of few
+// blocks, a quarter stands in copies.)
 //
-// Each bank reads two rows a clock, those of the first lane that asks from a rotating start upwards, and of the last.
-// Every lane that wants one of these rows gets it; the others get no ack_o and ask again at their ray's next turn.
-// A word comes five clocks after its address:
-//   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register; which lane is served | 4 to the lanes
+// Each bank serves two lanes a clock: the first that asks from a rotating start upwards, and the last. The others get
+// no ack_o and ask again at their ray's next turn, even for a word that another lane gets: a ray reads a word but once,
+// so that no word can be in demand more than once a pixel. A word comes five clocks after its address:
+//   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register | 4 to the lanes
 //
-// The access port takes port A of its bank.
+// The access port takes port A of its bank; when it writes to the top, it takes port A of every copy.
 module voxrt_banked_memory
   import voxrt_pkg::*;
 #(
@@ -35,121 +37,113 @@ module voxrt_banked_memory
   localparam int unsigned BankBits = 4;
   localparam int unsigned Banks = 2 ** BankBits;
   localparam int unsigned BankRowBits = RowBits - BankBits;
+  localparam int unsigned LaneBits = Lanes > 1 ? $clog2(Lanes) : 1;
+
+  // The first blocks.
+  localparam int unsigned TopBlockBits = BlockBits < 10 ? BlockBits - 2 : 8;
+  localparam int unsigned TopRowBits = TopBlockBits + 3 - BankBits;
 
   // Bank and row in it of each lane's request, clock by clock.
-  logic [Lanes-1:0]       read_q[1:3];
   logic [BankBits-1:0]    bank  [Lanes];
   logic [BankBits-1:0]    bank_q[1:4] [Lanes];
   logic [BankRowBits-1:0] row   [Lanes];
   logic [BankRowBits-1:0] row_q [1:2] [Lanes];
-
-  // Of the first blocks.
-  localparam int unsigned TopBits = 6;
-  // Public, so that a simulation can fill it.
-  logic [PayloadBits:0] top_q[2**TopBits]  /* verilator public_flat_rw */;
-  logic [    Lanes-1:0] in_top, in_top_q[1:4];
-  logic [  TopBits-1:0] place_q[1:4] [Lanes];
-
-  always_ff @(posedge clk_i) begin
-    if (access_i && access_write_i && access_row_i[RowBits-1:TopBits] == '0) begin
-      top_q[access_row_i[TopBits-1:0]] <= access_word_i;
-    end
-    in_top_q[1] <= in_top & read_i;
-    for (int unsigned i = 0; i < Lanes; i++) place_q[1][i] <= TopBits'({block_i[i], octant_i[i]});
-    for (int unsigned s = 2; s <= 4; s++) begin
-      in_top_q[s] <= in_top_q[s-1];
-      place_q[s]  <= place_q[s-1];
-    end
-  end
+  logic [Lanes-1:0]       in_top, in_top_q[1:2], asks;
 
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      in_top[i] = block_i[i][BlockBits-1:TopBits-3] == '0;
-      row[i]  = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
-      bank[i] = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
+      in_top[i] = block_i[i][BlockBits-1:TopBlockBits] == '0;
+      asks[i]   = read_i[i] && !in_top[i];
+      row[i]    = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
+      bank[i]   = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
     end
   end
 
   always_ff @(posedge clk_i) begin
-    read_q[1] <= rst_ni ? read_i & ~in_top : '0;
-    read_q[2] <= rst_ni ? read_q[1] : '0;
-    read_q[3] <= rst_ni ? read_q[2] : '0;
-    bank_q[1] <= bank;
-    bank_q[2] <= bank_q[1];
-    bank_q[3] <= bank_q[2];
-    bank_q[4] <= bank_q[3];
-    row_q[1]  <= row;
-    row_q[2]  <= row_q[1];
+    in_top_q[1] <= read_i & in_top;
+    in_top_q[2] <= in_top_q[1];
+    bank_q[1]   <= bank;
+    bank_q[2]   <= bank_q[1];
+    bank_q[3]   <= bank_q[2];
+    bank_q[4]   <= bank_q[3];
+    row_q[1]    <= row;
+    row_q[2]    <= row_q[1];
   end
-
-  // Lanes from the rotating start on go before the others at port A, and after them at port B.
-  logic [Lanes-1:0] late_q;
-
-  always_ff @(posedge clk_i) late_q <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
 
   // The access port, kept in step.
-  logic                 access_q     [1:4];
-  logic                 access_write_q;
-  logic [BankRowBits-1:0] access_row_q;
-  logic [   BankBits-1:0] access_bank_q[1:4];
-  logic [PayloadBits:0] access_word_q[1:2];
-  logic                 access_write2_q;
+  logic                   access_q      [1:2];
+  logic                   access_write_q[1:2];
+  logic [BankRowBits-1:0] access_row_q  [1:2];
+  logic [   BankBits-1:0] access_bank_q [1:4];
+  logic [  PayloadBits:0] access_word_q [1:2];
 
   always_ff @(posedge clk_i) begin
-    access_q[1]      <= access_i && rst_ni;
-    access_write_q   <= access_write_i;
-    access_row_q     <= access_row_i[RowBits-1:BankBits];
-    access_bank_q[1] <= access_row_i[BankBits-1:0] ^ access_row_i[2*BankBits-1:BankBits];
-    access_word_q[1] <= access_word_i;
-    access_word_q[2] <= access_word_q[1];
-    access_write2_q  <= access_write_q;
-    for (int unsigned s = 2; s <= 4; s++) begin
-      access_q[s]      <= access_q[s-1] && rst_ni;
-      access_bank_q[s] <= access_bank_q[s-1];
+    access_q[1]       <= access_i && rst_ni;
+    access_q[2]       <= access_q[1] && rst_ni;
+    access_write_q[1] <= access_write_i;
+    access_write_q[2] <= access_write_q[1];
+    access_row_q[1]   <= access_row_i[RowBits-1:BankBits];
+    access_row_q[2]   <= access_row_q[1];
+    access_bank_q[1]  <= access_row_i[BankBits-1:0] ^ access_row_i[2*BankBits-1:BankBits];
+    access_word_q[1]  <= access_word_i;
+    access_word_q[2]  <= access_word_q[1];
+    for (int unsigned s = 2; s <= 4; s++) access_bank_q[s] <= access_bank_q[s-1];
+  end
+
+  // 0 choose: a lane is the first, or the last, of those that ask its bank. Lanes from the rotating start on go before
+  // the others.
+  logic [Lanes-1:0] late_q, first, last, first_q, last_q;
+  logic [Lanes-1:0] same_bank[Lanes], in_bank_q[Banks];
+
+  function automatic logic is_before(int unsigned i, int unsigned j, logic i_late, logic j_late);
+    return i_late == j_late ? i < j : j_late;
+  endfunction
+
+  always_comb begin
+    first = asks;
+    last  = asks;
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      for (int unsigned j = 0; j <= i; j++) begin
+        same_bank[i][j] = asks[i] && asks[j] && bank[i] == bank[j];
+        same_bank[j][i] = same_bank[i][j];
+      end
+    end
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      for (int unsigned j = 0; j < Lanes; j++) begin
+        if (same_bank[i][j] && j != i && is_before(j, i, late_q[j], late_q[i])) first[i] = 1'b0;
+        if (same_bank[i][j] && j != i && is_before(i, j, late_q[i], late_q[j])) last[i] = 1'b0;
+      end
     end
   end
 
+  always_ff @(posedge clk_i) begin
+    late_q  <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
+    first_q <= first;
+    last_q  <= last;
+    for (int unsigned k = 0; k < Banks; k++) begin
+      for (int unsigned i = 0; i < Lanes; i++) in_bank_q[k][i] <= bank[i] == BankBits'(k);
+    end
+  end
+
+  // 1 rows; 2 block RAM.
   logic [PayloadBits:0] a_word[Banks], b_word[Banks];
-  logic [BankRowBits-1:0] a_row2_q[Banks], b_row2_q[Banks];
-  logic [Banks-1:0]     a_lane2_q;  // Port A reads for a lane.
+
+  // Zero for no lane.
+  function automatic logic [LaneBits-1:0] number_of(logic [Lanes-1:0] lane);
+    number_of = '0;
+    for (int unsigned i = 0; i < Lanes; i++) if (lane[i]) number_of |= LaneBits'(i);
+  endfunction
 
   for (genvar k = 0; k < Banks; k++) begin : gen_bank
-    // 0 choose. The lowest set bit is x & -x; the highest is that of the mirrored vector.
-    logic [Lanes-1:0] asks, early, upwards, downwards, first_q, last_q;
+    logic                   accessed, accessed2_q;
+    logic [BankRowBits-1:0] a_row2_q, b_row2_q;
 
-    function automatic logic [Lanes-1:0] mirror(logic [Lanes-1:0] lanes);
-      for (int unsigned i = 0; i < Lanes; i++) mirror[i] = lanes[Lanes-1-i];
-    endfunction
-
-    always_comb begin
-      for (int unsigned i = 0; i < Lanes; i++) asks[i] = read_i[i] && !in_top[i] && bank[i] == BankBits'(k);
-      early     = asks & ~late_q;
-      upwards   = early != '0 ? early : asks;
-      downwards = mirror((asks & late_q) != '0 ? asks & late_q : asks);
-    end
-
-    // 1 rows.
-    logic [BankRowBits-1:0] a_row, b_row;
-
-    always_comb begin
-      a_row = '0;
-      b_row = '0;
-      for (int unsigned i = 0; i < Lanes; i++) begin
-        if (first_q[i]) a_row |= row_q[1][i];
-        if (last_q[i]) b_row |= row_q[1][i];
-      end
-    end
-
-    // 2 block RAM.
-    logic accessed2_q;
+    assign accessed = access_q[1] && access_bank_q[1] == BankBits'(k);
 
     always_ff @(posedge clk_i) begin
-      first_q       <= upwards & -upwards;
-      last_q        <= mirror(downwards & -downwards);
-      accessed2_q   <= access_q[1] && access_bank_q[1] == BankBits'(k);
-      a_lane2_q[k]  <= !(access_q[1] && access_bank_q[1] == BankBits'(k));
-      a_row2_q[k]  <= access_q[1] && access_bank_q[1] == BankBits'(k) ? access_row_q : a_row;
-      b_row2_q[k]  <= b_row;
+      accessed2_q <= accessed && rst_ni;
+      a_row2_q    <= accessed ? access_row_q[1] : row_q[1][number_of(first_q & in_bank_q[k])];
+      b_row2_q    <= row_q[1][number_of(last_q & in_bank_q[k])];
     end
 
     voxrt_block_ram #(
@@ -158,35 +152,67 @@ module voxrt_banked_memory
     ) u_ram (
       .clk_i,
       .a_read_i (1'b1),
-      .a_write_i(accessed2_q && access_write2_q),
-      .a_row_i  (a_row2_q[k]),
+      .a_write_i(accessed2_q && access_write_q[2]),
+      .a_row_i  (a_row2_q),
       .a_data_i (access_word_q[2]),
       .a_data_o (a_word[k]),
       .b_read_i (1'b1),
-      .b_row_i  (b_row2_q[k]),
+      .b_row_i  (b_row2_q),
       .b_data_o (b_word[k])
     );
   end
 
-  // 2, 3 which lane is served; 4 to the lanes.
-  logic [Lanes-1:0]     from_a_q[3:4], from_b_q[3:4], ack_q;
+  // 2 the top, where a word stands in the row that its bank and the row in it make.
+  logic [TopBlockBits-1:0] top_block [Lanes];
+  logic [             2:0] top_octant[Lanes];
+  logic [       Lanes-1:0] from_top;
+  logic [   PayloadBits:0] top_word  [Lanes], unused_top_access;
+  logic                    writes_top;
+
+  assign writes_top = access_q[2] && access_write_q[2] && access_row_q[2][BankRowBits-1:TopRowBits] == '0;
+
+  always_comb begin
+    for (int unsigned i = 0; i < Lanes; i++) begin
+      {top_block[i], top_octant[i]} = {row_q[2][i][TopRowBits-1:0], bank_q[2][i]};
+    end
+  end
+
+  voxrt_private_memory #(
+    .Lanes      (Lanes),
+    .BlockBits  (TopBlockBits),
+    .PayloadBits(PayloadBits)
+  ) u_top (
+    .clk_i,
+    .access_i      (writes_top),
+    .access_write_i(1'b1),
+    .access_row_i  ({access_row_q[2][TopRowBits-1:0], access_bank_q[2]}),
+    .access_word_i (access_word_q[2]),
+    .access_word_o (unused_top_access),
+    .read_i        (in_top_q[2]),
+    .block_i       (top_block),
+    .octant_i      (top_octant),
+    .ack_o         (from_top),
+    .word_o        (top_word)
+  );
+
+  // 4 to the lanes.
+  logic [Lanes-1:0]     from_a_q[2:4], from_b_q[2:4], ack_q;
   logic [PayloadBits:0] word_q[Lanes], access_out_q;
 
   always_ff @(posedge clk_i) begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      from_a_q[3][i] <= read_q[2][i] && a_lane2_q[bank_q[2][i]] && a_row2_q[bank_q[2][i]] == row_q[2][i];
-      from_b_q[3][i] <= read_q[2][i] && b_row2_q[bank_q[2][i]] == row_q[2][i];
-      word_q[i]      <= in_top_q[4][i] ? top_q[place_q[4][i]] :
-          from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
+      from_a_q[2][i] <= first_q[i] && !(access_q[1] && access_bank_q[1] == bank_q[1][i]);
+      word_q[i]      <= from_top[i] ? top_word[i] : from_a_q[4][i] ? a_word[bank_q[4][i]] : b_word[bank_q[4][i]];
     end
+    from_a_q[3]  <= from_a_q[2];
     from_a_q[4]  <= from_a_q[3];
+    from_b_q[2]  <= last_q;
+    from_b_q[3]  <= from_b_q[2];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | in_top_q[4] : '0;
+    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | from_top : '0;
     access_out_q <= a_word[access_bank_q[4]];
   end
 
-  logic unused;
-  assign unused        = access_q[4] ^ (^read_q[3]);
   assign ack_o         = ack_q;
   assign word_o        = word_q;
   assign access_word_o = access_out_q;

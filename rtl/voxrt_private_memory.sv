@@ -10,7 +10,7 @@ module voxrt_private_memory
 #(
   parameter  int unsigned Lanes       = 1,
   parameter  int unsigned BlockBits   = 12,
-  localparam int unsigned PayloadBits = payload_bits(BlockBits),
+  parameter  int unsigned PayloadBits = payload_bits(BlockBits),
   localparam int unsigned RowBits     = BlockBits + 3
 ) (
   input  logic                 clk_i,

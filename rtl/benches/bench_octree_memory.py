@@ -62,8 +62,11 @@ class Memory:
         drive(self.dut, access_i=0, access_write_i=0)
         await ClockCycles(self.dut.clk_i, 5)
 
-    async def read(self, clocks, lanes, port):
-        """Let lanes read, and the processor's port: each at any clock, or all the time."""
+    async def read(self, clocks, lanes, port, *, writes=False):
+        """Let lanes read, and the processor's port: each at any clock, or all the time.
+
+        With `writes` the port writes now and then: who asks later reads it, who asks at that clock or before does not.
+        """
         dut, asked, answered = self.dut, [], 0
         wants, accesses = pace(lanes), pace(port)
         hot = random.randrange(1 << BLOCK_BITS)
@@ -73,30 +76,36 @@ class Memory:
             octants = [random.randrange(8) for _ in reads]
             address = random.choice([0, random.randrange(WORDS)]) if next(accesses) else None
             drive(dut, read_i=sum(bit << lane for lane, bit in enumerate(reads)), block_i=blocks, octant_i=octants)
-            drive(dut, access_i=address is not None, access_write_i=0, access_address_i=address or 0)
+            is_write = writes and bool(address) and random.random() < 0.5
+            word = some_word()
+            drive(dut, access_i=address is not None, access_write_i=is_write, access_address_i=address or 0)
+            drive(dut, access_word_i=word)
             await RisingEdge(dut.clk_i)
             if clock >= self.clocks:
                 answered += self.check(*asked.pop(0))
             addresses = [1 + 8 * block + octant for block, octant in zip(blocks, octants, strict=True)]
-            asked.append(([a if bit else None for a, bit in zip(addresses, reads, strict=True)], address))
+            wanted = [self.words[a] if bit else None for a, bit in zip(addresses, reads, strict=True)]
+            asked.append((wanted, None if address is None or is_write else self.words[address], address is not None))
+            if is_write:
+                self.words[address] = kept(word)
         drive(dut, read_i=0, access_i=0)
         return answered
 
-    def check(self, addresses, accessed):
+    def check(self, wanted, read, accessed):
         """Compare the answers to what was asked `clocks` ago; give how many lanes got theirs."""
         dut = self.dut
         assert dut.root_o.value.to_unsigned() == encoded(self.words[0])
-        assert int(dut.access_valid_o.value) == (accessed is not None)
-        if accessed is not None:
-            assert dut.access_word_o.value.to_unsigned() == self.words[accessed]
+        assert int(dut.access_valid_o.value) == (read is not None)
+        if read is not None:
+            assert dut.access_word_o.value.to_unsigned() == read
         acknowledged = dut.ack_o.value.to_unsigned()
-        for lane, address in enumerate(addresses):
+        for lane, word in enumerate(wanted):
             if acknowledged >> lane & 1:
-                assert address is not None
-                assert dut.word_o[lane].value.to_unsigned() == encoded(self.words[address])
-        if accessed is None and self.clocks == 2:
-            assert acknowledged == sum((address is not None) << lane for lane, address in enumerate(addresses))
-        assert any(address is not None for address in addresses) <= (acknowledged != 0 or accessed is not None)
+                assert word is not None
+                assert dut.word_o[lane].value.to_unsigned() == encoded(word)
+        if not accessed and self.clocks == 2:
+            assert acknowledged == sum((word is not None) << lane for lane, word in enumerate(wanted))
+        assert any(word is not None for word in wanted) <= (acknowledged != 0 or accessed)
         return acknowledged.bit_count()
 
 
@@ -109,6 +118,14 @@ async def all_read_what_was_written(dut, lanes, port):
     for _ in range(5):
         await memory.write(random.sample(range(WORDS), 100))
         assert await memory.read(300, lanes, port) > 200
+
+
+@cocotb.test()
+async def lanes_read_while_words_are_written(dut):
+    """Give a lane the word of the time when it asked, or none."""
+    memory = Memory(dut)
+    await memory.begin()
+    assert await memory.read(3000, "random", "random", writes=True) > 2000
 
 
 @cocotb.test()

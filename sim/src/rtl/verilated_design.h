@@ -53,18 +53,19 @@ public:
             for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
                     variable(memory + ".gen_banked.u_memory.gen_bank[" + std::to_string(bank) + "].u_ram", "data_q");
-            uint32_t* top = variable(memory + ".gen_banked.u_memory", "top_q");
-            for (std::size_t row = 0; row + 1 < words.size() && row < 64; ++row)
-                top[row] = memory_word(words[row + 1]);
-            for (std::size_t row = 0; row + 1 < words.size(); ++row)
-                banks[(row ^ row >> 4) & 15][row >> 4] = memory_word(words[row + 1]);
+            const std::size_t top_rows = 8 * 256; // voxrt_banked_memory copies 256 blocks.
+            const std::vector<uint32_t*> tops = copies(memory + ".gen_banked.u_memory.u_top");
+            for (std::size_t row = 0; row + 1 < words.size(); ++row) {
+                const std::size_t bank = (row ^ row >> 4) & 15;
+                banks[bank][row >> 4] = memory_word(words[row + 1]);
+                if (row < top_rows)
+                    for (uint32_t* top : tops)
+                        top[(row & ~std::size_t{15}) | bank] = memory_word(words[row + 1]);
+            }
         } else {
-            for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy) {
-                uint32_t* rows =
-                    variable(memory + ".gen_private.u_memory.gen_copy[" + std::to_string(copy) + "].u_ram", "data_q");
+            for (uint32_t* rows : copies(memory + ".gen_private.u_memory"))
                 for (std::size_t row = 0; row + 1 < words.size(); ++row)
                     rows[row] = memory_word(words[row + 1]);
-            }
         }
     }
 
@@ -188,8 +189,16 @@ private:
         return word >> 3;
     }
 
+    // The memories of a voxrt_private_memory.
+    std::vector<uint32_t*> copies(const std::string& memory) const {
+        std::vector<uint32_t*> found;
+        for (unsigned copy = 0; copy < (limits_.lanes + 1) / 2; ++copy)
+            found.push_back(variable(memory + ".gen_copy[" + std::to_string(copy) + "].u_ram", "data_q"));
+        return found;
+    }
+
     // A variable that the design marks public, wherever Verilator put it.
-    uint32_t* variable(const std::string& scope_name, const char* name) {
+    uint32_t* variable(const std::string& scope_name, const char* name) const {
         const VerilatedScope* scope = context_.scopeFind(scope_name.c_str());
         VerilatedVar* found = scope ? scope->varFind(name) : nullptr;
         if (!found || found->vltype() != VLVT_UINT32)
