@@ -67,6 +67,8 @@ BUILDS = {
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
+    "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
+    "lane-mirrors": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Mirrors": 1}, ("bench_lane",)),
     "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
     "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),
     "traversal": Build(
