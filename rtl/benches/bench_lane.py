@@ -51,8 +51,8 @@ def inputs(dut, ray, tag=0):
 class Surroundings:
     """Memory, pixel buffer, queues of rays and the maker of shadow rays."""
 
-    def __init__(self, dut, words, shader, rays):
-        self.dut, self.shader = dut, shader
+    def __init__(self, dut, words, shader, rays, hurry=0.1):
+        self.dut, self.shader, self.hurry = dut, shader, hurry
         self.words = [encoded(int(word)) for word in words]
         self.asked = deque([None] * (int(dut.MemoryClocks.value) - 1))
         self.rays = deque(inputs(dut, ray) for ray in rays)
@@ -115,7 +115,7 @@ class Surroundings:
             point = lit_point(place, mirrored, face, SIDE)
             way = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
             self.ordered.append(inputs(dut, ray_of(point, way, SIDE, unit=32, inside=True), tag))
-        if self.ordered and random.random() < 0.1:
+        if self.ordered and random.random() < self.hurry:
             self.shadow_rays.append(self.ordered.popleft())
 
     def answer(self, acknowledges):
@@ -159,10 +159,22 @@ def sub_cell(stored):
 
 def some_world(leaves):
     """Make a world; where the lane goes into a root that is a leaf, sometimes such a one."""
-    if leaves and random.random() < 0.2:
+    if leaves and random.random() < 0.1:
         return np.full((SIDE,) * 3, random.choice([0, *MATERIALS]), np.uint8)
-    materials = [0] * random.choice([2, 6, 12]) + [*MATERIALS]
+    materials = [0] * random.choice([2, 6, 12, 40]) + [*MATERIALS]
     return np.random.default_rng(random.randrange(1 << 30)).choice(materials, (SIDE,) * 3).astype(np.uint8)
+
+
+def some_place():
+    """Make a position in the world or around it, on planes among others."""
+    if random.random() < 0.5:
+        return [random.choice([16 * random.randint(0, SIDE), random.randint(0, 16 * SIDE)]) for _ in range(3)]
+    return [random.choice([16 * random.randint(-4, 12), random.randint(-200, 300)]) for _ in range(3)]
+
+
+def into_the_world(position):
+    """Make a direction from there to somewhere in the world."""
+    return [random.randint(0, 16 * SIDE) - place for place in position]
 
 
 async def some_shader(dut):
@@ -179,38 +191,48 @@ async def some_shader(dut):
             await RisingEdge(dut.clk_i)
         drive(dut, table_write_i=0)
     if int(dut.Light.value) and random.random() < 0.8:
-        shader.light = [random.choice([16 * random.randint(-2, 10), random.randint(-200, 300)]) for _ in range(3)]
-        shader.ambient = random.choice([0, random.randrange(100)])
-        for mirrored in range(2):
-            for axis, place in enumerate(shader.light):
-                light = 16 * SIDE - place if mirrored else place
-                dut.before_light_i[mirrored][axis].value = sum(16 * plane < light for plane in range(SIDE))
-                dut.to_light_i[mirrored][axis].value = sum(16 * plane <= light for plane in range(SIDE))
+        set_light(dut, shader, some_place())
     drive(dut, light_i=shader.light is not None, bounces_i=shader.bounces)
     return shader
+
+
+def set_light(dut, shader, light):
+    """Set where the light is, among the planes, and how bright it is in shadow."""
+    shader.light, shader.ambient = light, random.choice([0, random.randrange(100)])
+    for mirrored in range(2):
+        for axis, place in enumerate(light):
+            own = 16 * SIDE - place if mirrored else place
+            dut.before_light_i[mirrored][axis].value = sum(16 * plane < own for plane in range(SIDE))
+            dut.to_light_i[mirrored][axis].value = sum(16 * plane <= own for plane in range(SIDE))
 
 
 async def frame(dut, count, sending, taking):
     """Trace rays from one position, and compare."""
     shader = await some_shader(dut)
     voxels = some_world(int(dut.Light.value) or int(dut.Mirrors.value))
+    position = some_place()
+    directions = [random.choice([some_direction(), into_the_world(position)]) for _ in range(count)]
+    await trace(dut, (voxels, shader, position, directions), sending, taking)
+
+
+async def trace(dut, scene, sending, taking, **hurry):
+    """Trace all rays of a scene, and compare."""
+    voxels, shader, position, directions = scene
     words = words_of(voxels)
-    position = [random.choice([16 * random.randint(-4, 12), random.randint(-50, 178)]) for _ in range(3)]
-    directions = [some_direction() for _ in range(count)]
     rays = [ray_of(position, direction, SIDE) for direction in directions]
     drive(dut, world_i=SIDE, beyond_i=(1 << MAX_DEPTH) - SIDE, root_i=encoded(int(words[0])))
     drive(dut, origin_i=position, mirrored_origin_i=[16 * SIDE - place for place in position])
-    surroundings = Surroundings(dut, words, shader, rays)
+    surroundings = Surroundings(dut, words, shader, rays, **hurry)
     runner = cocotb.start_soon(surroundings.run(sending, taking))
     try:
-        for _ in range(300):
-            if len(surroundings.lit) == count:
+        for _ in range(500):
+            if len(surroundings.lit) == len(rays):
                 break
             await ClockCycles(dut.clk_i, 50)
     finally:
         runner.cancel()
     drive(dut, ray_valid_i=0)
-    assert len(surroundings.lit) == count
+    assert len(surroundings.lit) == len(rays)
     for tag, (ray, direction) in enumerate(zip(rays, directions, strict=True)):
         background = tuple(shader.palette[0]), 0, FACE_NONE
         wanted = background if ray.overflow else shaded_pixel(voxels, shader, position, direction)
@@ -230,6 +252,21 @@ async def pixels(dut, sending, taking):
     await begin(dut)
     for _ in range(8):
         await frame(dut, 60, sending, taking)
+
+
+@cocotb.test()
+async def all_slots_ask_for_a_shadow_ray(dut):
+    """Shadow rays come when no slot is free, and there are no places for others: a ray that asks makes way."""
+    await begin(dut)
+    shader = await some_shader(dut)
+    voxels = np.zeros((SIDE,) * 3, np.uint8)
+    voxels[:, :, SIDE // 2 :] = MATERIALS[-1]
+    position = [8 * SIDE, 8 * SIDE, -16]
+    if int(dut.Light.value):
+        set_light(dut, shader, position)
+        drive(dut, light_i=1)
+    directions = [[random.randint(-20, 20), random.randint(-20, 20), 60] for _ in range(60)]
+    await trace(dut, (voxels, shader, position, directions), "always", "always", hurry=0.01)
 
 
 @cocotb.test()
