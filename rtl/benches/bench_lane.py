@@ -136,7 +136,7 @@ class Surroundings:
         colour = self.shader.palette[material]
         kind = stored >> len(self.dut.store_pixel_o) - 2 if len(self.dut.store_pixel_o) > 10 else ANGLE
         if kind == ANGLE:
-            return shade(colour, direction, face), material, face
+            return tuple(colour) if self.shader.flat else shade(colour, direction, face), material, face
         if kind == MEAN:
             count = detail % (1 << COUNT)
             sums = [detail >> COUNT + SUM * channel & (1 << SUM) - 1 for channel in range(3)]
@@ -146,7 +146,7 @@ class Surroundings:
         if self.lit[tag]:
             point = lit_point(*sub_cell(stored), face, SIDE)
             way = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
-            part = max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
+            part = Fraction(1) if self.shader.flat else max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
         return tuple(floor(channel * part + Fraction(1, 2)) for channel in colour), material, face
 
 
@@ -180,7 +180,7 @@ def into_the_world(position):
 async def some_shader(dut):
     """Set what a frame's shading is, of what is built in; give the same to the oracle."""
     palette = [[random.choice([0, 255, random.randrange(256)]) for _ in range(3)] for _ in range(256)]
-    shader = Shader(palette)
+    shader = Shader(palette, flat=random.random() < 0.3)
     if int(dut.Mirrors.value):
         shader.bounces = random.choice([0, 1, 1, 3, 15])
         shader.mirrors = frozenset(random.choice([[5], [5, 9], [*MATERIALS]]))
