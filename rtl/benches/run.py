@@ -44,6 +44,14 @@ class Build(NamedTuple):
 BUILDS = {
     "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_pixel_generator", "bench_registers", "bench_waveforms")),
     "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_pixel_generator",), narrow=True),
+    "banked-light": Build(
+        CORE,
+        {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Banked": 1, "Light": 1},
+        ("bench_pixel_generator",),
+    ),
+    "mirrors": Build(
+        CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_pixel_generator",)
+    ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
@@ -65,6 +73,8 @@ BUILDS = {
     "reflect": Build("voxrt_reflect", {"Slots": 12}, ("bench_reflect",)),
     "light_way": Build("voxrt_light_way", {"MaxDepth": 6}, ("bench_light_way",)),
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
+    "brightness-light": Build("voxrt_brightness", {"MaxDepth": 6, "Mirrors": 0}, ("bench_brightness",)),
+    "brightness-mirrors": Build("voxrt_brightness", {"MaxDepth": 6, "Light": 0}, ("bench_brightness",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
