@@ -9,6 +9,7 @@ module voxrt_cell_times
   parameter  int unsigned MaxDepth     = 10,
   parameter  int unsigned PositionBits = 17,
   parameter  int unsigned Slots        = 11,
+  parameter  int unsigned RowBits      = 5,
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned SlotBits     = $clog2(Slots),
@@ -21,20 +22,24 @@ module voxrt_cell_times
   // Held during a frame.
   input  logic signed [OriginBits-1:0] origin_i          [3],
   input  logic signed [OriginBits-1:0] mirrored_origin_i [3],
-  // Stage 1: the cell's lowest corner. Stage 2: its size, one-hot, and whether its far planes are asked for.
+  // A ray has come, and will start some time: its weights, in the row that holds them until it has ended.
+  input  logic                         arrives_i,
+  input  logic        [   RowBits-1:0] arrival_row_i,
+  input  logic        [WeightBits-1:0] weight_i          [3],
+  // Stage 1: the cell's lowest corner. Stage 2: the ray's row, the cell's size, one-hot, and whether its far planes are
+  // asked for.
   input  logic        [  SlotBits-1:0] slot1_i,
   input  logic        [  CellBits-1:0] corner1_i         [3],
   input  logic        [           2:0] mirrored1_i,
   input  logic        [           2:0] dead1_i,
   input  logic                         shadow1_i,
-  input  logic        [  SlotBits-1:0] slot2_i,
+  input  logic        [   RowBits-1:0] row2_i,
   input  logic        [  CellBits-1:0] size2_i,
   input  logic                         shadow2_i,
   input  logic                         takes_far_i,
   // Stage 9: a new ray; or the ray is reflected by a plane of this number and axis, in its own mirrored frame.
   input  logic        [  SlotBits-1:0] slot9_i,
   input  logic                         starts_i,
-  input  logic        [WeightBits-1:0] weight_i          [3],
   input  logic signed [OriginBits-1:0] ray_origin_i      [3],
   input  logic                         reflects_i,
   input  face_e                        face_i,
@@ -82,8 +87,8 @@ module voxrt_cell_times
     logic        [FractionBits-1:0] fraction2_q[3];
     logic                           unused_origin;
 
-    assign unused_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2], shadow1_i, shadow2_i, slot1_i,
-                             reflects_i, face_i, shift_i};
+    assign unused_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2], shadow1_i, shadow2_i, slot1_i, slot9_i,
+                             starts_i, reflects_i, face_i, shift_i};
 
     // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
     // origin's fraction counts as above 0.
@@ -101,18 +106,18 @@ module voxrt_cell_times
   end
 
   // 3, 4, 5.
-  logic        [WeightBits-1:0] weight_x_q[Slots], weight_y_q[Slots], weight_z_q[Slots];
+  logic        [WeightBits-1:0] weight_x_q[2**RowBits], weight_y_q[2**RowBits], weight_z_q[2**RowBits];
   logic        [WeightBits-1:0] weight3_q [3];
   logic signed [  TimeBits-1:0] exact_time[3];
 
   always_ff @(posedge clk_i) begin
-    weight3_q[0] <= weight_x_q[slot2_i];
-    weight3_q[1] <= weight_y_q[slot2_i];
-    weight3_q[2] <= weight_z_q[slot2_i];
-    if (starts_i) begin
-      weight_x_q[slot9_i] <= weight_i[0];
-      weight_y_q[slot9_i] <= weight_i[1];
-      weight_z_q[slot9_i] <= weight_i[2];
+    weight3_q[0] <= weight_x_q[row2_i];
+    weight3_q[1] <= weight_y_q[row2_i];
+    weight3_q[2] <= weight_z_q[row2_i];
+    if (arrives_i) begin
+      weight_x_q[arrival_row_i] <= weight_i[0];
+      weight_y_q[arrival_row_i] <= weight_i[1];
+      weight_z_q[arrival_row_i] <= weight_i[2];
     end
   end
 

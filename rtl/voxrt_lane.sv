@@ -4,7 +4,7 @@
 //   stage     work                                                                        state of a slot, read
 //   0 fetch   the memory takes the address                                                -
 //   1 wait    the memory's output register; distance to the cell's near planes            -
-//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weight
+//   2 decode  leaf or pointer; distance to the far planes (leaf) or middle planes         weights, by row
 //   3 product distance x weight, in parts; the pointer goes onto the stack                -
 //   4         parts                                                                       -
 //   5         T of three planes                                                           key
@@ -17,7 +17,7 @@
 //   11 block  the block from the stack, or the root's                                     -
 //
 // What many stages want of a ray goes round with it, in registers: its cell, which axes are mirrored and dead. The rest
-// stands in memories, by slot.
+// stands in memories, by slot; its weights where they were put when the ray came, by row.
 //
 // A ray's key (T, face) is the last plane that it crossed. Corner and size (one-hot) are those of the cell read; its
 // octant is the corner's bit at size. Planes of cells at that time crossed are those with keys <= the ray's key, so
@@ -37,6 +37,7 @@ module voxrt_lane
   parameter  int unsigned BlockBits    = 12,
   parameter  int unsigned TagBits      = 8,
   parameter  int unsigned MemoryClocks = 2,
+  parameter  int unsigned RowBits      = 5,
   parameter  bit          Light        = 1'b0,
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
@@ -62,6 +63,12 @@ module voxrt_lane
   input  logic                           table_write_i,
   input  material_t                      table_material_i,
   input  row_t                           table_row_i,
+  // A ray has come, and will be offered below: its weights, in a free row of the memory that holds them until it ends.
+  input  logic                           arrives_i,
+  input  logic        [     RowBits-1:0] arrival_row_i,
+  input  logic        [  WeightBits-1:0] arrival_weight_i  [3],
+  output logic                           releases_o,             // A row is free again.
+  output logic        [     RowBits-1:0] released_row_o,
   // Rays, as voxrt_ray_setup makes them; taken in order.
   input  logic                           ray_valid_i,
   output logic                           ray_ready_o,
@@ -70,7 +77,7 @@ module voxrt_lane
   input  logic        [             2:0] ray_mirrored_i,
   input  logic        [             2:0] ray_dead_i,
   input  logic        [             2:0] ray_octant_i,
-  input  logic        [  WeightBits-1:0] ray_weight_i      [3],
+  input  logic        [     RowBits-1:0] ray_row_i,
   input  logic        [     KeyBits-1:0] ray_entry_time_i,
   input  face_e                          ray_entry_face_i,
   // With Light or Mirrors; mirrored frame. A shadow ray has its place in the pixel buffer already.
@@ -107,7 +114,7 @@ module voxrt_lane
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
   localparam int unsigned Stages = 12;
   localparam int unsigned Extra = MemoryClocks - 2;
-  localparam int unsigned Slots = Stages + Extra;
+  localparam int unsigned Slots = lane_slots(MemoryClocks);
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
 
@@ -130,6 +137,7 @@ module voxrt_lane
   // What goes round with a ray, and from stage 0 to 6. Registers keep what they have where no ray is.
   localparam int unsigned CellStages = 7 + Extra;
   logic [         2:0] mirrored_q[Slots], dead_q[Slots];
+  logic [ RowBits-1:0] row_q     [Slots];
   logic [CellBits-1:0] corner_q  [CellStages][3];
   logic [CellBits-1:0] size_q    [CellStages];
 
@@ -215,24 +223,27 @@ module voxrt_lane
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Slots       (Slots),
+    .RowBits     (RowBits),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_times (
     .clk_i,
     .origin_i,
     .mirrored_origin_i,
+    .arrives_i,
+    .arrival_row_i,
+    .weight_i    (arrival_weight_i),
     .slot1_i     (slot[1]),
     .corner1_i   (corner_q[1+Extra]),
     .mirrored1_i (mirrored_q[1+Extra]),
     .dead1_i     (dead_q[1+Extra]),
     .shadow1_i   (shadow1),
-    .slot2_i     (slot[2]),
+    .row2_i      (row_q[2+Extra]),
     .size2_i     (size2),
     .shadow2_i   (shadow2),
     .takes_far_i (Light ? action == Leave : leaf),
     .slot9_i     (slot[9]),
     .starts_i    (starts),
-    .weight_i    (ray_weight_i),
     .ray_origin_i,
     .reflects_i  (reflects),
     .face_i      (key_face9),
@@ -302,7 +313,7 @@ module voxrt_lane
   );
 
   // 9 turn.
-  logic               continues;
+  logic               continues, resolves;
   logic [KeyBits-1:0] keys[4];
   face_e              key_face;
 
@@ -350,6 +361,7 @@ module voxrt_lane
     .starts_o     (starts),
     .reflects_o   (reflects),
     .continues_o  (continues),
+    .resolves_o   (resolves),
     .shift_o      (shift9),
     .mirrored_o   (mirrored9),
     .set_o        (turned_set9),
@@ -369,6 +381,9 @@ module voxrt_lane
     .request_place_o
   );
 
+  assign releases_o     = resolves || (active_q[9+Extra] && !continues);
+  assign released_row_o = resolves ? ray_row_i : row_q[9+Extra];
+
   // FaceNone stands for a new ray's time.
   assign key_face = face_e'(exit_face9 | {2{starts}});
   assign keys     = '{exit_time9[0], exit_time9[1], exit_time9[2], ray_entry_time_i};
@@ -378,14 +393,19 @@ module voxrt_lane
       if (active_q[s-1]) begin
         mirrored_q[s] <= mirrored_q[s-1];
         dead_q[s]     <= dead_q[s-1];
+        row_q[s]      <= row_q[s-1];
       end
     end
     if (active_q[Slots-1]) begin
       mirrored_q[0] <= mirrored_q[Slots-1];
       dead_q[0]     <= dead_q[Slots-1];
+      row_q[0]      <= row_q[Slots-1];
     end
     if (renews) mirrored_q[10+Extra] <= starts ? ray_mirrored_i : mirrored9;
-    if (starts) dead_q[10+Extra] <= ray_dead_i;
+    if (starts) begin
+      dead_q[10+Extra] <= ray_dead_i;
+      row_q[10+Extra]  <= ray_row_i;
+    end
     active_q           <= {active_q[Slots-2:0], active_q[Slots-1]};
     active_q[10+Extra] <= starts || continues;
     if (!rst_ni) active_q <= '0;

@@ -70,6 +70,7 @@ module voxrt_lane_turn
   output logic                       starts_o,                // The ray that waited starts.
   output logic                       reflects_o,              // The ray at hand does, anew.
   output logic                       continues_o,             // The slot keeps its ray.
+  output logic                       resolves_o,              // The ray that waited has its answer, and needs no slot.
   output logic signed [MaxDepth+1:0] shift_o,                 // Of a reflected ray: side - 2 plane ...
   output logic        [         2:0] mirrored_o,              // ... and its frame.
   output logic        [         2:0] set_o,                   // Of a reflected ray: the root's octant; else set_i.
@@ -91,7 +92,7 @@ module voxrt_lane_turn
 );
   logic [TagBits-1:0] tag_q[Slots];
   face_e              face;  // FaceNone without material.
-  logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends, resolves;
+  logic               finishes, meets_face, reflects_out, shows_mean, is_lightable, sinks, requests, ends;
   logic               sinks9, shadow9, turned_away;
   pixel_t             pixel;
   material_t          sinking_material;
@@ -109,17 +110,17 @@ module voxrt_lane_turn
   assign continues_o  = active_i && !ends && !requests;
 
   assign starts_o = ray_valid_i && !ray_resolved_i && (ray_shadow_i || take_ready_i) && !continues_o;
-  assign resolves = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
+  assign resolves_o = ray_valid_i && ray_resolved_i && (ray_shadow_i || take_ready_i) && !finishes && !requests;
 
-  assign ray_ready_o = starts_o || resolves;
+  assign ray_ready_o = starts_o || resolves_o;
   assign take_o      = ray_ready_o && !ray_shadow_i;
 
   always_ff @(posedge clk_i) if (starts_o) tag_q[slot_i[9]] <= ray_shadow_i ? ray_tag_i : take_tag_i;
 
   // Pixels. A shadow ray has its own stored already.
-  assign fill_o     = ends || resolves;
+  assign fill_o     = ends || resolves_o;
   assign fill_tag_o = finishes || requests ? tag_q[slot_i[9]] : ray_shadow_i ? ray_tag_i : take_tag_i;
-  assign store_o    = (ends && !shadow9) || (resolves && !ray_shadow_i) || requests;
+  assign store_o    = (ends && !shadow9) || (resolves_o && !ray_shadow_i) || requests;
 
   always_comb begin
     pixel = '{material: material_i, face: face};

@@ -1,13 +1,15 @@
 // The product of two whole numbers, two clocks later.
 //
-// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: left to synthesis, which cascades DSP slices
-// of 7-series parts and moves both registers into them. 18 x 18: in parts, with a register behind each multiplier and
-// one behind their sum.
+// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: the lowest LogicBits bits of a are multiplied in
+// logic, and all others left to synthesis, which cascades DSP slices of 7-series parts and moves both registers and the
+// sum into them; a few bits in logic may spare a slice. 18 x 18: in parts, with a register behind each multiplier and one
+// behind their sum.
 module voxrt_multiply
   import voxrt_pkg::*;
 #(
   parameter  int unsigned ABits       = 20,
   parameter  int unsigned BBits       = 20,
+  parameter  int unsigned LogicBits   = 0,
   localparam int unsigned ProductBits = ABits + BBits
 ) (
   input  logic                   clk_i,
@@ -18,7 +20,45 @@ module voxrt_multiply
   logic [ProductBits-1:0] product2_q;
   assign product_o = product2_q;
 
-  if (MultiplierBits >= 25) begin : gen_wide
+  if (MultiplierBits >= 25 && LogicBits > 0) begin : gen_split
+    localparam int unsigned HighBits = ProductBits - LogicBits;
+    // The narrower number's digits, two a row, choose multiples of the other.
+    localparam bit          AChooses = LogicBits < BBits;
+    localparam int unsigned ChooseBits = AChooses ? LogicBits : BBits;
+    localparam int unsigned ChosenBits = AChooses ? BBits : LogicBits;
+    localparam int unsigned Rows = (ChooseBits + 1) / 2;
+    localparam int unsigned LowBits = LogicBits + BBits;
+
+    logic [2*Rows-1:0]     chooses;
+    logic [ChosenBits-1:0] chosen;
+    logic [LowBits-1:0]    low, low1_q;
+    logic [HighBits-1:0]   high1_q, high2_q;
+    logic [LogicBits-1:0]  low2_q;
+
+    if (AChooses) begin : gen_a_chooses
+      assign chooses = (2 * Rows)'(a_i[LogicBits-1:0]);
+      assign chosen  = b_i;
+    end else begin : gen_b_chooses
+      assign chooses = (2 * Rows)'(b_i);
+      assign chosen  = a_i[LogicBits-1:0];
+    end
+
+    always_comb begin
+      low = '0;
+      for (int unsigned i = 0; i < Rows; i++) begin
+        low += (LowBits'(chooses[2*i] ? chosen : '0) + LowBits'({chooses[2*i+1] ? chosen : '0, 1'b0})) << (2 * i);
+      end
+    end
+
+    always_ff @(posedge clk_i) begin
+      high1_q <= HighBits'(a_i[ABits-1:LogicBits]) * HighBits'(b_i);
+      low1_q  <= low;
+      high2_q <= high1_q + HighBits'(low1_q[LowBits-1:LogicBits]);
+      low2_q  <= low1_q[LogicBits-1:0];
+    end
+
+    assign product2_q = {high2_q, low2_q};
+  end else if (MultiplierBits >= 25) begin : gen_wide
     logic [ProductBits-1:0] product1_q;
 
     always_ff @(posedge clk_i) begin

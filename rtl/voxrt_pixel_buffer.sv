@@ -37,12 +37,14 @@ module voxrt_pixel_buffer #(
   // All places are cleared in the lap number 0; pixels start with lap 1.
   localparam logic [TagBits-1:0] First = {1'b1, PlaceBits'(0)};
 
-  logic [TagBits-1:0]   take_q, fetch_q, given_q;
-  logic                 clearing_q, fetches, valid1_q, valid2_q, lap2, filled, early, pops, unused_ready;
+  logic [TagBits-1:0]   take_q, fetch_q, given_q, free;
+  logic                 ready_q, clearing_q, fetches, valid1_q, valid2_q, lap2, filled, early, pops, unused_ready;
   logic [2:0]           waiting_q;  // In the FIFO.
   logic [PlaceBits-1:0] write_place;
 
-  assign ready_o     = take_q != (given_q ^ First) && !clearing_q;
+  // A clock late, so that a place may have been taken since: the last free one is not given away.
+  assign free        = (given_q ^ First) - take_q;
+  assign ready_o     = ready_q;
   assign tag_o       = take_q;
   assign write_place = clearing_q ? take_q[PlaceBits-1:0] : tag_i[PlaceBits-1:0];
 
@@ -53,6 +55,7 @@ module voxrt_pixel_buffer #(
   assign pops    = valid_o && ready_i;
 
   always_ff @(posedge clk_i) begin
+    ready_q <= free > TagBits'(1) && !clearing_q && rst_ni;
     if (take_i || clearing_q) take_q <= take_q + 1'b1;
     if (take_q[PlaceBits-1:0] == '1) clearing_q <= 1'b0;
     if (fetches) fetch_q <= fetch_q + 1'b1;

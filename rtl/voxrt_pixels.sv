@@ -46,7 +46,8 @@ module voxrt_pixels
 
   logic    [MergeBits-1:0] tracks[Lanes];
   logic    [MergeBits-1:0] merged;
-  logic                    merged_valid, merged_ready, shaded_valid, shaded_ready;
+  logic    [MergeBits-1:0] chosen;
+  logic                    chosen_valid, chosen_ready, merged_valid, merged_ready, shaded_valid, shaded_ready;
   pixel_t                  shaded;
   brightness_t             brightness;
 
@@ -60,9 +61,22 @@ module voxrt_pixels
     .valid_i,
     .ready_o,
     .pixel_i(tracks),
+    .valid_o(chosen_valid),
+    .ready_i(chosen_ready),
+    .pixel_o(chosen)
+  );
+
+  voxrt_stream_register #(
+    .Width(MergeBits)
+  ) u_merged (
+    .clk_i,
+    .rst_ni,
+    .valid_i(chosen_valid),
+    .ready_o(chosen_ready),
+    .data_i (chosen),
     .valid_o(merged_valid),
     .ready_i(merged_ready),
-    .pixel_o(merged)
+    .data_o (merged)
   );
 
   always_comb for (int unsigned i = 0; i < Lanes; i++) tracks[i] = MergeBits'({lit_i[i], pixel_i[i]});

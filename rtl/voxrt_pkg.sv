@@ -24,6 +24,9 @@ package voxrt_pkg;
   localparam int unsigned MultiplierBits = 25;
 `endif
 
+  // What the narrower side of a DSP48 takes of a number without sign.
+  localparam int unsigned MultiplierSide = 17;
+
   typedef logic [7:0] material_t;
 
   // The axis of a plane; FaceNone where none was crossed. The order of the codes is the order of planes that are
@@ -152,6 +155,16 @@ package voxrt_pkg;
   // From an octree address to its word.
   function automatic int unsigned memory_clocks(bit banked);
     return banked ? 5 : 2;
+  endfunction
+
+  // Rays that go round in a lane.
+  function automatic int unsigned lane_slots(int unsigned clocks);
+    return 10 + clocks;
+  endfunction
+
+  // Bits of the number of a row: a lane's rays and those that wait for it have one each.
+  function automatic int unsigned row_bits(bit light);
+    return light ? 6 : 5;
   endfunction
 
 endpackage

@@ -21,16 +21,15 @@ module voxrt_ray_generator
   output logic                         line_end_o,       // Last pixel of its line.
   output logic                         last_o            // Last pixel of the frame.
 );
-  logic                       corner_q, valid_q, first_q;
+  logic                       corner_q, valid_q, first_q, line_end_q, last_line_q;
   logic        [SizeBits-1:0] column_q, row_q;  // From 1 on.
   logic signed [ScanBits-1:0] direction_q[3], line_q[3], next[3];
-  logic                       advances, turns, line_end, last;
+  logic                       advances, turns, last;
 
-  assign line_end = column_q == width_i;
-  assign last     = line_end && row_q == height_i;
+  assign last     = line_end_q && last_line_q;
   assign advances = corner_i || (valid_q && ready_i);
   // The first line is a step from nothing.
-  assign turns    = corner_i || line_end;
+  assign turns    = corner_i || line_end_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
@@ -45,16 +44,20 @@ module voxrt_ray_generator
       first_q     <= corner_i;
       direction_q <= next;
       column_q    <= column_q + 1'b1;
+      line_end_q  <= column_q + 1'b1 == width_i;
       if (turns) begin
-        line_q   <= next;
-        column_q <= SizeBits'(1);
-        row_q    <= row_q + 1'b1;
+        line_q      <= next;
+        column_q    <= SizeBits'(1);
+        line_end_q  <= width_i == SizeBits'(1);
+        row_q       <= row_q + 1'b1;
+        last_line_q <= row_q + 1'b1 == height_i;
       end
       if (last) valid_q <= 1'b0;
     end
     if (start_i) begin
-      line_q <= '{default: '0};
-      row_q  <= '0;
+      line_q     <= '{default: '0};
+      row_q      <= '0;
+      line_end_q <= 1'b0;
     end
     if (!rst_ni || start_i) valid_q <= 1'b0;
   end
@@ -62,6 +65,6 @@ module voxrt_ray_generator
   assign valid_o     = valid_q;
   assign direction_o = direction_q;
   assign first_o     = first_q;
-  assign line_end_o  = line_end;
+  assign line_end_o  = line_end_q;
   assign last_o      = last;
 endmodule

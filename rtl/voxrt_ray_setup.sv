@@ -134,8 +134,9 @@ module voxrt_ray_setup
 
   for (genvar a = 0; a < 3; a++) begin : gen_weight
     voxrt_multiply #(
-      .ABits(DirectionBits),
-      .BBits(DirectionBits)
+      .ABits    (DirectionBits),
+      .BBits    (DirectionBits),
+      .LogicBits(DirectionBits - MultiplierSide)
     ) u_weight (
       .clk_i,
       .a_i      (size_q[(a+1)%3]),
@@ -214,7 +215,7 @@ module voxrt_ray_setup
 
   // 7: order of the near planes.
   logic signed [TimeBits-1:0] near_q[7:8] [3];
-  logic [2:0]                 ahead_q;  // The near plane is yet to be crossed.
+  logic [2:0]                 ahead_q, enters_q;  // The near plane is yet to be crossed; by moving.
   logic                       later_yx_q, later_zx_q, later_zy_q;
 
   always_ff @(posedge clk_i) begin
@@ -222,7 +223,8 @@ module voxrt_ray_setup
       near_q[7] <= near_time;
       // On a dead axis no plane is at the origin, and 0 is ahead.
       for (int unsigned a = 0; a < 3; a++) begin
-        ahead_q[a] <= !near_time[a][TimeBits-1] && (dead_q[6][a] || near_time[a] != '0);
+        ahead_q[a]  <= !near_time[a][TimeBits-1] && (dead_q[6][a] || near_time[a] != '0);
+        enters_q[a] <= !near_time[a][TimeBits-1] && !dead_q[6][a] && near_time[a] != '0;
       end
       later_yx_q <= near_time[1] >= near_time[0];
       later_zx_q <= near_time[2] >= near_time[0];
@@ -234,17 +236,15 @@ module voxrt_ray_setup
   logic signed [TimeBits-1:0] near[4], entry_time_q;
   logic        [KeyBits-1:0]  entry_time_key_q[9:11];
   face_e                      entry_face, entry_face_q[8:11];
-  logic [2:0]                 enters;
   logic [11:8]                outside_q;
 
-  assign enters = ahead_q & ~dead_q[7];
-  assign near   = '{near_q[7][0], near_q[7][1], near_q[7][2], '0};
+  assign near = '{near_q[7][0], near_q[7][1], near_q[7][2], '0};
 
   always_comb begin
     entry_face = FaceNone;
-    if (enters[0]) entry_face = FaceX;
-    if (enters[1] && (!enters[0] || later_yx_q)) entry_face = FaceY;
-    if (enters[2] && (!enters[1] || later_zy_q) && (!enters[0] || later_zx_q)) entry_face = FaceZ;
+    if (enters_q[0]) entry_face = FaceX;
+    if (enters_q[1] && (!enters_q[0] || later_yx_q)) entry_face = FaceY;
+    if (enters_q[2] && (!enters_q[1] || later_zy_q) && (!enters_q[0] || later_zx_q)) entry_face = FaceZ;
   end
 
   always_ff @(posedge clk_i) begin

@@ -2,8 +2,8 @@
 //   look - right * (width/2) + up * (height/2)
 // digit by digit from the highest, and the step from line to line, -up. One adder an axis.
 //
-// Look, right, up and the halves of width and height must hold from start_i on, during the frame. corner_o comes 2 * SizeBits clocks
-// after start_i; with it, line_step_o is the direction of the top left pixel. Two clocks later it is the step.
+// Look, right, up and the halves of width and height must hold from start_i on, during the frame. corner_o comes 2 * SizeBits + 1
+// clocks after start_i; with it, line_step_o is the direction of the top left pixel. Two clocks later it is the step.
 module voxrt_scan
   import voxrt_pkg::*;
 (
@@ -33,28 +33,27 @@ module voxrt_scan
   logic        [         Digits-1:0] half_width_q, half_height_q;
   logic        [$clog2(Digits)-1:0]  digit_q;
   logic signed [       ScanBits-1:0] sum_q[3];
-  logic                              takes;
-  logic signed [       CameraBits:0] term[3];
-
-  always_comb begin
-    takes = state_q == Right || state_q == Line;
-    for (int unsigned a = 0; a < 3; a++) begin
-      unique case (state_q)
-        Right:   term[a] = half_width_q[Digits-1] ? (CameraBits + 1)'(right_i[a]) : '0;
-        Up:      term[a] = half_height_q[Digits-1] ? (CameraBits + 1)'(up_i[a]) : '0;
-        Look:    term[a] = (CameraBits + 1)'(look_i[a]);
-        default: term[a] = (CameraBits + 1)'(up_i[a]);
-      endcase
-    end
-  end
+  // What a state adds, a clock later: the choice and the sum in one clock would be a long path.
+  logic                              adds_q, doubles_q, takes_q, corner_q;
+  logic signed [       CameraBits:0] term_q[3];
 
   always_ff @(posedge clk_i) begin
+    adds_q    <= state_q != Idle && state_q != Corner && !start_i && rst_ni;
+    doubles_q <= state_q == Right;
+    takes_q   <= state_q == Right || state_q == Line;
+    corner_q  <= state_q == Corner && !start_i && rst_ni;
     for (int unsigned a = 0; a < 3; a++) begin
-      if (state_q != Idle) begin
-        sum_q[a] <= (state_q == Right ? sum_q[a] <<< 1 : sum_q[a]) + (ScanBits'(term[a]) ^ {ScanBits{takes}}) +
-            ScanBits'(takes);
+      unique case (state_q)
+        Right:   term_q[a] <= half_width_q[Digits-1] ? (CameraBits + 1)'(right_i[a]) : '0;
+        Up:      term_q[a] <= half_height_q[Digits-1] ? (CameraBits + 1)'(up_i[a]) : '0;
+        Look:    term_q[a] <= (CameraBits + 1)'(look_i[a]);
+        default: term_q[a] <= (CameraBits + 1)'(up_i[a]);
+      endcase
+      if (adds_q) begin
+        sum_q[a] <= (doubles_q ? sum_q[a] <<< 1 : sum_q[a]) + (ScanBits'(term_q[a]) ^ {ScanBits{takes_q}}) +
+            ScanBits'(takes_q);
       end
-      if (start_i || state_q == Corner) sum_q[a] <= '0;
+      if (start_i || corner_q) sum_q[a] <= '0;
     end
     unique case (state_q)
       Right:   state_q <= Up;
@@ -77,6 +76,6 @@ module voxrt_scan
     if (!rst_ni) state_q <= Idle;
   end
 
-  assign corner_o    = state_q == Corner;
+  assign corner_o    = corner_q;
   assign line_step_o = sum_q;
 endmodule

@@ -102,7 +102,9 @@ module voxrt_shader
   // Of a channel: a colour, or a sum of colours.
   localparam int unsigned ChannelBits = Given ? ColourSumBits : 8;
 
-  colour_t                    table_q[256];
+  // Not in block RAM, which the octree may fill up.
+  (* ram_style = "distributed" *)
+  colour_t                     table_q[256];
   colour_t                     colour1_q;
   logic [2:0][ChannelBits-1:0] channel_q[2:5];  // Red is 0.
   brightness_t                 brightness_q[1:4];
@@ -130,8 +132,9 @@ module voxrt_shader
 
   for (genvar a = 0; a < 3; a++) begin : gen_square
     voxrt_multiply #(
-      .ABits(DirectionBits),
-      .BBits(DirectionBits)
+      .ABits    (DirectionBits),
+      .BBits    (DirectionBits),
+      .LogicBits(DirectionBits - MultiplierSide)
     ) u_square (
       .clk_i,
       .a_i      (size2_q[a]),
@@ -179,9 +182,11 @@ module voxrt_shader
     logic [SquareBits+ChannelBits-1:0] product7;
     logic [SumBits+8:0]                dividend8_q;
 
+    // One DSP slice, and one for the bits that it leaves; in two channels of three, logic for those.
     voxrt_multiply #(
-      .ABits(SquareBits),
-      .BBits(ChannelBits)
+      .ABits    (SquareBits),
+      .BBits    (ChannelBits),
+      .LogicBits(c == 2 ? 0 : SquareBits - (MultiplierBits - 1))
     ) u_product (
       .clk_i,
       .a_i      (square5_q),

@@ -12,7 +12,7 @@ module voxrt_track
   parameter  bit          Mirrors      = 1'b0,
   localparam int unsigned TagBits      = $clog2(PixelDepth) + 1,
   localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
-  localparam int unsigned KeyBits     = key_bits(MaxDepth, Light),
+  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
   localparam int unsigned PayloadBits  = payload_bits(BlockBits),
   localparam int unsigned PlaceBits    = MaxDepth + FractionBits,
   localparam int unsigned Width        = pixel_bits(MaxDepth, Light, Mirrors)
@@ -72,13 +72,15 @@ module voxrt_track
   output logic                         bad_pointer_o,
   output logic                         step_limit_o
 );
+  localparam int unsigned RowBits = row_bits(Light);
+
   typedef struct packed {
     logic                       resolved;
     logic [2:0]                 mirrored;
     logic [2:0]                 dead;
     logic [2:0]                 octant;
-    logic [2:0][WeightBits-1:0] weight;
-    logic [KeyBits-1:0]        entry_time;
+    logic [RowBits-1:0]         row;
+    logic [KeyBits-1:0]         entry_time;
     face_e                      entry_face;
   } ray_t;
 
@@ -88,30 +90,45 @@ module voxrt_track
   logic                         ray_shadow, ray_lit;
   logic        [   TagBits-1:0] ray_tag;
   logic signed [OriginBits-1:0] ray_origin[3];
-  logic        [WeightBits-1:0] ray_weight[3];
+  logic        [   RowBits-1:0] arrival_row, released_row;
+  logic                         releases;
 
   assign ray_in = '{
       resolved: ray_resolved_i,
       mirrored: ray_mirrored_i,
       dead: ray_dead_i,
       octant: ray_octant_i,
-      weight: {ray_weight_i[2], ray_weight_i[1], ray_weight_i[0]},
+      row: arrival_row,
       entry_time: ray_entry_time_i,
       entry_face: ray_entry_face_i
   };
 
-  always_comb for (int unsigned a = 0; a < 3; a++) ray_weight[a] = ray.weight[a];
+  // The weights of a ray go to the lane when it comes, all else by way of the queue.
+  voxrt_free_rows #(
+    .RowBits(RowBits)
+  ) u_free_rows (
+    .clk_i,
+    .rst_ni,
+    .take_i(ray_valid_i),
+    .row_o (arrival_row),
+    .give_i(releases),
+    .row_i (released_row)
+  );
 
-  // Places in the queue that are not promised to a ray of the camera under way.
+  // Places in the queue that are not promised to a ray of the camera under way: as many as there are rows for.
+  localparam int unsigned Rows = 2 ** RowBits - lane_slots(MemoryClocks) - (Light ? RayDepth : 0);
+  localparam int unsigned Places = Rows < RayDepth ? Rows : RayDepth;
   localparam int unsigned CountBits = $clog2(RayDepth) + 1;
   logic [CountBits-1:0] places_q;
+  logic                 returned_q;
 
   assign has_place_o      = places_q != '0;
   assign shadow_started_o = ray_valid && ray_ready && ray_shadow;
 
   always_ff @(posedge clk_i) begin
-    places_q <= places_q - CountBits'(promise_i) + CountBits'(ray_valid && ray_ready && !ray_shadow);
-    if (!rst_ni) places_q <= CountBits'(RayDepth);
+    returned_q <= rst_ni && ray_valid && ray_ready && !ray_shadow;
+    places_q   <= places_q - CountBits'(promise_i) + CountBits'(returned_q);
+    if (!rst_ni) places_q <= CountBits'(Places);
   end
 
   if (Light) begin : gen_two_queues
@@ -135,8 +152,9 @@ module voxrt_track
   end else begin : gen_queue
     // Resolved rays have met the root that is a leaf, or nothing; with mirrors, nothing.
     localparam int unsigned ExtraBits = Mirrors ? 3 * OriginBits : $bits(pixel_t);
-    logic                 unused_ready;
-    logic [ExtraBits-1:0] extra_in, extra;
+    logic                 unused_ready, head_valid, head_ready;
+    logic [ExtraBits-1:0] extra_in, extra, head_extra;
+    ray_t                 head;
 
     voxrt_fifo #(
       .Width($bits(ray_t) + ExtraBits),
@@ -147,6 +165,20 @@ module voxrt_track
       .valid_i(ray_valid_i),
       .ready_o(unused_ready),
       .data_i ({ray_in, extra_in}),
+      .valid_o(head_valid),
+      .ready_i(head_ready),
+      .data_o ({head, head_extra})
+    );
+
+    // The lane decides at once: no memory in the way. (Of two queues, the head may change.)
+    voxrt_stream_register #(
+      .Width($bits(ray_t) + ExtraBits)
+    ) u_head (
+      .clk_i,
+      .rst_ni,
+      .valid_i(head_valid),
+      .ready_o(head_ready),
+      .data_i ({head, head_extra}),
       .valid_o(ray_valid),
       .ready_i(ray_ready),
       .data_o ({ray, extra})
@@ -183,6 +215,7 @@ module voxrt_track
     .BlockBits   (BlockBits),
     .TagBits     (TagBits),
     .MemoryClocks(MemoryClocks),
+    .RowBits     (RowBits),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_lane (
@@ -200,6 +233,11 @@ module voxrt_track
     .table_write_i,
     .table_material_i,
     .table_row_i,
+    .arrives_i         (ray_valid_i),
+    .arrival_row_i     (arrival_row),
+    .arrival_weight_i  (ray_weight_i),
+    .releases_o        (releases),
+    .released_row_o    (released_row),
     .ray_valid_i       (ray_valid),
     .ray_ready_o       (ray_ready),
     .ray_resolved_i    (ray.resolved),
@@ -207,7 +245,7 @@ module voxrt_track
     .ray_mirrored_i    (ray.mirrored),
     .ray_dead_i        (ray.dead),
     .ray_octant_i      (ray.octant),
-    .ray_weight_i      (ray_weight),
+    .ray_row_i         (ray.row),
     .ray_entry_time_i  (ray.entry_time),
     .ray_entry_face_i  (ray.entry_face),
     .ray_origin_i      (ray_origin),

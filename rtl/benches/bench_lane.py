@@ -1,7 +1,7 @@
 """voxrt_lane alone: rays of rays.py, a memory that answers or not, pixels against the oracle of docs/shading.md.
 
 With Light or Mirrors also what stands around it for these: shadow rays come back late and go first, and there are few
-places for them.
+places for them. A ray's weights are there some time before it is offered, in any free row.
 """
 
 import random
@@ -19,11 +19,12 @@ from oracles.shading import Shader, shaded_pixel
 from rays import ray_of, some_direction
 from streams import PACES, drive, pace, reset, start
 
-LEAF, DEPTH = 1 << 9, 3
+LEAF, DEPTH, ROWS = 1 << 9, 3, 32
 SIDE = 1 << DEPTH
 MAX_DEPTH, PLACE, SUM, COUNT = 6, 10, 12, 5
 MATERIALS = (5, 9, 255)
 SHADOW_RAYS = 3
+NOTHING = {"arrives_i": 0, "ray_valid_i": 0, "mem_ack_i": 0, "take_ready_i": 0, "table_write_i": 0}
 
 
 def encoded(word):
@@ -31,15 +32,24 @@ def encoded(word):
     return LEAF | word & 0xFF if word >> 31 else word >> 3
 
 
-def inputs(dut, ray, tag=0):
+def arrival(ray, row):
+    """Give a ray's weights as they come to the lane, before it is offered."""
+    return {
+        "arrives_i": 1,
+        "arrival_row_i": row,
+        "arrival_weight_i": [weight % (1 << 40) for weight in ray.weight],
+    }
+
+
+def inputs(dut, ray, row, tag):
     """Give a ray as the lane takes it; a shadow ray has a tag."""
     return {
+        "ray_row_i": row,
         "ray_resolved_i": ray.resolved,
         "ray_pixel_i": FACE_NONE,
         "ray_mirrored_i": ray.mirrored,
         "ray_dead_i": ray.dead,
         "ray_octant_i": ray.octant,
-        "ray_weight_i": [weight % (1 << 40) for weight in ray.weight],
         "ray_entry_time_i": ray.entry_time % (1 << len(dut.ray_entry_time_i)),
         "ray_entry_face_i": ray.entry_face,
         "ray_origin_i": [place % (1 << len(dut.ray_origin_i[0])) for place in ray.origin],
@@ -49,14 +59,15 @@ def inputs(dut, ray, tag=0):
 
 
 class Surroundings:
-    """Memory, pixel buffer, queues of rays and the maker of shadow rays."""
+    """Memory, pixel buffer, free rows, queues of rays and the maker of shadow rays."""
 
     def __init__(self, dut, words, shader, rays, hurry=0.1):
         self.dut, self.shader, self.hurry = dut, shader, hurry
         self.words = [encoded(int(word)) for word in words]
         self.asked = deque([None] * (int(dut.MemoryClocks.value) - 1))
-        self.rays = deque(inputs(dut, ray) for ray in rays)
-        self.shadow_rays, self.ordered, self.places = deque(), deque(), SHADOW_RAYS
+        self.coming, self.ordered, self.places = deque((ray, 0) for ray in rays), deque(), SHADOW_RAYS
+        self.rays, self.shadow_rays = deque(), deque()  # That wait.
+        self.free_rows = list(range(ROWS))
         self.offers = False
         self.stored, self.lit = [], {}
         self.errors = 0
@@ -74,6 +85,7 @@ class Surroundings:
             if shadow or self.offers:
                 drive(dut, **waiting[0])
             drive(dut, ray_valid_i=shadow or self.offers, ray_shadow_i=shadow)
+            self.arrive()
             await RisingEdge(dut.clk_i)
             taken = int(dut.ray_ready_o.value)
             if taken:
@@ -84,9 +96,30 @@ class Surroundings:
                 assert int(dut.take_ready_i.value)
                 self.stored.append(None)
             self.fill()
+            self.release()
             self.order(taken and shadow)
             self.errors += int(dut.bad_pointer_o.value) + int(dut.step_limit_o.value)
             self.answer(acknowledges)
+
+    def arrive(self):
+        """Let a ray come, which is offered some time later: a shadow ray, or one that leaves rows for these."""
+        ray = None
+        if self.ordered and random.random() < self.hurry:
+            (ray, tag), waiting = self.ordered.popleft(), self.shadow_rays
+        elif self.coming and len(self.free_rows) > SHADOW_RAYS and random.random() < 0.9:
+            (ray, tag), waiting = self.coming.popleft(), self.rays
+        drive(self.dut, arrives_i=0)
+        if ray is not None:
+            row = self.free_rows.pop(random.randrange(len(self.free_rows)))
+            drive(self.dut, **arrival(ray, row))
+            waiting.append(inputs(self.dut, ray, row, tag))
+
+    def release(self):
+        """Take rows back."""
+        if int(self.dut.releases_o.value):
+            row = self.dut.released_row_o.value.to_unsigned()
+            assert row not in self.free_rows, "released twice"
+            self.free_rows.append(row)
 
     def fill(self):
         """Keep what comes for the pixel buffer."""
@@ -114,9 +147,7 @@ class Surroundings:
             assert sub_cell(self.stored[tag]) == (place, mirrored)
             point = lit_point(place, mirrored, face, SIDE)
             way = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
-            self.ordered.append(inputs(dut, ray_of(point, way, SIDE, unit=32, inside=True), tag))
-        if self.ordered and random.random() < self.hurry:
-            self.shadow_rays.append(self.ordered.popleft())
+            self.ordered.append((ray_of(point, way, SIDE, unit=32, inside=True), tag))
 
     def answer(self, acknowledges):
         """Give a word of before, or none."""
@@ -238,11 +269,12 @@ async def trace(dut, scene, sending, taking, **hurry):
         wanted = background if ray.overflow else shaded_pixel(voxels, shader, position, direction)
         assert surroundings.pixel(tag, direction) == wanted, (position, direction)
     assert not surroundings.errors
+    assert len(surroundings.free_rows) == ROWS
 
 
 async def begin(dut):
     """Start with nothing to do."""
-    await start(dut, ray_valid_i=0, ray_shadow_i=0, mem_ack_i=0, take_ready_i=0, request_ready_i=0, table_write_i=0)
+    await start(dut, ray_shadow_i=0, request_ready_i=0, **NOTHING)
 
 
 @cocotb.test()
@@ -277,7 +309,7 @@ async def reset_at_any_clock(dut):
         running = cocotb.start_soon(frame(dut, 60, "random", "random"))
         await ClockCycles(dut.clk_i, random.randrange(1, 400))
         running.cancel()
-        drive(dut, ray_valid_i=0, mem_ack_i=0, take_ready_i=0, table_write_i=0)
+        drive(dut, **NOTHING)
         await reset(dut)
         await ClockCycles(dut.clk_i, 3)
         assert not int(dut.mem_read_o.value)

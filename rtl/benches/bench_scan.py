@@ -21,7 +21,7 @@ async def check(dut):
     drive(dut, look_i=look, right_i=right, up_i=up, half_width_i=width, half_height_i=height, start_i=1)
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)
-    await ClockCycles(dut.clk_i, 2 * SIZE_BITS)
+    await ClockCycles(dut.clk_i, 2 * SIZE_BITS + 1)
     assert int(dut.corner_o.value)
     corner = [value.to_signed() for value in dut.line_step_o.value]
     assert corner == [a - b * width + c * height for a, b, c in zip(look, right, up, strict=True)]

@@ -53,6 +53,8 @@ BUILDS = {
         CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_pixel_generator",)
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
+    "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
+    "free_rows": Build("voxrt_free_rows", {"RowBits": 5}, ("bench_free_rows",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
     "merge": Build("voxrt_merge", {"Lanes": 5}, ("bench_merge",)),
@@ -62,7 +64,9 @@ BUILDS = {
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {"Flat": 1, "Given": 1}, ("bench_shader",)),
-    "multiply": Build("voxrt_multiply", {"ABits": 20, "BBits": 20}, ("bench_multiply",)),
+    "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
+    "multiply-split": Build("voxrt_multiply", {"ABits": 20, "BBits": 20, "LogicBits": 3}, ("bench_multiply",)),
+    "multiply-split-wide": Build("voxrt_multiply", {"ABits": 40, "BBits": 8, "LogicBits": 16}, ("bench_multiply",)),
     "multiply-narrow": Build("voxrt_multiply", {"ABits": 40, "BBits": 20}, ("bench_multiply",), narrow=True),
     "plane_time": Build("voxrt_plane_time", {"DistanceBits": 18}, ("bench_plane_time",)),
     "plane_time-narrow": Build(
