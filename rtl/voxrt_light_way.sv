@@ -1,6 +1,6 @@
 // From a sub-cell that a ray met to the lit point in it and the way from there to the light, both exact:
 //   H_a = 32 p on the axis of the face, H_b = 2 h_b + 1 on the others      D = 2 L - H
-// The lit point after one clock in which enable_i is high, with the way one later.
+// Both after two clocks in which enable_i is high.
 module voxrt_light_way
   import voxrt_pkg::*;
 #(

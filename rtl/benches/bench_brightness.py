@@ -8,7 +8,7 @@ from bench_shader import packed
 from cocotb.triggers import with_timeout
 from streams import PACES, drive, exchange, reset_on_the_way, start
 
-DEPTH, PLACE, SUM, PAYLOAD = 6, 10, 12, 41
+DEPTH, PLACE, SUM = 6, 10, 12
 ANGLE, MEAN, LIGHT = range(3)
 
 
@@ -25,17 +25,19 @@ def some_place(side, face):
     return place
 
 
-def some_pixel(side, light, ambient, flat):
+def some_pixel(dut, side, light, ambient, flat):
     """Make a pixel and what shall be said of it: whether part and sums are given, part / whole, the sums."""
-    face, shade, lit = random.randrange(3), random.choice([ANGLE, MEAN, LIGHT, LIGHT]), random.randrange(2)
+    payload = len(dut.detail_i) - 2
+    shades = [ANGLE] + int(dut.Mirrors.value) * [MEAN] + 2 * int(dut.Light.value) * [LIGHT]
+    face, shade, lit = random.randrange(3), random.choice(shades), random.randrange(2)
     pixel = random.randrange(256) << 2 | face
     item = {"pixel_i": pixel, "lit_i": lit}
     if shade == ANGLE:
-        return item | {"detail_i": random.randrange(1 << PAYLOAD)}, (pixel, 0, 0)
+        return item | {"detail_i": random.randrange(1 << payload)}, (pixel, 0, 0)
     if shade == MEAN:
         count = random.randint(1, 16)
         sums = packed(*((random.randint(0, 255 * count), SUM) for _ in range(3)))
-        detail = packed((MEAN, 2), (sums, 3 * SUM), (count, 5))
+        detail = packed((MEAN, 2), (sums, payload - 5), (count, 5))
         return item | {"detail_i": detail}, (pixel, 1, 1, Fraction(1, count), sums)
     place, mirrored = some_place(side, face), random.randrange(8)
     way = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
@@ -43,7 +45,7 @@ def some_pixel(side, light, ambient, flat):
     part = Fraction(ambient, 256)
     if lit:
         part = Fraction(1) if flat else max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
-    detail = packed((LIGHT, 2), (0, PAYLOAD - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
+    detail = packed((LIGHT, 2), (0, payload - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
     return item | {"detail_i": detail}, (pixel, 1, 0, part)
 
 
@@ -66,7 +68,7 @@ def begin(dut):
     light = [random.randint(-reach, reach) for _ in range(3)]
     ambient, flat = random.choice([0, 255, random.randrange(256)]), random.random() < 0.2
     drive(dut, world_i=side, light_i=light, ambient_i=ambient, flat_i=flat)
-    return lambda: some_pixel(side, light, ambient, flat)
+    return lambda: some_pixel(dut, side, light, ambient, flat)
 
 
 @cocotb.test()

@@ -14,6 +14,9 @@ from oracles.shading import Shader, shaded_pixel
 from voxrt_registers import MATERIALS, REGISTERS
 
 COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
+MIRRORS = frozenset({2, 255})
+# What the oracle is told, and the feature that it belongs to.
+FEATURES = {"flat": "flat", "light": "light", "ambient": "light", "bounces": "mirrors", "mirrors": "mirrors"}
 CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.int32)
 
 
@@ -333,6 +336,30 @@ async def errors_stick_until_cleared(dut):
 
 
 @cocotb.test()
+async def directions_that_are_too_long(dut):
+    """Refuse rays with a component of 2**20 or more, say so, and trace the others of the line."""
+    core = Core(dut)
+    await core.start()
+    voxels = scene(7)
+    await core.load(words_of(voxels))
+    camera = np.array([[-60, 150, -70], [20000, -15000, 20000], [32767, 0, 0], [0, 300, 0]], np.int32)
+    await core.set_frame(camera, 80, 2, 3)
+    await core.write("control", start=1)
+    await core.wait()
+    colour, material, _ = render(voxels, camera, 80, 2, COLOURS)
+    refused = (np.abs(directions(camera, 80, 2)) >= 1 << 20).any(axis=2)
+    assert refused.any()
+    assert (material > 0).any()
+    np.testing.assert_array_equal(core.picture(80, 2), np.where(refused[..., None], COLOURS[0], colour))
+    assert await core.read("status", "direction_overflow") == 1
+    await core.write("status", direction_overflow=1)
+    await core.set_frame(CAMERA, 5, 4, 3)
+    await core.write("control", start=1)
+    await core.wait()
+    assert await core.read("status", "direction_overflow") == 0
+
+
+@cocotb.test()
 async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
     """Shading is latched at the frame's start; a core without a feature shows none, and says so."""
     core = Core(dut)
@@ -342,14 +369,16 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
     assert features == {name for name, built in parameters.items() if int(built.value)}
     voxels = scene(8)
     await core.load(words_of(voxels))
-    red, green, blue = (int(channel) for channel in COLOURS[2])
-    await core.axi.write_dword(MATERIALS + 4 * 2, 1 << 24 | red << 16 | green << 8 | blue)
+    for material in MIRRORS:
+        red, green, blue = (int(channel) for channel in COLOURS[material])
+        await core.axi.write_dword(MATERIALS + 4 * material, 1 << 24 | red << 16 | green << 8 | blue)
     await core.set_frame(CAMERA, 14, 11, 3)
     looks = [
         {"light": (-40, 200, 30), "ambient": 50},
         {"flat": True},
-        {"bounces": 3, "mirrors": frozenset({2})},
-        {"light": (70, 60, 50), "ambient": 7, "flat": True, "bounces": 15, "mirrors": frozenset({2})},
+        {"bounces": 3, "mirrors": MIRRORS},
+        {"light": (70, 60, 50), "ambient": 7, "flat": True, "bounces": 15, "mirrors": MIRRORS},
+        {"light": (-40, 200, 30), "bounces": 1, "mirrors": MIRRORS},
         {},
     ]
     for look, following in itertools.pairwise([{}, *looks, {}]):
@@ -364,5 +393,5 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
             bounces=following.get("bounces", 0),
         )
         await core.wait()
-        built = look if features else {}
+        built = {name: value for name, value in look.items() if FEATURES[name] in features}
         np.testing.assert_array_equal(core.picture(14, 11), shaded(voxels, 14, 11, **built))

@@ -1,0 +1,56 @@
+"""voxrt_light_way against whole numbers of any size; while enable_i is low nothing moves."""
+
+import random
+
+import cocotb
+from bench_brightness import lit_point, some_place
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+from streams import drive, pace
+
+DEPTH = 6
+FARTHEST = 1 << 20  # The light is -2**20 .. 2**20 - 1, in 1/16 voxel.
+LATENCY = 2
+
+
+def some_sub_cell(side):
+    """Make one behind any face, those at the world's ends among them."""
+    face = random.randrange(3)
+    place = some_place(side, face)
+    if random.random() < 0.3:
+        place = [random.choice([0, 16 * side - 1]) for _ in range(3)]
+        place[face] -= place[face] % 16
+    return place, random.randrange(8), face
+
+
+def some_light(side):
+    """Make a light: on planes, in the world, at the ends of its range."""
+    reach = random.choice([16 * side, FARTHEST])
+    return [random.choice([-FARTHEST, FARTHEST - 1, 16 * side, 0, random.randrange(-reach, reach)]) for _ in range(3)]
+
+
+@cocotb.test()
+@cocotb.parametrize(enabled=["always", "random"])
+async def exact(dut, enabled):
+    """Many worlds and lights; a sub-cell for each clock that counts."""
+    drive(dut, enable_i=0)
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    await RisingEdge(dut.clk_i)
+    counts = pace(enabled)
+    for _ in range(40):
+        side = 1 << random.randint(1, DEPTH)
+        light = some_light(side)
+        drive(dut, world_i=side, light_i=light)
+        on_the_way = [None] * LATENCY
+        for _ in range(60):
+            place, mirrored, face = some_sub_cell(side)
+            counted = next(counts)
+            drive(dut, enable_i=counted, place_i=place, mirrored_i=mirrored, face_i=face)
+            await RisingEdge(dut.clk_i)
+            if on_the_way[0] is not None:
+                shown = [[value.to_signed() for value in output.value] for output in (dut.lit_o, dut.way_o)]
+                assert shown == on_the_way[0]
+            if counted:
+                point = lit_point(place, mirrored, face, side)
+                way = [2 * at - own for at, own in zip(light, point, strict=True)]
+                on_the_way = [*on_the_way[1:], [point, way]]
