@@ -405,34 +405,25 @@ module voxrt_rtu
     .out_last_o
   );
 
-  // Counters and errors.
-  logic [31:0] cycles_q, rays_q, words_read_q, hits_q, stalls_q;
-  error_t      error_q;
-
-  always_ff @(posedge clk_i) begin
-    if (busy_q) cycles_q <= cycles_q + 1'b1;
-    if (out_valid_o && out_ready_i) rays_q <= rays_q + 1'b1;
-    if (out_valid_o && out_ready_i && out_pixel_o.material != '0) hits_q <= hits_q + 1'b1;
-    if (out_valid_o && !out_ready_i) stalls_q <= stalls_q + 1'b1;
-    words_read_q <= words_read_q + 32'($countones(word_read));
-    if (ray_valid && overflow) error_q.direction_overflow <= 1'b1;
-    if (bad_pointer != '0 || (start_q && root[PayloadBits] && root[8])) error_q.bad_pointer <= 1'b1;
-    if (step_limit != '0) error_q.step_limit <= 1'b1;
-    if (start) begin
-      cycles_q     <= '0;
-      rays_q       <= '0;
-      hits_q       <= '0;
-      stalls_q     <= '0;
-      error_q      <= '0;
-    end
-    // Not the root, which is read once a frame.
-    if (start_q) words_read_q <= '0;
-  end
-
-  assign cycles_o     = cycles_q;
-  assign rays_o       = rays_q;
-  assign words_read_o = words_read_q;
-  assign hits_o       = hits_q;
-  assign stalls_o     = stalls_q;
-  assign error_o      = error_q;
+  voxrt_counters #(
+    .Lanes(Lanes)
+  ) u_counters (
+    .clk_i,
+    .start_i             (start),
+    .rays_start_i        (start_q),
+    .busy_i              (busy_q),
+    .pixel_valid_i       (out_valid_o),
+    .pixel_ready_i       (out_ready_i),
+    .hit_i               (out_pixel_o.material != '0),
+    .word_read_i         (word_read),
+    .direction_overflow_i(ray_valid && overflow),
+    .bad_pointer_i       (bad_pointer != '0 || (start_q && root[PayloadBits] && root[8])),
+    .step_limit_i        (step_limit != '0),
+    .error_o,
+    .cycles_o,
+    .rays_o,
+    .words_read_o,
+    .hits_o,
+    .stalls_o
+  );
 endmodule
