@@ -97,7 +97,7 @@ async def frame_start(dut):
         "the frame is latched": dut.start,
         "its root is there": rtu.start_q,
         "direction of the corner": rtu.corner,
-        "first direction": rtu.direction_valid,
+        "first direction": rtu.u_rays.direction_valid,
         "first ray for a lane": rtu.ray_valid,
         "first word asked for": rtu.read,
         "first pixel from a lane": rtu.pixel_valid,
