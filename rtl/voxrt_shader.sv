@@ -79,14 +79,19 @@ module voxrt_shader
   // Places in the FIFO that are not promised to a pixel under way.
   localparam int unsigned CreditBits = $clog2(FifoDepth) + 1;
   logic [CreditBits-1:0] credit_q;
-  logic                  leaves;
+  logic                  leaves, has_credit_q;
 
-  assign ready_o = credit_q != '0 && direction_valid;
+  assign ready_o = has_credit_q && direction_valid;
   assign enters  = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
-    credit_q <= credit_q - CreditBits'(enters) + CreditBits'(leaves);
-    if (!rst_ni) credit_q <= CreditBits'(FifoDepth);
+    credit_q     <= credit_q - CreditBits'(enters) + CreditBits'(leaves);
+    // A clock late, in which a pixel may have entered.
+    has_credit_q <= credit_q > CreditBits'(1);
+    if (!rst_ni) begin
+      credit_q     <= CreditBits'(FifoDepth);
+      has_credit_q <= 1'b0;
+    end
   end
 
   logic [Stages:1] valid_q;

@@ -120,14 +120,16 @@ module voxrt_track
   localparam int unsigned Places = Rows < RayDepth ? Rows : RayDepth;
   localparam int unsigned CountBits = $clog2(RayDepth) + 1;
   logic [CountBits-1:0] places_q;
-  logic                 returned_q;
+  logic                 returned_q, has_place_q;
 
-  assign has_place_o      = places_q != '0;
+  assign has_place_o      = has_place_q;
   assign shadow_started_o = ray_valid && ray_ready && ray_shadow;
 
   always_ff @(posedge clk_i) begin
-    returned_q <= rst_ni && ray_valid && ray_ready && !ray_shadow;
-    places_q   <= places_q - CountBits'(promise_i) + CountBits'(returned_q);
+    returned_q  <= rst_ni && ray_valid && ray_ready && !ray_shadow;
+    places_q    <= places_q - CountBits'(promise_i) + CountBits'(returned_q);
+    // A clock late, in which a place may have been promised.
+    has_place_q <= places_q > CountBits'(1) && rst_ni;
     if (!rst_ni) places_q <= CountBits'(Places);
   end
 

@@ -1,6 +1,7 @@
 """What every test runs under."""
 
 import os
+import signal
 import sysconfig
 from pathlib import Path
 
@@ -11,6 +12,10 @@ import voxrt
 # One fixed sequence of examples, so that a failure seen once is seen again; no deadlines: slow machines pass too.
 hypothesis.settings.register_profile("voxrt", derandomize=True, deadline=None, database=None)
 hypothesis.settings.load_profile("voxrt")
+
+# A shell starts background jobs deaf to Ctrl-C, and what these start inherits that: tests of interruption would fail.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 if os.environ.get("VOXRT_EXPECT_INSTALLED"):
     installed = Path(sysconfig.get_paths()["platlib"])
