@@ -24,7 +24,7 @@ from typing import Any
 RTL = Path(__file__).resolve().parent
 ROOT = RTL.parent
 RESULTS = ROOT / "bench" / "results" / "area.md"
-TOP = "voxrt_pixel_generator"
+TOP = "voxrt_core"
 LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 9}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}

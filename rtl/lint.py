@@ -14,7 +14,7 @@ from pathlib import Path
 
 RTL = Path(__file__).parent
 GENERATED = RTL / "generated"
-TOP = "voxrt_pixel_generator"
+TOP = "voxrt_core"
 
 
 def main() -> int:

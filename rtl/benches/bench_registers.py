@@ -4,7 +4,7 @@ import random
 import re
 
 import cocotb
-from bench_pixel_generator import Core
+from bench_core import Core
 from cocotb.triggers import ClockCycles
 from run import GENERATED
 from voxrt_registers import MATERIALS, REGISTERS

@@ -9,7 +9,7 @@ import itertools
 import random
 
 import cocotb
-from bench_pixel_generator import COLOURS, Core
+from bench_core import COLOURS, Core
 from cocotb.triggers import RisingEdge
 from oracles.ray import FACE_NONE, shade
 

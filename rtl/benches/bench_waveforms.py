@@ -5,7 +5,7 @@ from pathlib import Path
 
 import cocotb
 import numpy as np
-from bench_pixel_generator import CAMERA, Core, scene
+from bench_core import CAMERA, Core, scene
 from cocotb.triggers import ClockCycles, RisingEdge
 from oracles.memory import words_of
 

@@ -27,7 +27,7 @@ CONFIGURATIONS = {
     name: {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
     for name, parameters in json.loads((RTL / "configurations.json").read_text()).items()
 }
-CORE = "voxrt_pixel_generator"
+CORE = "voxrt_core"
 SEED = 1  # Of all that is random: what fails, fails again.
 
 
@@ -42,15 +42,15 @@ class Build(NamedTuple):
 
 
 BUILDS = {
-    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_pixel_generator", "bench_registers", "bench_waveforms")),
-    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_pixel_generator",), narrow=True),
+    "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
+    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True),
     "banked-light": Build(
         CORE,
         {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Banked": 1, "Light": 1},
-        ("bench_pixel_generator",),
+        ("bench_core",),
     ),
     "mirrors": Build(
-        CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_pixel_generator",)
+        CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_core",)
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),

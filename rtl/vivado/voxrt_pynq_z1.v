@@ -45,7 +45,7 @@ module voxrt_pynq_z1 (
   output wire        m_axis_tuser,
   output wire        m_axis_tlast
 );
-  voxrt_pixel_generator #(
+  voxrt_core #(
     .Lanes       (16),
     .MaxDepth    (10),
     .PositionBits(17),

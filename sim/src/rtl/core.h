@@ -1,4 +1,4 @@
-// A voxrt_pixel_generator with a board around it: a master on its AXI4-Lite registers, a controller on its memory port,
+// A voxrt_core with a board around it: a master on its AXI4-Lite registers, a controller on its memory port,
 // and a sink for its AXI4-Stream video. Time passes by clocks, and only in these calls.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The whole core, voxrt_pixel_generator, for Python, with a board's surroundings. Every argument is checked here.
+// The whole core, voxrt_core, for Python, with a board's surroundings. Every argument is checked here.
 //
 //   CORES: list[str]          names of the configurations that were built so
 //   PixelGenerator(config)    one instance, out of reset; one call at a time (RuntimeError). Its clock ticks in these
@@ -154,7 +154,7 @@ private:
 
 } // namespace
 
-void bind_pixel_generator(nb::module_& m) {
+void bind_core(nb::module_& m) {
     std::vector<std::string> names;
     for (const CoreConfiguration& configuration : cores)
         names.emplace_back(configuration.name);

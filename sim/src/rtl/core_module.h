@@ -5,6 +5,6 @@
 
 namespace voxrt::rtl {
 
-void bind_pixel_generator(nanobind::module_& m);
+void bind_core(nanobind::module_& m);
 
 } // namespace voxrt::rtl

@@ -234,5 +234,5 @@ NB_MODULE(_rtl, m) {
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
              "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0);
-    voxrt::rtl::bind_pixel_generator(m);
+    voxrt::rtl::bind_core(m);
 }

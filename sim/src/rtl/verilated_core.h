@@ -1,4 +1,4 @@
-// Drives a verilated voxrt_pixel_generator by its pins.
+// Drives a verilated voxrt_core by its pins.
 #pragma once
 
 #include "core.h"

@@ -6,7 +6,7 @@
 // Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). What
 // is read comes memory_clocks(Banked) clocks after its address: set the controller's read latency so. Write a scene
 // while control.hold is set and status.busy clear; writing at other times shows in the frame, and harms nothing else.
-module voxrt_pixel_generator
+module voxrt_core
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes        = 1,
