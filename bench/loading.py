@@ -24,7 +24,7 @@ import DracoPy
 import numpy as np
 import trimesh
 
-from voxrt.voxelize.load import load
+from voxrt.voxelize.assets import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable

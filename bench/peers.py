@@ -19,12 +19,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 from peer import MAKES, TOOLS
+from peers_run import Run
 
 from voxelize import SKULL, displaced_sphere
 from voxrt.voxelize import load
@@ -35,24 +36,6 @@ PLOTS = ROOT / "docs" / "pictures" / "peers.svg"
 DEPTHS = (7, 8, 9, 10)
 OUR_DEPTHS = (*DEPTHS, 11, 12)
 NO_MEMORY = ("MemoryError", "bad_alloc", "Unable to allocate", "Cannot allocate memory", "out of memory")
-
-
-@dataclass(frozen=True)
-class Run:
-    """What one tool made of one mesh at one depth, or why it did not: medians of the runs."""
-
-    tool: str
-    mesh: str
-    depth: int
-    failure: str = ""
-    wall: float = 0.0
-    """Seconds of the whole process."""
-    step: float = 0.0
-    """Seconds from the mesh's arrays to the voxels."""
-    peak: float = 0.0
-    """Most resident memory, MB."""
-    voxels: int = 0
-    words: int = 0
 
 
 def meshes(folder: Path) -> dict[str, Path]:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from peers import Run
+    from peers_run import Run
 
 COLOURS = {
     "voxrt": "#d62728",

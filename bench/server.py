@@ -17,14 +17,14 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from voxrt.board.client import visit
-from voxrt.board.server import FrameServer, Listening
-from voxrt.board.show import Program
-from voxrt.sim.device import ModelDevice
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.serve.client import visit
+from voxrt.serve.server import FrameServer, Listening
+from voxrt.serve.show import Program
 from voxrt.staging import BuildingReader, load_scene
 
 if TYPE_CHECKING:
-    from voxrt.board.client import Client
+    from voxrt.serve.client import Client
 
 ORIGINAL_LATENCY = 0.2
 STEPS = 100

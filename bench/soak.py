@@ -32,14 +32,14 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
 import voxrt
-from voxrt.board.client import visit
 from voxrt.board.errors import Refused
-from voxrt.board.packets import CHUNK_LIMIT
+from voxrt.serve.client import visit
+from voxrt.serve.packets import CHUNK_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from voxrt.board.client import Client
+    from voxrt.serve.client import Client
 
 RESULTS = Path(__file__).resolve().parent / "results" / "soak.md"
 SCENE = Path(__file__).resolve().parents[1] / "examples" / "courtyard.glb"

@@ -140,7 +140,9 @@ def examine_all() -> list[Row]:
     """Examine every listed asset, each in a process of its own."""
     context = multiprocessing.get_context("forkserver")
     # What every process needs is imported once, before they part.
-    context.set_forkserver_preload(["voxrt", "voxrt.voxelize.gltf", "voxrt.voxelize.obj", "voxrt.voxelize.usd"])
+    context.set_forkserver_preload(
+        ["voxrt", "voxrt.voxelize.formats.gltf", "voxrt.voxelize.formats.obj", "voxrt.voxelize.formats.usd"]
+    )
     with ThreadPoolExecutor(PROCESSES) as pool:
         return list(pool.map(lambda asset: _examine_apart(context, asset), listed_assets(ROOT)))
 

@@ -12,9 +12,9 @@ import sys
 import threading
 from pathlib import Path
 
-from voxrt.board.server import FrameServer, Listening
-from voxrt.board.show import Program
-from voxrt.sim.device import ModelDevice
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.serve.server import FrameServer, Listening
+from voxrt.serve.show import Program
 from voxrt.staging import BuildingReader, load_scene
 
 REPOSITORY = Path(__file__).resolve().parents[1]
@@ -25,7 +25,7 @@ DEPTH = 7
 SHOTS = (("page", "courtyard", (1280, 800), True), ("page-phone", "dog", (500, 840), False))
 
 sys.path.append(str(REPOSITORY / "tests"))
-from stand_ins.browser import chromium  # noqa: E402 - the tests' own browser
+from fakes.browser import chromium  # noqa: E402 - the tests' own browser
 
 
 async def serve(ready: threading.Event, finished: threading.Event, told: dict[str, str]) -> None:

@@ -14,8 +14,8 @@ from matplotlib import pyplot as plt
 from PIL import Image
 
 import voxrt
-from voxrt import octree
-from voxrt.sight import find_owners, preview_of, scene_triangles
+from voxrt import view
+from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 
 EXAMPLES = Path(__file__).resolve().parent
 PICTURES = EXAMPLES.parent / "docs" / "pictures"
@@ -45,19 +45,19 @@ def show_octants() -> None:
     assert house.rom.grid is not None
     preview = preview_of(rom, voxrt.aim_camera(rom, (640, 480)), (640, 480), (320, 240))
     for name, panes, size, beside in (
-        ("octants", [octree.Pane(rom)], (800, 600), None),
-        ("octants-ray", [octree.Pane(rom)], (1024, 640), preview),
-        ("octants-slice", [octree.Pane(rom, high=(60, 128, 100), cut=True, by="level")], (640, 480), None),
-        ("octants-owners", [octree.Pane(rom, by="owner", owners=find_owners(scene, grid))], (640, 480), None),
+        ("octants", [view.Pane(rom)], (800, 600), None),
+        ("octants-ray", [view.Pane(rom)], (1024, 640), preview),
+        ("octants-slice", [view.Pane(rom, high=(60, 128, 100), cut=True, by="level")], (640, 480), None),
+        ("octants-owners", [view.Pane(rom, by="owner", owners=find_owners(scene, grid))], (640, 480), None),
         (
             "octants-mesh",
-            [octree.Pane(house.rom, triangles=scene_triangles(house.scene, house.rom.grid))],
+            [view.Pane(house.rom, triangles=scene_triangles(house.scene, house.rom.grid))],
             (640, 480),
             None,
         ),
-        ("octants-pair", [octree.Pane(rom), octree.Pane(pruned)], (1024, 400), None),
+        ("octants-pair", [view.Pane(rom), view.Pane(pruned)], (1024, 400), None),
     ):
-        picture = Image.fromarray(octree.picture(panes, size, preview=beside))
+        picture = Image.fromarray(view.picture(panes, size, preview=beside))
         file = PICTURES / f"{name}.png"
         picture.quantize(200, dither=Image.Dither.NONE).save(file, optimize=True)
         print(file)

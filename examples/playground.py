@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from functools import reduce
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import voxrt
 from voxrt import octree, voxelize
-from voxrt.voxelize import Scene, author
-from voxrt.voxelize.author import Solid, box, box_between, extrude, sphere
+from voxrt.voxelize.authoring import author
+from voxrt.voxelize.authoring.author import Solid, box, box_between, extrude, sphere
+
+if TYPE_CHECKING:
+    from voxrt.voxelize import Scene
 
 COLOURS = {
     "grass": "#6aa84f",

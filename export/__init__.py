@@ -2,7 +2,7 @@
 
 from voxrt.export.blob import Blob, Lighting, View, blob_bytes, read_blob, write_blob
 from voxrt.export.coe import read_coe, write_coe
-from voxrt.export.convert import READABLE_SUFFIXES, WRITABLE_SUFFIXES, convert, read_any
+from voxrt.export.conversion import READABLE_SUFFIXES, WRITABLE_SUFFIXES, convert, read_any
 from voxrt.export.info import RomInfo, rom_info
 from voxrt.export.listing import read_listing
 from voxrt.export.manifest import Manifest, Source, read_manifest, write_manifest
@@ -11,6 +11,7 @@ from voxrt.export.mif import read_mif, write_mif
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import read_raw, write_raw
 from voxrt.export.rom_files import WORD_SUFFIXES, RomFiles, read_rom, write_rom
+from voxrt.export.vox import read_vox, write_vox
 from voxrt.export.word_file import WordFile
 
 __all__ = [
@@ -37,6 +38,7 @@ __all__ = [
     "read_mif",
     "read_raw",
     "read_rom",
+    "read_vox",
     "rom_info",
     "write_blob",
     "write_coe",
@@ -45,4 +47,5 @@ __all__ = [
     "write_mif",
     "write_raw",
     "write_rom",
+    "write_vox",
 ]

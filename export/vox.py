@@ -1,6 +1,7 @@
-"""Memories as MagicaVoxel scenes: models of at most 256 voxels a side, placed by a scene graph.
+"""Memories as MagicaVoxel scenes and back.
 
-MagicaVoxel's z is up; ours is y. Voxel (x, y, z) goes to (x, -z, y), the way back of :func:`voxrt.octree.read_vox`.
+MagicaVoxel's z is up; ours is y. A voxel (x, y, z) of the memory is voxel (x, -z, y) of the file: a rotation, so
+nothing is mirrored. Files hold models of at most 256 voxels per side, placed by a scene graph.
 The format: https://github.com/ephtracy/voxel-model (MagicaVoxel-file-format-vox.txt, -extension.txt).
 """
 
@@ -8,25 +9,52 @@ from __future__ import annotations
 
 import struct
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
-from voxrt.octree import solid_bounds, to_dense
+from voxrt.octree import MAX_DEPTH, Rom, from_points, solid_bounds, to_dense
 from voxrt.voxelize import DoesNotFitError
+from voxrt.voxelize.formats.vox import load_vox
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from voxrt.octree import Rom
+    from voxrt.voxelize import SceneWarning
 
 _MODEL = 256  # the most voxels a side of a model
 _WORLD = 2048  # and of a scene
 _VERSION = 150
+
+
+def read_vox(path: Path | str) -> tuple[Rom, tuple[SceneWarning, ...]]:
+    """Read a MagicaVoxel file.
+
+    The world is the smallest cube that holds every visible instance, its lowest corner that of their bounds. Where
+    instances overlap, the first in the file wins. Materials are the colours in use, in the order of the palette.
+
+    Raises
+    ------
+    AssetError
+        The file cannot be read, breaks the format, or holds no visible voxel.
+    DoesNotFitError
+        The scene is wider than 2**16 voxels, or holds more than 2**25.
+    """
+    path = Path(path)
+    scene = load_vox(path)
+    low = scene.coordinates.min(axis=0)
+    span = int((scene.coordinates.max(axis=0) - low).max()) + 1
+    depth = max(1, (span - 1).bit_length())
+    if depth > MAX_DEPTH:
+        raise DoesNotFitError(
+            f"{path}: {span} voxels from end to end do not fit depth {MAX_DEPTH}; move the parts closer"
+        )
+    tree = from_points(scene.coordinates - low, scene.material_ids, depth)
+    return Rom(path.stem, tree, scene.materials), scene.warnings
 
 
 def write_vox(path: Path, rom: Rom, high: tuple[int, int, int] | None = None) -> None:

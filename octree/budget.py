@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.diff import diff
+from voxrt.octree.difference import diff
 from voxrt.octree.octree import Octree
 from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError

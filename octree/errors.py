@@ -1,4 +1,4 @@
-"""What octree says of a memory that is not one, and of one that cannot be shown."""
+"""What octree says of a memory that is not one."""
 
 from __future__ import annotations
 
@@ -13,10 +13,6 @@ if TYPE_CHECKING:
 
 class RomError(Exception):
     """A malformed octree memory, in one line: file or value, the word's address, what is wrong, how to fix it."""
-
-
-class ViewerError(Exception):
-    """The viewer is not installed or has no screen to open a window on, in one line."""
 
 
 def place(address: int, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None) -> str:

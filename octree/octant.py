@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.octree.leaves import Leaves
+    from voxrt.octree.leaf_arrays import Leaves
     from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from voxrt.octree.rom import Rom
-
 MAX_DEPTH = 16
 """The most levels below the root: 65 536 voxels a side."""
 
@@ -44,23 +42,3 @@ class Octree:
     def blocks(self) -> int:
         """How many blocks of 8 words the memory holds."""
         return (len(self.words) - 1) // 8
-
-    def _repr_png_(self) -> bytes:
-        from voxrt.octree.notebook import rom_png  # noqa: PLC0415 - notebooks alone draw
-
-        return rom_png(_bare(self), "level")
-
-    def _repr_html_(self) -> str:
-        from voxrt.octree.notebook import card, octree_rows  # noqa: PLC0415
-
-        return card(octree_rows(self), self._repr_png_())
-
-
-def _bare(octree: Octree) -> Rom:
-    """Give an octree the materials that a picture of its levels needs: none but empty space."""
-    from voxrt.octree.rom import Rom  # noqa: PLC0415 - it holds an octree
-    from voxrt.voxelize import EMPTY, Material  # noqa: PLC0415
-
-    return Rom(
-        "octree", octree, (EMPTY, *(Material(f"material {number}", (200, 200, 200)) for number in range(1, 256)))
-    )

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree.leaves import solid_leaves
+from voxrt.octree.leaf_arrays import solid_leaves
 from voxrt.octree.morton import morton
 from voxrt.octree.octant import octant_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.octree.leaves import Leaves
+    from voxrt.octree.leaf_arrays import Leaves
     from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 

@@ -30,14 +30,3 @@ class Rom:
     octree: Octree
     materials: tuple[Material, ...]
     grid: Grid | None = None
-
-    def _repr_png_(self) -> bytes:
-        from voxrt.octree.notebook import rom_png  # noqa: PLC0415 - notebooks alone draw
-
-        return rom_png(self, "material")
-
-    def _repr_html_(self) -> str:
-        from voxrt.octree.notebook import card, octree_rows  # noqa: PLC0415
-
-        materials = ", ".join(material.name for material in self.materials[1:])
-        return card([("name", self.name), *octree_rows(self.octree), ("materials", materials)], self._repr_png_())

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from voxrt.octree.build import from_points
+from voxrt.octree.construct import from_points
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.voxelize import DoesNotFitError
 

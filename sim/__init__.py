@@ -13,12 +13,12 @@ from voxrt.sim.camera import (
     outline,
     pixel_directions,
 )
-from voxrt.sim.compare import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
+from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
-from voxrt.sim.render import Engine, EngineCheck, check, render, shader_features
+from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 

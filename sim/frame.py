@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from voxrt.octree.notebook import card, encode_png
-
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -57,17 +55,3 @@ class Frame:
     material: NDArray[np.uint8]
     face: NDArray[np.uint8]
     cost: RenderCost
-
-    def _repr_png_(self) -> bytes:
-        return encode_png(self.colour)
-
-    def _repr_html_(self) -> str:
-        height, width = self.material.shape
-        rows = [
-            ("picture", f"{width}x{height} pixels"),
-        ]
-        for name, count, each in (("cycles", self.cost.cycles, "pixel"), ("words", self.cost.words_read, "ray")):
-            if count is not None:
-                rows.append((name, f"{count:,}, {count / self.cost.rays:.2f} a {each}"))
-        rows.append(("seconds", f"{self.cost.seconds:.3f}"))
-        return card(rows, self._repr_png_())

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from PIL import Image
+
 from voxrt.export.atomic import write_atomically
-from voxrt.octree.notebook import encode_png
 
 if TYPE_CHECKING:
     import os
 
     import numpy as np
     from numpy.typing import NDArray
+
+
+def encode_png(colour: NDArray[np.uint8]) -> bytes:
+    """Encode a picture (uint8, shape (H, W, 3), sRGB) as a PNG file's bytes: the same pixels give the same bytes."""
+    encoded = io.BytesIO()
+    Image.fromarray(colour, "RGB").save(encoded, format="PNG")
+    return encoded.getvalue()
 
 
 def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:

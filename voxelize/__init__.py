@@ -4,10 +4,12 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
+from voxrt.voxelize.assets import load
+from voxrt.voxelize.colour.paint import Coat, Paint
+from voxrt.voxelize.colour.texture import Texture
+from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, tint
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid, fit_grid
-from voxrt.voxelize.load import load
-from voxrt.voxelize.paint import Coat, Paint
 from voxrt.voxelize.scene import (
     DEFAULT_COLOUR,
     EMPTY,
@@ -25,9 +27,7 @@ from voxrt.voxelize.scene import (
     Tints,
     Viewpoint,
 )
-from voxrt.voxelize.texture import Texture
-from voxrt.voxelize.tint import DEFAULT_COLOURS, tint
-from voxrt.voxelize.voxelize import voxelize
+from voxrt.voxelize.voxelizer import voxelize
 from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
 
 __all__ = [

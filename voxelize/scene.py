@@ -13,8 +13,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.colour.paint import Coat
     from voxrt.voxelize.errors import SceneWarning
-    from voxrt.voxelize.paint import Coat
 
 
 @dataclass(frozen=True, slots=True)

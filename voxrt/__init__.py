@@ -12,6 +12,7 @@ The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`vox
 :mod:`voxrt.sim`.
 """
 
+import sys
 from importlib import import_module
 from pkgutil import extend_path
 from typing import TYPE_CHECKING
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from voxrt.export import WRITABLE_SUFFIXES, Lighting, convert, read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
-    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
     from voxrt.sim import (
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
         comparison_sheet,
         shader_features,
     )
+    from voxrt.view import ViewerError
     from voxrt.viewpoint import ViewpointError, aim_camera
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
 
@@ -94,7 +96,7 @@ __all__ = [
 _HOMES = {
     "voxrt.export": ("WRITABLE_SUFFIXES", "Lighting", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
-    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "ViewerError", "diff", "differing_regions"),
+    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "diff", "differing_regions"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
@@ -110,6 +112,7 @@ _HOMES = {
         "comparison_sheet",
         "shader_features",
     ),
+    "voxrt.view": ("ViewerError",),
     "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
     "voxrt.voxelize": (
         "AssetError",
@@ -133,3 +136,7 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+if "IPython" in sys.modules:  # a notebook: it finds the cards on the values' classes
+    import_module("voxrt.view.cards")

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from voxrt.octree import Dialect, Rom
     from voxrt.sim import Camera, Engine, Frame
     from voxrt.voxelize import Grid, ObjectReport, Scene
+    from voxrt.voxelize.assets import UpAxis
     from voxrt.voxelize.colliders import Geometry, Pow2
-    from voxrt.voxelize.load import UpAxis
 
 DEFAULT_DEPTH = 7
 """Levels of the octree when neither they nor the voxels' size are given."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import voxelize
-from voxrt.board.blob import read_blob
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Lighting, Scene
 from voxrt.board.view import Camera
@@ -17,8 +16,9 @@ from voxrt.export import Blob, read_any
 from voxrt.export import Lighting as Wanted
 from voxrt.octree import RomError
 from voxrt.pipeline import PREVIEW_SIZE, build
+from voxrt.serve.blob import read_blob
 from voxrt.sim import frame_scene
-from voxrt.voxelize.load import SUFFIXES
+from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 import voxrt
 from voxrt import octree, voxelize
-from voxrt.voxelize import author
+from voxrt.voxelize.authoring import author
 
 ball = author.sphere(1.0)
 shell = ball - author.sphere(0.86)

@@ -14,9 +14,9 @@ import numpy as np
 
 import voxrt
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.core import open_rtl
 from voxrt.board.view import View
 from voxrt.export import Blob
-from voxrt.sim.rtl_device import open_rtl
 from voxrt.staging import board_scene
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]

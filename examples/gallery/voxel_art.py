@@ -13,10 +13,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import voxrt
-from voxrt import octree
+from voxrt import export, octree
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
-art, warnings = octree.read_vox(EXAMPLES / "toadstool.vox")
+art, warnings = export.read_vox(EXAMPLES / "toadstool.vox")
 names = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in (material.colour for material in art.materials[1:])]
 print(f"{art.octree.size} voxels a side, {octree.census(art.octree).solid_voxels:,} solid; colours {', '.join(names)}")
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fakes.pynq import BASE, Core, install
 from oracles import worlds
 from oracles.cuts import memory_of
-from stand_ins.pynq import BASE, Core, install
 
 from voxrt.board import register_device
 from voxrt.board import vdma as vdma_module
@@ -21,10 +21,10 @@ from voxrt.board.pynq_device import PARTS, open_pynq
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Camera, View
 from voxrt.board.view_check import check_view
 from voxrt.board.viewpoint import face_world
-from voxrt.sim.device import ModelDevice
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"

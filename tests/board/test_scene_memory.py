@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fakes.device import PaintedDevice, scene, wide_scene
 from hypothesis import given
 from hypothesis import strategies as st
-from stand_ins.device import PaintedDevice, scene, wide_scene
 
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.board.scene import Scene, check_memory, relocate

@@ -142,7 +142,7 @@ def test_check_counts_wrong_pixels(voxrt):
 
 @pytest.mark.usefixtures("ray_tracer", "built")
 def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
-    module = sys.modules["voxrt.sim.render"]
+    module = sys.modules["voxrt.sim.rendering"]
     render = module.render
 
     def wrong(*arguments, engine, **options):

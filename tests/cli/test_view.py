@@ -9,8 +9,9 @@ import pytest
 from PIL import Image
 
 from voxrt import read_any, read_rom
-from voxrt.octree import ViewerError, octants, to_dense
-from voxrt.octree.stage import check_screen
+from voxrt.octree import to_dense
+from voxrt.view import ViewerError, octants
+from voxrt.view.plotter import check_screen
 
 SMALL = ("--size", "96x72")
 

@@ -18,8 +18,8 @@ from oracles.gltf_writer import glb
 from oracles.rich_gltf import rich
 
 from voxrt import export, octree, voxelize
-from voxrt.board.blob import read_blob as read_blob_on_the_board
 from voxrt.board.errors import Refused
+from voxrt.serve.blob import read_blob as read_blob_on_the_board
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -26,12 +26,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 with atheris.instrument_imports(include=["voxrt"]):
     from fuzz.readers import READERS
 
+    import voxrt.voxelize.authoring.scene_toml
+
     # Those that load() would import after instrumenting is over.
-    import voxrt.voxelize.gltf
-    import voxrt.voxelize.obj
-    import voxrt.voxelize.ply
-    import voxrt.voxelize.scene_toml
-    import voxrt.voxelize.stl  # noqa: F401
+    import voxrt.voxelize.formats.gltf
+    import voxrt.voxelize.formats.obj
+    import voxrt.voxelize.formats.ply
+    import voxrt.voxelize.formats.stl.load  # noqa: F401
 
 _MEMORY = 3 << 30
 _LARGEST_SEED = 16 << 10

@@ -9,7 +9,7 @@ import pytest
 from voxrt.octree import Rom, from_dense
 from voxrt.sim import Camera, SimulatorError, compare, comparison_sheet, frame_scene, render
 from voxrt.voxelize import EMPTY, Coat, Grid, Material, Mesh, Paint, Scene, SceneObject
-from voxrt.voxelize.colour import linear_from_srgb
+from voxrt.voxelize.colour.srgb import linear_from_srgb
 
 SIZE = (96, 72)
 MATERIALS = (EMPTY, Material("red", (220, 60, 40)), Material("blue", (40, 60, 220)))

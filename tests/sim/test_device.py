@@ -14,13 +14,13 @@ from oracles.cuts import memory_of
 from voxrt.board import register_device
 from voxrt.board.errors import DeviceError
 from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.core import open_rtl
+from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View
 from voxrt.board.viewpoint import refit
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
 from voxrt.sim import Camera, Light, NoSuchConfigurationError, Shading, SimulatorError, render
-from voxrt.sim.device import ModelDevice
-from voxrt.sim.rtl_device import open_rtl
 from voxrt.staging import board_scene
 from voxrt.voxelize import Material
 

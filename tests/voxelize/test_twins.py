@@ -5,7 +5,7 @@ import pytest
 from assets import asset
 
 from voxrt.voxelize import fit_grid, voxelize
-from voxrt.voxelize.load import load
+from voxrt.voxelize.assets import load
 
 ARRAYS = ("brick_codes", "brick_masks", "octant_codes", "octant_levels")
 

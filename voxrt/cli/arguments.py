@@ -54,7 +54,7 @@ def bind_preview(arguments: Sequence[str]) -> list[str]:
 
 
 def _is_asset(name: str) -> bool:
-    from voxrt.voxelize.load import SUFFIXES  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     return Path(name).suffix.lower() in SUFFIXES
 

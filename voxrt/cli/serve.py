@@ -20,8 +20,8 @@ from voxrt.cli.results import print_json
 if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.board.server import Listening
-    from voxrt.board.show import Program
+    from voxrt.serve.server import Listening
+    from voxrt.serve.show import Program
 
 _port = Parameter(converter=whole, metavar="PORT")
 
@@ -67,9 +67,9 @@ def serve(
     reporting
         How to tell what is done: --json prints the page's address on standard output.
     """
-    from voxrt.board.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
-    from voxrt.board.server import Listening  # noqa: PLC0415
-    from voxrt.board.show import Program  # noqa: PLC0415
+    from voxrt.serve.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
+    from voxrt.serve.server import Listening  # noqa: PLC0415
+    from voxrt.serve.show import Program  # noqa: PLC0415
     from voxrt.staging import BuildingReader  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
@@ -91,8 +91,8 @@ def open_device(name: str, config: str, bitstream: Path | None = None) -> Device
     """Open a device of this machine: ``model``, ``sim`` or ``pynq``."""
     from voxrt.board.errors import DeviceError  # noqa: PLC0415 - NumPy comes with it
     from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
-    from voxrt.sim.device import ModelDevice  # noqa: PLC0415
-    from voxrt.sim.rtl_device import open_rtl  # noqa: PLC0415
+    from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
+    from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
 
     if name == "model":
         return ModelDevice()
@@ -128,7 +128,7 @@ def _listed(path: Path, depth: int | None) -> Scene:
 
 async def _serve(device: Device, first: Scene | None, program: Program, listening: Listening, *, json: bool) -> None:
     from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415
-    from voxrt.board.server import FrameServer  # noqa: PLC0415
+    from voxrt.serve.server import FrameServer  # noqa: PLC0415
 
     interrupted = asyncio.Event()
     loop = asyncio.get_running_loop()

@@ -9,7 +9,7 @@ import voxrt
 from voxrt.cli.arguments import Sight
 from voxrt.cli.messages import warn
 from voxrt.viewpoint import authored_camera
-from voxrt.voxelize.load import SUFFIXES
+from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
     from pathlib import Path

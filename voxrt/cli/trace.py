@@ -13,8 +13,8 @@ from voxrt.cli.messages import summarize, tabulate
 from voxrt.cli.results import print_json
 from voxrt.cli.source import read_source
 from voxrt.pipeline import PREVIEW_SIZE
-from voxrt.ray_table import HEADS, describe_end, describe_root, ray_table
 from voxrt.sim import follow_pixel
+from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
 
 
 def trace(

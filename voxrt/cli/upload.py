@@ -76,8 +76,8 @@ def _read(path: Path) -> Scene:
 
 
 async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
-    from voxrt.board.client import visit  # noqa: PLC0415 - websockets comes with it
     from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.serve.client import visit  # noqa: PLC0415 - websockets comes with it
 
     try:
         async with visit(url) as client:

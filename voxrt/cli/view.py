@@ -10,24 +10,25 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt import octree
+from voxrt import view as drawing
 from voxrt.cli.arguments import Depth, Pixel, Pixels, Sight, UsageError, png, whole
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
-from voxrt.export.octant_page import write_page
-from voxrt.export.octants import write_glb, write_octants
-from voxrt.export.turntable import ANIMATION_SUFFIXES, write_animation
 from voxrt.export.vox import write_vox
 from voxrt.outputs import check_folder, writing
 from voxrt.pipeline import PREVIEW_SIZE
-from voxrt.sight import find_owners, preview_of, scene_triangles
+from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
+from voxrt.view.octant_files import write_glb, write_octants
+from voxrt.view.octant_page import write_page
+from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from cyclopts import Token
 
-    from voxrt.octree import Pane, Preview
+    from voxrt.view import Pane, Preview
 
 _SUFFIXES = (".vtu", ".glb", ".vox", ".html")
 _TURNS = 72  # pictures of a turntable
@@ -126,8 +127,8 @@ def view(
     rows = _told(panes)
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
         (output, lambda file: _export(panes[0], file)),
-        (screenshot, lambda file: voxrt.save_picture(octree.picture(panes, size, preview=preview), file)),
-        (turntable, lambda file: write_animation(file, octree.turntable(panes, size, _TURNS))),
+        (screenshot, lambda file: voxrt.save_picture(drawing.picture(panes, size, preview=preview), file)),
+        (turntable, lambda file: write_animation(file, drawing.turntable(panes, size, _TURNS))),
     ]
     for file, write in writers:
         if file is not None:
@@ -137,7 +138,7 @@ def view(
             rows.append(("wrote", str(file)))
     summarize(f"{scene.name}:", rows)
     if output is None and screenshot is None and turntable is None:
-        octree.Window(panes, size, preview=preview).show()
+        drawing.Window(panes, size, preview=preview).show()
 
 
 def _check_files(screenshot: Path | None, turntable: Path | None, output: Path | None) -> None:
@@ -167,7 +168,7 @@ def _check_company(
 
 
 def _pane(source: Source, name: str, by: Literal["material", "level", "owner"], overlay: bool) -> Pane:
-    pane = octree.Pane(replace(source.rom, name=name), by=by)
+    pane = drawing.Pane(replace(source.rom, name=name), by=by)
     if by != "owner" and not overlay:
         return pane
     if source.scene is None or source.rom.grid is None:

@@ -16,10 +16,10 @@ from voxrt.voxelize import (
     Scene,
     SceneObject,
     SphereCollider,
-    author,
 )
-from voxrt.voxelize.author import Author, AuthoringError
-from voxrt.voxelize.paint import Coat, Paint
+from voxrt.voxelize.authoring import author
+from voxrt.voxelize.authoring.author import Author, AuthoringError
+from voxrt.voxelize.colour.paint import Coat, Paint
 
 WHITE = (255, 255, 255)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from voxrt.voxelize.load import load
+from voxrt.voxelize.assets import load
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from oracles.surfaces import bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError, BoxCollider
-from voxrt.voxelize.load import load
-from voxrt.voxelize.scene_toml.positions import key_lines
+from voxrt.voxelize.assets import load
+from voxrt.voxelize.authoring.scene_toml.positions import key_lines
 
 YARD = """\
 background = "#9fc5e8"

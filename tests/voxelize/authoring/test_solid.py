@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from voxrt.voxelize import solid as s
+from voxrt.voxelize.authoring import solid as s
 
 
 def volume_of(solid):

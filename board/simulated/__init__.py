@@ -1,0 +1,1 @@
+"""Devices without a board: the exact model and the verilated core."""

@@ -1,0 +1,156 @@
+"""The exact model as a device."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+from voxrt.board.device import Counters, Frame, Identity
+from voxrt.board.errors import DeviceError
+from voxrt.sim import _model
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+    from voxrt.board.view import View
+
+MODEL_CAPACITY = 1 << 25
+"""Words that the model's memory holds."""
+
+_FRAME_LIMIT = 4095
+
+
+class _Memory:
+    """Scene memory, material table and selected octree.
+
+    Grows to the highest word written, so that a large capacity costs nothing.
+    """
+
+    def __init__(self, capacity: int) -> None:
+        self.capacity = capacity
+        self.colours = np.zeros((256, 3), dtype=np.uint8)
+        self.mirrors = np.zeros(256, dtype=np.uint8)
+        self.root, self.depth = 0, 1
+        self._words = np.full(1, 0xFFFFFF00, dtype=np.uint32)
+
+    def write(self, address: int, words: NDArray[np.uint32]) -> None:
+        end = self._check(address, len(words))
+        if end > len(self._words):
+            grown = np.zeros(min(max(end, 2 * len(self._words)), self.capacity), dtype=np.uint32)
+            grown[: len(self._words)] = self._words
+            self._words = grown
+        self._words[address:end] = words
+
+    def read(self, address: int, count: int) -> NDArray[np.uint32]:
+        end = self._check(address, count)
+        found = np.zeros(count, dtype=np.uint32)
+        kept = self._words[address:end]
+        found[: len(kept)] = kept
+        return found
+
+    def octree(self) -> NDArray[np.uint32]:
+        """Give the selected octree as it reads when its root is word 0."""
+        blocks = (len(self._words) - self.root - 1) // 8
+        words = self._words[self.root : self.root + 1 + 8 * blocks]
+        return words if self.root == 0 else np.where(words >> 31 == 0, words - np.uint32(self.root), words)
+
+    def _check(self, address: int, count: int) -> int:
+        if not 0 <= address <= address + count <= self.capacity:
+            raise DeviceError(f"words {address} to {address + count} are not in a memory of {self.capacity}")
+        return address + count
+
+
+class ModelDevice:
+    """The exact model: every pixel what the hardware shows, without clocks.
+
+    Parameters
+    ----------
+    threads
+        Threads of a frame, 0 for one a core.
+    capacity
+        Words of scene memory.
+    """
+
+    def __init__(self, *, threads: int = 0, capacity: int = MODEL_CAPACITY) -> None:
+        self._identity = Identity(
+            name="exact model",
+            version="1",
+            capacity=capacity,
+            depth=16,
+            size=(_FRAME_LIMIT, _FRAME_LIMIT),
+            position_limit=1 << 31,
+            features=frozenset({"flat", "shadows", "mirrors"}),
+        )
+        self._memory = _Memory(capacity)
+        self._view: View | None = None
+        self._threads = threads
+        self._model = _model.Memory(self._memory.octree(), self._memory.depth)
+
+    @property
+    def identity(self) -> Identity:
+        """What it is and what it holds."""
+        return self._identity
+
+    def registers(self) -> Mapping[str, int]:
+        """Give what a ray tracer's registers would hold."""
+        registers = {"root": self._memory.root, "depth": self._memory.depth}
+        if self._view is not None:
+            registers["width"], registers["height"] = self._view.size
+            camera = self._view.camera
+            for name in ("position", "look", "right", "up"):
+                registers |= {f"{name}_{axis}": value for axis, value in zip("xyz", getattr(camera, name), strict=True)}
+            red, green, blue = self._view.background
+            registers["background"] = red << 16 | green << 8 | blue
+        return registers
+
+    def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
+        """Write words from `address` on."""
+        self._memory.write(address, words)
+
+    def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
+        """Read words from `address` on."""
+        return self._memory.read(address, count)
+
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:
+        """Write the material table."""
+        self._memory.colours, self._memory.mirrors = colours.copy(), mirrors.astype(np.uint8)
+
+    def select_scene(self, root: int, depth: int) -> None:
+        """Trace the octree at `root` from the next frame on."""
+        self._memory.root, self._memory.depth = root, depth
+        try:
+            self._model = _model.Memory(self._memory.octree(), depth)
+        except ValueError as error:
+            raise DeviceError(f"the model refuses the memory: {error}") from error
+
+    def frame(self, view: View) -> Frame:
+        """Render a frame."""
+        started = time.perf_counter()
+        camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
+        try:
+            pixels = self._model.render(
+                self._colours(view),
+                camera,
+                *view.size,
+                self._threads,
+                flat="flat" in view.features,
+                light=np.array(view.light, dtype=np.int32) if "shadows" in view.features else None,
+                ambient=view.ambient,
+                bounces=view.bounces if "mirrors" in view.features else 0,
+                mirrors=self._memory.mirrors,
+            )
+        except ValueError as error:
+            raise DeviceError(f"the model refuses the frame: {error}") from error
+        self._view = view
+        counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
+        return Frame(pixels["colour"], counters)
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+    def _colours(self, view: View) -> NDArray[np.uint8]:
+        colours = self._memory.colours.copy()
+        colours[0] = view.background
+        return colours

@@ -1,0 +1,65 @@
+"""A scene from ``NAME.mem`` and the manifest ``NAME.json`` beside it."""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from typing import Any
+
+import numpy as np
+
+from ..board.errors import Refused
+from ..board.scene import Scene
+
+_COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_WORD = re.compile(rb"[0-9A-Fa-f]{1,8}")
+_DIALECT_TAGS = {"report": 0xFFFFFF00, "seed-rtl": 0xFFFFFFF0, "msb": 0x80000000}
+
+
+def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
+    """Read the pair that ``voxrt build`` writes.
+
+    Parameters
+    ----------
+    name
+        The scene's name.
+    mem, manifest
+        The bytes of the two files.
+
+    Raises
+    ------
+    Refused
+        One is not what it should be, or they do not belong together.
+    """
+    described = _manifest(manifest)
+    try:
+        depth, dialect, crc32 = described["depth"], described["dialect"], described["crc32"]
+        rows = [(tuple(row["colour"]), row["mirror"]) for row in described["materials"]]
+        colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
+        colours[: len(rows)] = np.array([colour for colour, _ in rows], dtype=np.uint8)
+        mirrors[: len(rows)] = [mirror for _, mirror in rows]
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise Refused(f"{name}.json is no manifest of a memory ({error!r}); build the scene again") from None
+    if not isinstance(depth, int) or dialect not in _DIALECT_TAGS:
+        raise Refused(f"{name}.json names depth {depth!r} and dialect {dialect!r}; build the scene again")
+    if f"{zlib.crc32(mem):08X}" != crc32:
+        raise Refused(f"{name}.json describes another {name}.mem; build both again")
+    tokens = _COMMENT.sub(b" ", mem).split()
+    if not all(_WORD.fullmatch(token) for token in tokens):
+        raise Refused(f"{name}.mem holds something that is no word of 8 hex digits; build the scene again")
+    words = np.array([int(token, 16) for token in tokens], dtype=np.uint32)
+    tag = _DIALECT_TAGS[dialect]
+    leaf = words >> 31 == 1
+    words[leaf] = words[leaf] & np.uint32(~tag & 0xFF) | np.uint32(0xFFFFFF00)
+    return Scene(name, depth, words, colours, mirrors)
+
+
+def _manifest(data: bytes) -> dict[str, Any]:
+    try:
+        described = json.loads(data)
+    except (ValueError, RecursionError):
+        described = None
+    if not isinstance(described, dict):
+        raise Refused("the .json beside the memory is no manifest; build the scene again")
+    return described

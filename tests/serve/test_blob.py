@@ -1,0 +1,109 @@
+"""The board's reader of blobs, against a writer that spells them by hand, and against every damage."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from fakes.device import scene
+
+from voxrt.board.errors import Refused
+from voxrt.board.scene import Lighting
+from voxrt.board.view import Camera
+from voxrt.serve.blob import read_blob
+from voxrt.serve.scene_files import BoardReader
+
+MADE = scene("föhn", blocks=3)
+SECTIONS = {
+    b"NAME": "föhn".encode(),
+    b"WRLD": struct.pack("<II4d", 3, 1, 0.5, -1, 2, 0.25),
+    b"MATL": struct.pack("<I", 2)
+    + struct.pack("<4BHxx", 1, 2, 3, 2, 5) + b"empty\0\0\0"
+    + struct.pack("<4BHxx", 200, 100, 50, 1, 0),
+    b"WORD": MADE.words.astype("<u4").tobytes(),
+    b"VIEW": struct.pack("<12i", -16, 32, 48, 0, 0, -90, 1, 0, 0, 0, 1, 0),
+    b"XTRA": b"of a later version",
+    b"LITE": struct.pack("<3i4B", 1, -2, 3, 40, 1, 2, 0),
+}  # fmt: skip
+
+
+def spell(sections):
+    table, body = b"", b""
+    start = 24 + 16 * len(sections)
+    for name, data in sections.items():
+        table += struct.pack("<4sIII", name, start + len(body), len(data), zlib.crc32(data))
+        body += data + bytes(-len(data) % 8)
+    return struct.pack("<8sIIII", b"VOXRTBLB", 1, len(sections), start + len(body), zlib.crc32(table)) + table + body
+
+
+def test_blob():
+    read = BoardReader()({"any.name": spell(SECTIONS)}, lambda *_: None)
+    assert (read.name, read.depth, read.background) == ("föhn", 3, (1, 2, 3))
+    assert (read.words == MADE.words).all()
+    assert read.colours[1].tolist() == [200, 100, 50]
+    assert np.flatnonzero(read.mirrors).tolist() == [1]
+    assert read.camera == Camera((-16, 32, 48), (0, 0, -90), (1, 0, 0), (0, 1, 0))
+    assert read.lighting == Lighting((1, -2, 3), 40, 2, frozenset({"shadows", "mirrors"}))
+    bare = read_blob(spell({name: SECTIONS[name] for name in (b"NAME", b"WRLD", b"MATL", b"WORD")}))
+    assert (bare.camera, bare.lighting) == (None, None)
+
+
+@pytest.mark.parametrize("name", [b"NAME", b"WRLD", b"MATL", b"WORD"])
+def test_missing_sections(name):
+    with pytest.raises(Refused, match=f"no section {name.decode()}"):
+        read_blob(spell({key: data for key, data in SECTIONS.items() if key != name}))
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        (b"NAME", b"\xff"),
+        (b"WRLD", b"\1"),
+        (b"MATL", b""),
+        (b"MATL", struct.pack("<I", 257)),
+        (b"MATL", struct.pack("<I", 3) + bytes(16)),
+        (b"WORD", b"abc"),
+        (b"VIEW", bytes(47)),
+        (b"LITE", bytes(17)),
+    ],
+)
+def test_other_layouts(name, data):
+    with pytest.raises(Refused, match="another layout"):
+        read_blob(spell({**SECTIONS, name: data}))
+
+
+def test_every_flipped_bit_and_every_cut():
+    blob = spell(SECTIONS)
+    padding = len(blob)
+    for at in range(padding):
+        with pytest.raises(Refused):
+            read_blob(blob[:at])
+        flipped = bytearray(blob)
+        flipped[at] ^= 0x10
+        try:
+            read = read_blob(bytes(flipped))
+        except Refused:
+            continue
+        # Between sections there is room that means nothing.
+        assert (read.words == MADE.words).all()
+        assert read.camera == Camera((-16, 32, 48), (0, 0, -90), (1, 0, 0), (0, 1, 0))
+    with pytest.raises(Refused, match="version 2"):
+        read_blob(blob[:8] + b"\2" + blob[9:])
+
+
+def test_blobs_of_the_exporter():
+    blobs = pytest.importorskip("voxrt.export.blob")
+    from voxrt.octree import Octree, Rom
+    from voxrt.voxelize import Material
+
+    materials = (Material("empty", (9, 8, 7)), Material("glass", (1, 2, 3), mirror=True))
+    rom = Rom("house", Octree(3, MADE.words), materials)
+    view = blobs.View((-160, 5, 7), (1, 2, -90), (3, 0, 0), (0, 4, 0))
+    read = read_blob(blobs.blob_bytes(blobs.Blob(rom, view, blobs.Lighting((5, 6, 7), 30, on=True, bounces=3))))
+    assert (read.name, read.depth, read.background) == ("house", 3, (9, 8, 7))
+    assert (read.words == MADE.words).all()
+    assert np.flatnonzero(read.mirrors).tolist() == [1]
+    assert read.camera == Camera(view.position, view.look, view.right, view.up)
+    assert read.lighting == Lighting((5, 6, 7), 30, 3, frozenset({"shadows", "mirrors"}))

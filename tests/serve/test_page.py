@@ -1,0 +1,146 @@
+"""The page in headless Chromium, end to end with the exact model behind it."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from contextlib import contextmanager
+
+import numpy as np
+from fakes.browser import chromium
+from oracles import worlds
+from oracles.cuts import memory_of
+
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.export import Blob, write_rom
+from voxrt.octree import Octree, Rom
+from voxrt.serve.server import FrameServer, Listening
+from voxrt.serve.show import Program
+from voxrt.sim import look_at, pixel_directions
+from voxrt.staging import BuildingReader, board_scene
+from voxrt.voxelize import Material
+
+PIXELS = """
+const canvas = document.querySelector("#picture");
+const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+return [canvas.width, canvas.height, Array.from(data.filter((_, i) => i % 4 < 3))];
+"""
+
+
+def rom_of(name, world, depth):
+    colours = np.random.default_rng(5).integers(90, 256, (256, 3)).tolist()
+    return Rom(name, Octree(depth, memory_of(world)), tuple(Material(f"m{i}", tuple(c)) for i, c in enumerate(colours)))
+
+
+@contextmanager
+def serving(scene, port=0):
+    """A server in a thread of its own; yields it."""
+    ready, loop = threading.Event(), asyncio.new_event_loop()
+    kept = {}
+
+    async def serve():
+        kept["stop"] = asyncio.Event()
+        program = Program(BuildingReader(depth=4), {scene.name: lambda: scene})
+        async with FrameServer(ModelDevice(), program, Listening(port=port)) as server:
+            await server.show.stage.put_on(scene, lambda *_: None)
+            kept["server"] = server
+            ready.set()
+            await kept["stop"].wait()
+            ready.clear()
+
+    thread = threading.Thread(target=lambda: loop.run_until_complete(serve()))
+    thread.start()
+    assert ready.wait(30)
+    try:
+        yield kept["server"]
+    finally:
+        loop.call_soon_threadsafe(kept["stop"].set)
+        thread.join(30)
+        loop.close()
+
+
+def picture(browser):
+    width, height, data = browser.run(PIXELS)
+    return np.array(data, dtype=np.uint8).reshape(height, width, 3)
+
+
+def shown(server, browser):
+    """Whether the canvas comes to hold exactly the frame that the model renders of the server's view."""
+    view, scene = server.show.stage.view, server.show.stage.scene
+    device = ModelDevice()
+    device.write_memory(0, scene.words)
+    device.write_materials(scene.colours, scene.mirrors)
+    device.select_scene(0, scene.depth)
+    expected = device.frame(view).colour
+    return any(np.array_equal(picture(browser), expected) for _ in range(20))
+
+
+def test_page(tmp_path):
+    first = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
+    still = "document.querySelector('#overlay').innerText.includes('still')"
+    with chromium() as browser, serving(first) as server:
+        browser.open(server.url)
+        assert browser.until("document.querySelector('#steering').innerText === 'you steer'")
+        assert browser.until(still)
+        assert shown(server, browser)
+        before = server.show.stage.view.camera
+
+        # A turned head turns right and up too: right-handed, square, at the largest scale.
+        browser.run("document.querySelector('#picture').focus()")
+        browser.keys(["\ue012"], 0.3)  # left arrow
+        browser.keys(["w"], 0.3)
+        assert browser.until(still)
+        camera = server.show.stage.view.camera
+        assert camera != before
+        look, right, up = (np.array(triple, dtype=float) for triple in (camera.look, camera.right, camera.up))
+        cosines = [a @ b / np.linalg.norm(a) / np.linalg.norm(b) for a, b in ((look, right), (look, up), (right, up))]
+        assert np.abs(cosines).max() < 0.03
+        assert np.cross(look, up) @ right > 0
+        eye = np.array(camera.position) / 16
+        best = look_at(eye, eye + look, size=(640, 480))
+        assert (
+            np.abs(pixel_directions(best, (640, 480))).max() < 1.02 * np.abs(pixel_directions(camera, (640, 480))).max()
+        )
+        assert shown(server, browser)
+
+        # A memory and a mesh, by the file dialogue that dropping shares.
+        files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
+        browser.give_files("#files", [str(files.mem), str(files.manifest)])
+        assert browser.until("document.querySelector('#scene').innerText.startsWith('second')")
+        (tmp_path / "cube.obj").write_text(
+            "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8))
+            + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+        )
+        browser.give_files("#files", [str(tmp_path / "cube.obj")])
+        assert browser.until("document.querySelector('#scene').innerText.startsWith('cube')")
+        (tmp_path / "cube.obj").write_text("f 1 2 3\n")
+        browser.give_files("#files", [str(tmp_path / "cube.obj")])
+        assert browser.until("document.querySelector('#notice').innerText.includes('still runs')")
+        browser.run("document.querySelector('#notice button').click()")
+
+        # Controls of the panel: flat colours, background, flip, a preset.
+        for selector in ("[data-feature=flat]", "#flip-x", "#presets button:nth-child(2)", "[data-scene=first]"):
+            browser.run("document.querySelector(arguments[0]).click()", selector)
+        assert browser.until("document.querySelector('#scene').innerText.startsWith('first')")
+        browser.run(
+            "const c = document.querySelector('#background'); c.value = '#204060'; c.dispatchEvent(new Event('input'))"
+        )
+        assert browser.until(still)
+        assert server.show.stage.view.background == (0x20, 0x40, 0x60)
+        assert server.show.stage.view.features == {"flat"}
+        assert shown(server, browser)
+        assert browser.faults() == []
+
+
+def test_the_board_goes_away_and_comes_back():
+    scene = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
+    with chromium((420, 800), dark=False) as browser:
+        with serving(scene) as server:
+            port = server.port
+            browser.open(server.url)
+            assert browser.until("document.querySelector('#link').innerText === 'live'")
+        assert browser.until("document.querySelector('#notice').innerText.includes('The board is away')")
+        with serving(scene, port):
+            assert browser.until("document.querySelector('#steering').innerText === 'you steer'")
+            assert browser.run("return document.querySelector('#notice').hidden")
+            assert browser.run("return document.documentElement.scrollWidth <= innerWidth")

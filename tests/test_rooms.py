@@ -1,0 +1,127 @@
+"""The rooms of the house and which of them may import which; no circle of imports anywhere."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+MAY_IMPORT = {
+    "voxelize": set(),
+    "octree": {"voxelize"},
+    "export": {"voxelize", "octree"},
+    "sim": {"voxelize", "octree", "export"},
+    "view": {"voxelize", "octree", "export", "sim"},
+    "board": {"voxelize", "octree", "export", "sim"},
+    "serve": {"board"},
+}
+"""Room: the rooms that it may import, besides itself. The front door, voxrt's own modules, may import all."""
+
+OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
+"""Folders whose scripts import the rooms and each other. No room imports them."""
+
+
+def module_of(path: Path) -> str:
+    """The name by which a file of the repository is imported; scripts by their path."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    if parts[-1] == "__init__":
+        parts = parts[:-1]
+    return ".".join(parts if parts[0] in {"voxrt", *OUTSIDE} else ("voxrt", *parts))
+
+
+def sources() -> dict[str, Path]:
+    """Every Python file of ours by its module's name, the stubs of the native modules included."""
+    found = {}
+    for folder in (*MAY_IMPORT, "voxrt", *OUTSIDE):
+        for path in sorted((ROOT / folder).rglob("*.py*")):
+            if path.suffix not in {".py", ".pyi"}:
+                continue
+            inside = path.relative_to(ROOT).parts
+            if inside[0] == "voxrt" and len(inside) > 2 and inside[1] in MAY_IMPORT:
+                continue  # the links to the rooms
+            found[module_of(path)] = path
+    return found
+
+
+def imports_of(name: str, path: Path, known: dict[str, Path]) -> set[str]:
+    """The modules of ours that a file imports anywhere, also in functions and for types alone."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = package.split(".")[: len(package.split(".")) - node.level + 1]
+                base = ".".join([*above, base] if base else above)
+            for alias in node.names:
+                found.add(f"{base}.{alias.name}" if f"{base}.{alias.name}" in known else base)
+    beside = path.parent.relative_to(ROOT).parts
+    if beside and beside[0] in OUTSIDE:  # scripts import what stands beside them, or in the folder above
+        paths = [".".join((*beside[:depth], module)) for depth in range(1, len(beside) + 1) for module in found]
+        found |= set(paths)
+    return {module for module in found if module in known and module != name}
+
+
+@pytest.fixture(scope="module")
+def graph():
+    known = sources()
+    return {name: imports_of(name, path, known) for name, path in known.items()}
+
+
+def room_of(module: str) -> str:
+    first, *rest = module.split(".")
+    if first != "voxrt":
+        return first
+    return rest[0] if rest and rest[0] in MAY_IMPORT else "voxrt"
+
+
+def test_the_reader_of_imports_sees_all_kinds(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
+    (tmp_path / "octree").mkdir()
+    lines = (
+        "from . import two",
+        "from .three import x",
+        "def f():",
+        "    import voxrt.export.four",
+        "if T:",
+        "    from voxrt import sim",
+    )
+    (tmp_path / "octree" / "one.py").write_text("\n".join(lines))
+    names = ["voxrt.octree.two", "voxrt.octree.three", "voxrt.export.four", "voxrt.sim", "voxrt"]
+    known = dict.fromkeys(names, tmp_path)
+    assert imports_of("voxrt.octree.one", tmp_path / "octree" / "one.py", known) == set(names) - {"voxrt"}
+
+
+def test_rooms_import_in_one_direction(graph):
+    wrong = [
+        f"{name} imports {target}"
+        for name, targets in graph.items()
+        if room_of(name) in MAY_IMPORT
+        for target in targets
+        if room_of(target) not in MAY_IMPORT[room_of(name)] | {room_of(name)}
+        and target != "voxrt"  # the package itself holds no code that rooms could use
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_no_circle_of_imports(graph):
+    # A package's own __init__ gathers names from its modules, and importing a module runs it: that is no circle
+    # between files as long as no module takes a name from its own package.
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def test_every_room_is_a_link_of_the_package():
+    for room in MAY_IMPORT:
+        link = ROOT / "voxrt" / room
+        assert link.is_symlink(), f"voxrt/{room} must be a relative link to ../{room}"
+        assert link.readlink() == Path("..", room)

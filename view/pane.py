@@ -1,0 +1,137 @@
+"""What a picture shows: memories side by side, and a ray's way through one of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from voxrt.octree.budget import coarsen
+from voxrt.octree.leaf_arrays import Leaves, solid_leaves
+from voxrt.octree.octant import octant_at
+from voxrt.view.cells import octant_cells
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import pyvista
+    from numpy.typing import NDArray
+
+    from voxrt.octree.owners import Owners
+    from voxrt.octree.query import Corner
+    from voxrt.octree.rom import Rom
+
+Aspect: TypeAlias = Literal["material", "level", "owner"]
+Plane: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]
+"""A normal and a point; what lies on the normal's side is cut away."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pane:
+    """One memory in a picture.
+
+    Attributes
+    ----------
+    rom
+        The memory and its materials.
+    high
+        Only octants that overlap the voxels below this are shown; None for all.
+    cut
+        Octants are cut at `high` and not shown whole.
+    by
+        What the colours tell; ``"owner"`` needs `owners`.
+    owners
+        Whose the voxels are.
+    triangles
+        A mesh drawn over the octants: float64, shape (T, 3, 3), voxels, grid frame.
+    """
+
+    rom: Rom
+    high: Corner | None = None
+    cut: bool = False
+    by: Aspect = "material"
+    owners: Owners | None = None
+    triangles: NDArray[np.float64] | None = None
+
+    def solid(self) -> Leaves:
+        """Take the octants, hidden ones included."""
+        return solid_leaves(self.rom.octree, (0, 0, 0), self.high)
+
+    def coarsened(self, level: int) -> Pane:
+        """Make octants of 2**level voxels a side uniform."""
+        tree = self.rom.octree
+        return replace(self, rom=replace(self.rom, octree=coarsen(tree, min(level, tree.depth)))) if level else self
+
+    def grid(self, solid: Leaves | None = None, plane: Plane | None = None) -> pyvista.UnstructuredGrid:
+        """Give the octants that can be seen as cells: those of `solid` whose middle a plane leaves."""
+        some = self.solid() if solid is None else solid
+        if plane is not None:
+            normal, point = np.array(plane)
+            middles = some.corners + np.exp2(some.levels.astype(np.float64) - 1)[:, None]
+            kept = (middles - point) @ normal <= 0
+            some = Leaves(some.corners[kept], some.levels[kept], some.materials[kept])
+        end = (self.rom.octree.size,) * 3 if self.high is None else self.high
+        return octant_cells(self.rom, some, ((0, 0, 0), end) if self.cut else None, owners=self.owners)
+
+    def describe(self, voxel: Corner) -> str:
+        """Say all that the memory knows of the octant that holds a voxel, in lines."""
+        octant = octant_at(self.rom.octree, voxel)
+        ranges = ", ".join(
+            f"{axis} {first}...{end - 1}" for axis, first, end in zip("xyz", octant.corner, octant.end, strict=True)
+        )
+        lines = [
+            f"address 0x{octant.address:X}",
+            f"word 0x{octant.word:08X}",
+            f"level {octant.level}: {'x'.join([str(1 << octant.level)] * 3)} voxels",
+            f"voxels {ranges}",
+            f"material {octant.material}: {self.rom.materials[octant.material].name}",
+        ]
+        if self.owners is not None:
+            lines.append(f"of {self.owners.name_at(voxel)}")
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DrawnRay:
+    """A ray as a picture shows it.
+
+    Attributes
+    ----------
+    start, end
+        Voxels, grid frame.
+    corners, levels, words
+        Of the octants whose words it read, in order: lowest voxel (int, shape (N, 3)), log2 of the side (shape (N,)),
+        word in the report dialect (uint32, shape (N,)).
+    points
+        Where it stood then: float64, shape (N, 3), voxels.
+    table
+        What is told of it beside the picture, in lines of one width.
+    """
+
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    corners: NDArray[np.int64]
+    levels: NDArray[np.int64]
+    words: NDArray[np.uint32]
+    points: NDArray[np.float64]
+    table: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Preview:
+    """A picture in which a pixel can be chosen.
+
+    Attributes
+    ----------
+    colour
+        uint8, shape (H, W, 3), sRGB.
+    pixel
+        The one chosen: column, row.
+    follow
+        Gives a pixel's ray.
+    """
+
+    colour: NDArray[np.uint8]
+    pixel: tuple[int, int]
+    follow: Callable[[tuple[int, int]], DrawnRay]

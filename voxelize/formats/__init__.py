@@ -1,0 +1,1 @@
+"""Readers of asset files: one folder per format, each ends in a :class:`~voxrt.voxelize.scene.Scene`."""

@@ -1,0 +1,123 @@
+"""Morph targets and skins: where the vertices of a mesh stand in a pose.
+
+Source: Khronos, glTF 2.0 specification, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from voxrt.voxelize.formats.gltf.accessors import as_unit_floats, read_floats
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.formats.gltf.attributes import Attributes
+    from voxrt.voxelize.formats.gltf.document import Document
+    from voxrt.voxelize.formats.gltf.schema import Primitive
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pose:
+    """What bends a mesh.
+
+    Attributes
+    ----------
+    weights
+        How much of each morph target is added.
+    joints
+        float64, shape (J, 4, 4): bind pose to scene frame, a joint each; None for a mesh without skin.
+    """
+
+    weights: tuple[float, ...] = ()
+    joints: NDArray[np.float64] | None = None
+
+
+def morphed(
+    document: Document, primitive: Primitive, positions: NDArray[np.floating], pose: Pose, place: str
+) -> NDArray[np.floating]:
+    """Return `positions`, shape (V, 3), with the displacements of the primitive's targets added as `pose` weighs them.
+
+    Raises
+    ------
+    AssetError
+        A target has another number of vertices.
+    """
+    for at, (weight, target) in enumerate(zip(pose.weights, primitive.targets, strict=False)):
+        if weight == 0.0 or "POSITION" not in target:
+            continue
+        here = f"{place}.targets[{at}].POSITION"
+        moved = read_floats(document, target["POSITION"], here, {"VEC3"})
+        if len(moved) != len(positions):
+            raise document.error(here, f"moves {len(moved)} of {len(positions)} vertices")
+        with np.errstate(over="ignore", invalid="ignore"):
+            positions = _finite(document, positions + weight * moved, place)
+    return positions
+
+
+def skinned(
+    document: Document, attributes: Attributes, positions: NDArray[np.floating], pose: Pose, place: str
+) -> NDArray[np.floating]:
+    """Return `positions`, shape (V, 3), carried by the joints of `pose` to the scene frame.
+
+    Raises
+    ------
+    AssetError
+        A vertex names a joint that the skin does not have.
+    """
+    if pose.joints is None:
+        return positions
+    document.charge(positions.nbytes * 8, place)
+    total = np.zeros((len(positions), 1))
+    carried = np.zeros(positions.shape)
+    number = 0
+    with np.errstate(over="ignore", invalid="ignore"):
+        while f"JOINTS_{number}" in attributes and f"WEIGHTS_{number}" in attributes:
+            joints, weights = _influences(document, attributes, number, (len(positions), len(pose.joints)))
+            for column in range(4):
+                matrices = pose.joints[joints[:, column]]
+                moved = np.einsum("vij,vj->vi", matrices[:, :3, :3], positions) + matrices[:, :3, 3]
+                carried += weights[:, column, None] * moved
+            total += weights.sum(axis=1, keepdims=True)
+            number += 1
+        bare = total[:, 0] <= 0.0
+        if bare.any():
+            document.notes.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
+            carried[bare] = positions[bare] @ pose.joints[0, :3, :3].T + pose.joints[0, :3, 3]
+            total[bare] = 1.0
+        carried /= total
+    return _finite(document, carried, place)
+
+
+def _influences(
+    document: Document, attributes: Attributes, number: int, counts: tuple[int, int]
+) -> tuple[NDArray[Any], NDArray[np.float64]]:
+    """Read set `number` of joints and weights, shape (V, 4) each, of a primitive; `counts` has vertices and joints."""
+    joints = attributes.stored(f"JOINTS_{number}", {"VEC4"})
+    weights = attributes.stored(f"WEIGHTS_{number}", {"VEC4"})
+    here = f"{attributes.place}.attributes"
+    vertices, limit = counts
+    if len(joints) != vertices or len(weights) != vertices:
+        problem = f"{len(joints)} joints and {len(weights)} weights for {vertices} vertices"
+        raise document.error(f"{here}.JOINTS_{number}", problem)
+    share = as_unit_floats(weights)
+    if not (np.isfinite(share).all() and (share >= 0).all()):
+        raise document.error(f"{here}.WEIGHTS_{number}", "a weight is negative or not a number")
+    if joints.dtype.kind != "u":
+        raise document.error(
+            f"{here}.JOINTS_{number}", f"joints of type {joints.dtype.name}, they must be unsigned integers"
+        )
+    # Unused influences may say anything.
+    used = np.where(share > 0, joints, 0)
+    if int(used.max()) >= limit:
+        raise document.error(f"{here}.JOINTS_{number}", f"joint {int(used.max())} of a skin that has {limit}")
+    return used, share
+
+
+def _finite(document: Document, positions: NDArray[np.float64], place: str) -> NDArray[np.float64]:
+    if not np.isfinite(positions).all():
+        raise document.error(place, "the vertices leave the range of numbers")
+    return positions

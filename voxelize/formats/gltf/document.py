@@ -1,0 +1,168 @@
+"""An open glTF asset: its JSON, the bytes it refers to, what it may cost, and what could not be honoured in it."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from typing import TYPE_CHECKING, TypeVar
+from urllib.parse import unquote, unquote_to_bytes
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.companions import ALLOW_OUTSIDE, Companions
+from voxrt.voxelize.formats.gltf.container import read_container
+from voxrt.voxelize.formats.gltf.extensions import MESHOPT, read_extension
+from voxrt.voxelize.formats.gltf.meshopt import BadStreamError, CompressedView, decode
+from voxrt.voxelize.notes import Notes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from voxrt.voxelize.formats.gltf.schema import BufferView, Gltf
+
+T = TypeVar("T")
+
+_FREE_BYTES = 128 << 20
+_BYTES_PER_INPUT_BYTE = 128
+
+
+class Document:
+    """One glTF asset while it is being read.
+
+    Memory is bounded by the asset's own size: whatever is made from it is charged with :meth:`charge`, which refuses a
+    small file that asks for much. An accessor may stand for zeros, and many accessors for the same bytes, so the sizes
+    the JSON states are no measure.
+
+    Attributes
+    ----------
+    path
+        The ``.gltf`` or ``.glb`` file.
+    gltf
+        Its JSON.
+    notes
+        What could not be honoured as it stands.
+    """
+
+    def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
+        self.path = path
+        self._companions = Companions.of(path, allow_outside=allow_outside)
+        self.gltf: Gltf
+        self.gltf, self._binary = read_container(path)
+        self._buffers: dict[int, memoryview] = {}
+        self._unpacked: dict[int, bytes] = {}
+        self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
+        self.notes = Notes()
+        self._check_views()
+
+    def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
+        """Return the error that refuses this file for what stands at the JSON path `place`."""
+        return AssetError(self.path, problem, place=place, fix=fix)
+
+    def charge(self, amount: int, place: str) -> None:
+        """Take `amount` bytes of the memory that an asset of this size may use."""
+        self._allowed -= amount
+        if self._allowed < 0:
+            problem = f"asks for {amount} bytes, more than a file of this size may use in all"
+            raise self.error(place, problem, "check the counts: the file is damaged or hostile")
+
+    def item(self, array: Sequence[T], index: int, place: str, kind: str) -> T:
+        """Return `array[index]`, or refuse the reference that stands at `place` to something called `kind`."""
+        if index >= len(array):
+            raise self.error(place, f"{kind} {index} does not exist, the file has {len(array)}")
+        return array[index]
+
+    def view(self, index: int, place: str) -> memoryview:
+        """Return the bytes of buffer view `index`, to which `place` refers."""
+        view = self.item(self.gltf.buffer_views, index, place, "buffer view")
+        if index in self._unpacked:
+            return memoryview(self._unpacked[index])
+        compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
+        if compressed is None:
+            return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
+        self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
+        return memoryview(self._unpacked[index])
+
+    def _decompressed(self, compressed: CompressedView, view: BufferView, place: str) -> bytes:
+        here = f"{place}.extensions.{MESHOPT}"
+        size = compressed.count * compressed.byte_stride
+        self.charge(size * 4, here)
+        buffer = self.item(self.gltf.buffers, compressed.buffer, f"{here}.buffer", "buffer")
+        end = compressed.byte_offset + compressed.byte_length
+        if end > buffer.byte_length:
+            raise self.error(here, f"ends at byte {end} of a buffer of {buffer.byte_length}")
+        if size != view.byte_length:
+            raise self.error(here, f"holds {size} bytes for a buffer view of {view.byte_length}")
+        data = self.buffer(compressed.buffer)[compressed.byte_offset : end]
+        try:
+            return decode(compressed, bytes(data))
+        except BadStreamError as error:
+            raise self.error(here, f"the compressed data is damaged: {error}") from None
+
+    def _check_views(self) -> None:
+        """Refuse the file where a buffer view leaves its buffer, in use or not: it is cut short."""
+        for index, view in enumerate(self.gltf.buffer_views):
+            place = f"bufferViews[{index}]"
+            buffer = self.item(self.gltf.buffers, view.buffer, f"{place}.buffer", "buffer")
+            end = view.byte_offset + view.byte_length
+            if end > buffer.byte_length:
+                raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
+
+    def buffer(self, index: int) -> memoryview:
+        """Return the bytes of buffer `index`, as many as it says."""
+        if index in self._buffers:
+            return self._buffers[index]
+        buffer = self.gltf.buffers[index]
+        here = f"buffers[{index}]"
+        if buffer.uri is not None:
+            found = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
+            if found is None:
+                problem = f"no file {buffer.uri[:60]!r} beside the asset"
+                raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
+            data = memoryview(found)
+        elif index == 0 and self._binary is not None:
+            data = self._binary
+        else:
+            raise self.error(here, "has no uri and the file no binary chunk for it")
+        if len(data) < buffer.byte_length:
+            raise self.error(here, f"says {buffer.byte_length} bytes and has {len(data)}")
+        self._buffers[index] = data[: buffer.byte_length]
+        return self._buffers[index]
+
+    def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
+        """Return what `uri` refers to: inline data, or at most `most` bytes of a file that may be opened.
+
+        A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
+        """
+        if uri.startswith("data:"):
+            return self._inline(uri, place)
+        scheme = uri.partition(":")[0]
+        if ":" in uri and "/" not in scheme:
+            raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
+        # Some exporters forget to encode names, or write paths as Windows does.
+        target = self._companions.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
+        if target is None:
+            return None
+        if not self._companions.allows(target):
+            raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", ALLOW_OUTSIDE)
+        try:
+            with target.open("rb") as file:
+                data = file.read(most)
+        except OSError as error:
+            problem = f"{uri[:60]!r} cannot be read: {error.strerror}"
+            raise self.error(place, problem, "check its permissions") from error
+        self._allowed += _BYTES_PER_INPUT_BYTE * len(data)
+        return data
+
+    def _inline(self, uri: str, place: str) -> bytes:
+        header, comma, body = uri.partition(",")
+        if not comma:
+            raise self.error(place, "a data URI without a comma")
+        if ";;" in header:
+            raise self.error(place, "a data URI with an empty parameter: ';;'")
+        if not header.endswith(";base64"):
+            return unquote_to_bytes(body)
+        text = unquote(body) if "%" in body else body
+        try:
+            return base64.b64decode(text + "=" * (-len(text) % 4), validate=True)
+        except (binascii.Error, ValueError):
+            raise self.error(place, "a data URI that is not base64") from None

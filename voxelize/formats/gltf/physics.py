@@ -1,0 +1,191 @@
+"""Colliders of KHR_physics_rigid_bodies, with the shapes of KHR_implicit_shapes.
+
+Shapes with round sides other than balls become the hulls of points on them. Motions, joints and materials have no
+bearing on where things are; triggers are not solid.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+from msgspec import Struct
+
+from voxrt.voxelize.formats.gltf.extensions import PHYSICS, SHAPES, read_extension
+from voxrt.voxelize.formats.gltf.schema import Index, Vec3  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.scene import BoxCollider, HullCollider, MeshCollider, SphereCollider
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.formats.gltf.document import Document
+    from voxrt.voxelize.formats.gltf.meshes import Surface
+    from voxrt.voxelize.scene import Collider
+
+_AROUND = 128
+_FROM_POLE = 32
+
+
+class Box(Struct, frozen=True):
+    """Centred in its node's frame."""
+
+    size: Vec3 = (1.0, 1.0, 1.0)
+
+
+class Sphere(Struct, frozen=True):
+    """Centred in its node's frame."""
+
+    radius: float = 0.5
+
+
+class Round(Struct, frozen=True, rename="camel"):
+    """A cylinder, a cone or a capsule, along y."""
+
+    height: float = 0.5
+    radius_top: float = 0.25
+    radius_bottom: float = 0.25
+
+
+class Plane(Struct, frozen=True, rename="camel"):
+    """Its normal along y; without end where it has no size."""
+
+    size_x: float | None = None
+    size_z: float | None = None
+
+
+Kind: TypeAlias = Literal["box", "sphere", "cylinder", "capsule", "plane"]
+
+
+class Shape(Struct, frozen=True):
+    """One of the file's shapes."""
+
+    type: Kind
+    box: Box = Box()
+    sphere: Sphere = Sphere()
+    cylinder: Round = Round()
+    capsule: Round = Round()
+    plane: Plane = Plane()
+
+
+class FileShapes(Struct, frozen=True):
+    """KHR_implicit_shapes on the file."""
+
+    shapes: list[Shape] = []
+
+
+class Geometry(Struct, frozen=True, rename="camel"):
+    """A shape, or the mesh of a node."""
+
+    shape: Index | None = None
+    mesh: Index | None = None
+    node: Index | None = None
+    convex_hull: bool = False
+
+
+class AuthoredCollider(Struct, frozen=True):
+    """What a node collides as."""
+
+    geometry: Geometry = Geometry()
+
+
+class Body(Struct, frozen=True):
+    """KHR_physics_rigid_bodies on a node."""
+
+    collider: AuthoredCollider | None = None
+
+
+def read_shapes(document: Document) -> list[Shape]:
+    """Return the file's shapes."""
+    return (read_extension(document, document.gltf, SHAPES, FileShapes, "") or FileShapes()).shapes
+
+
+def physics_collider(
+    document: Document, index: int, shapes: list[Shape], read_mesh: Callable[[int, str], Surface]
+) -> Collider | None:
+    """Return what node `index` collides as, in its frame, or None.
+
+    Parameters
+    ----------
+    document
+        The open asset.
+    index
+        Which node.
+    shapes
+        The file's shapes.
+    read_mesh
+        Reads a mesh by its index, to which a JSON path refers.
+    """
+    place = f"nodes[{index}]"
+    body = read_extension(document, document.gltf.nodes[index], PHYSICS, Body, place)
+    if body is None or body.collider is None:
+        return None
+    here = f"{place}.extensions.{PHYSICS}.collider.geometry"
+    geometry = body.collider.geometry
+    mesh, where = geometry.mesh, f"{here}.mesh"
+    if geometry.node is not None:
+        where = f"{here}.node"
+        mesh = document.item(document.gltf.nodes, geometry.node, where, "node").mesh
+    if mesh is not None:
+        surface = read_mesh(mesh, where)
+        if not len(surface.triangles):
+            raise document.error(where, "a collider without triangles")
+        if geometry.convex_hull:
+            return HullCollider(surface.positions[np.unique(surface.triangles)].astype(np.float64))
+        return MeshCollider(surface.positions, surface.triangles)
+    if geometry.shape is None:
+        raise document.error(here, "names neither a shape nor a mesh")
+    return _shaped(document, document.item(shapes, geometry.shape, f"{here}.shape", "shape"), geometry.shape)
+
+
+def _shaped(document: Document, shape: Shape, index: int) -> Collider | None:
+    place = f"extensions.{SHAPES}.shapes[{index}].{shape.type}"
+    if shape.type == "box":
+        _check_sizes(document, place, *shape.box.size)
+        half = np.array(shape.box.size) / 2
+        return BoxCollider(-half, half)
+    if shape.type == "sphere":
+        _check_sizes(document, place, shape.sphere.radius)
+        return SphereCollider(np.zeros(3), shape.sphere.radius)
+    if shape.type == "plane":
+        return _plane(document, shape.plane, place)
+    solid = shape.cylinder if shape.type == "cylinder" else shape.capsule
+    _check_sizes(document, place, solid.height, solid.radius_top + solid.radius_bottom)
+    if min(solid.radius_top, solid.radius_bottom) < 0:
+        raise document.error(place, "a radius is negative")
+    if shape.type == "cylinder":
+        rings = [_ring(solid.radius_top, solid.height / 2), _ring(solid.radius_bottom, -solid.height / 2)]
+        return HullCollider(np.concatenate(rings))
+    return HullCollider(np.concatenate([_half_ball(solid, 1.0), _half_ball(solid, -1.0)]))
+
+
+def _check_sizes(document: Document, place: str, *sizes: float) -> None:
+    if not min(sizes) > 0:
+        raise document.error(place, "a size is not positive")
+
+
+def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
+    if plane.size_x is None or plane.size_z is None:
+        document.notes.add("endless-plane", "colliders that are planes without end were left out")
+        return None
+    _check_sizes(document, place, plane.size_x, plane.size_z)
+    x, z = plane.size_x / 2, plane.size_z / 2
+    corners = np.array([[-x, 0.0, -z], [-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z]])
+    return MeshCollider(corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
+
+
+def _ring(radius: float, height: float) -> NDArray[np.float64]:
+    """Points on a circle about y, shape (128, 3)."""
+    angles = np.arange(_AROUND) * (2 * np.pi / _AROUND)
+    return np.column_stack([radius * np.cos(angles), np.full(_AROUND, height), radius * np.sin(angles)])
+
+
+def _half_ball(capsule: Round, side: float) -> NDArray[np.float64]:
+    """Points on the upper (`side` 1) or lower (-1) ball of a capsule; their hull takes what it needs."""
+    radius = capsule.radius_top if side > 0 else capsule.radius_bottom
+    rings = []
+    for angle in np.arange(_FROM_POLE + 1) * (np.pi / 2 / _FROM_POLE):
+        height = side * (capsule.height / 2 + radius * np.sin(angle))
+        rings.append(_ring(radius * np.cos(angle), height))
+    return np.concatenate(rings)

@@ -1,0 +1,196 @@
+"""MTL material libraries."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.obj.text import read_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from voxrt.voxelize.notes import Notes
+
+# What a material may say that has no bearing on its colour in plain light.
+_WITHOUT_BEARING = frozenset(
+    {
+        *("ka", "ke", "ks", "ns", "ni", "tf", "illum", "sharpness", "km", "pr", "pm", "ps", "pc", "pcr", "aniso"),
+        *("anisor", "map_ka", "map_ke", "map_ks", "map_ns", "map_bump", "bump", "map_disp", "disp", "decal", "refl"),
+        *("norm", "map_norm", "map_pr", "map_pm", "map_ps", "map_refl", "map_aat"),
+    }
+)
+
+# How many values each option of a texture takes: at least, at most.
+_OPTIONS = {
+    "-s": (1, 3),
+    "-o": (1, 3),
+    "-t": (1, 3),
+    "-mm": (2, 2),
+    "-clamp": (1, 1),
+    "-blendu": (1, 1),
+    "-blendv": (1, 1),
+    "-cc": (1, 1),
+    "-bm": (1, 1),
+    "-boost": (1, 1),
+    "-texres": (1, 1),
+    "-imfchan": (1, 1),
+    "-type": (1, 1),
+    "-colorspace": (1, 1),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MtlTexture:
+    """What ``map_Kd`` or ``map_d`` says: a file's name, where the image lies, and whether it ends at its edges.
+
+    A surface's coordinates are multiplied by `scale` and `offset` is added.
+    """
+
+    name: str
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+    clamp: bool = False
+
+    def placed(self) -> tuple[object, ...]:
+        """Return all that says where the image lies."""
+        return self.scale, self.offset, self.clamp
+
+
+@dataclass(slots=True)
+class MtlMaterial:
+    """What one ``newmtl`` says.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    colour
+        ``Kd``, three reals, as written; None where it is not given.
+    opacity
+        ``d``, or 1 - ``Tr``.
+    texture
+        ``map_Kd``, or None.
+    opacity_texture
+        ``map_d``, or None.
+    """
+
+    name: str
+    colour: tuple[float, float, float] | None = None
+    opacity: float = 1.0
+    texture: MtlTexture | None = None
+    opacity_texture: MtlTexture | None = None
+
+
+def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
+    """Return the materials of a library by name; the first wins where a name repeats.
+
+    Raises
+    ------
+    AssetError
+        The file cannot be read, or a colour or opacity is no number.
+    """
+    text = read_text(path)
+    materials: dict[str, MtlMaterial] = {}
+    current: MtlMaterial | None = None
+    for line in range(len(text.starts)):
+        keyword, _, argument = text.words(line).replace("\t", " ").partition(" ")
+        keyword, argument = keyword.lower(), argument.strip()
+        if keyword == "newmtl":
+            current = MtlMaterial(argument)
+            if argument in materials:
+                notes.add("repeated-material", f"{path.name} names a material twice; the first was used")
+            materials.setdefault(argument, current)
+        elif keyword and current is None:
+            notes.add("unknown-statement", f"{path.name}: statements before the first newmtl were ignored")
+        elif keyword and current is not None:
+            _set(current, keyword, argument, _Place(path, text.place(line), notes))
+    return materials
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    path: Path
+    line: str
+    notes: Notes
+
+
+def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> None:
+    if keyword == "kd":
+        material.colour = _colour(argument, place)
+    elif keyword == "d":
+        material.opacity = _real(argument.split()[-1:], place)
+    elif keyword == "tr":
+        transparency = _real(argument.split()[-1:], place)
+        if material.opacity == 1.0:  # exporters that write both mean d
+            material.opacity = 1.0 - transparency
+    elif keyword == "map_kd":
+        material.texture = _texture(keyword, argument, place)
+    elif keyword == "map_d":
+        material.opacity_texture = _texture(keyword, argument, place)
+    elif keyword not in _WITHOUT_BEARING:
+        place.notes.add("unknown-statement", f"{place.path.name}: {keyword!r} was not understood")
+
+
+def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
+    words = argument.split()
+    if words[:1] in (["spectral"], ["xyz"]):
+        message = f"{place.path.name}: Kd {words[0]} is not honoured; the default colour stands in"
+        place.notes.add("material-colour", message)
+        return None
+    values = [_real([word], place) for word in words[:3]]
+    if len(values) == 1:  # one value is a grey, says the format's description
+        values *= 3
+    if len(values) != 3:
+        raise AssetError(place.path, "Kd needs three numbers", place=place.line, fix="repair the line")
+    return values[0], values[1], values[2]
+
+
+def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
+    """Read the options that stand before a file's name, which may hold blanks."""
+    rest = argument
+    scale, offset, clamp = (1.0, 1.0), (0.0, 0.0), False
+    while rest.startswith("-"):
+        option, _, rest = rest.partition(" ")
+        option, rest = option.lower(), rest.lstrip()
+        fewest, most = _OPTIONS.get(option, (0, 0))
+        if not most:
+            place.notes.add("unknown-statement", f"{place.path.name}: {keyword} option {option!r} was not understood")
+        values: list[str] = []
+        while len(values) < most:
+            word, _, after = rest.partition(" ")
+            if len(values) >= fewest and not _is_number(word):
+                break
+            values.append(word)
+            rest = after.lstrip()
+        if option in ("-s", "-o"):
+            numbers = [_real([word], place) for word in values]
+            if option == "-s":
+                scale = numbers[0], numbers[1] if len(numbers) > 1 else 1.0
+            else:
+                offset = numbers[0], numbers[1] if len(numbers) > 1 else 0.0
+        elif option == "-clamp":
+            clamp = values == ["on"]
+        elif option in ("-mm", "-t"):
+            place.notes.add("texture", f"{place.path.name}: {keyword} option {option!r} is not honoured")
+    return MtlTexture(rest, scale, offset, clamp) if rest else None
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _real(words: list[str], place: _Place) -> float:
+    try:
+        value = float(words[0])
+    except (IndexError, ValueError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise AssetError(place.path, f"{' '.join(words)!r} is no number", place=place.line, fix="repair the line")
+    return value

@@ -1,0 +1,209 @@
+"""What an OBJ file's lines say: vertices, faces, and which object and material each face is of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.obj.text import Text, index_rows, real_rows
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.notes import Notes
+
+# Keywords of curves and surfaces, which have no faces of their own.
+_FREE_FORM = frozenset(
+    {
+        *("vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end"),
+        *("con", "bzp", "bsp", "cdc", "cdp", "res", "ctech", "stech"),
+    }
+)
+_WITHOUT_BEARING = frozenset(
+    {
+        *("s", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "maplib", "usemap", "call"),
+        *("csh", "version"),
+    }
+)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Statements:
+    """The file's content, faces in authored order.
+
+    Attributes
+    ----------
+    positions
+        float64, shape (V, 3), in the file's frame; NaN where a number could not be read.
+    colours
+        float64, shape (V, 3): sRGB of 0 … 1, white where a vertex has none; None where no vertex has one.
+    counts
+        int64, shape (F,): corners per face, each at least 3.
+    corners
+        int64, flat: rows of `positions`.
+    face_lines
+        int64, shape (F,): the line of each face, an index into the text's lines.
+    objects, groups, materials
+        (line, name) of each ``o``, ``g`` and ``usemtl``.
+    libraries
+        The names of all material libraries, with the line that asks for them.
+    """
+
+    positions: NDArray[np.float64]
+    colours: NDArray[np.float64] | None
+    counts: NDArray[np.int64]
+    corners: NDArray[np.int64]
+    face_lines: NDArray[np.int64]
+    objects: tuple[tuple[int, str], ...]
+    groups: tuple[tuple[int, str], ...]
+    materials: tuple[tuple[int, str], ...]
+    libraries: tuple[tuple[int, str], ...]
+
+
+def read_statements(text: Text, notes: Notes) -> Statements:
+    """Read all statements.
+
+    Raises
+    ------
+    AssetError
+        A vertex of fewer than three numbers, a face whose corners are no vertices, or a file without faces.
+    """
+    first = text.buffer[text.starts]
+    # A line's last character is its line feed, so there is always a second one except at the very end.
+    second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
+    alone = second <= ord(" ")
+    is_vertex = (first == ord("v")) & alone
+    is_face = (first == ord("f")) & alone
+    attribute = (first == ord("v")) & ((second == ord("n")) | (second == ord("t")))
+    other = np.flatnonzero(~(is_vertex | is_face | attribute | (first == ord("#")) | (first == ord("\n"))))
+    vertex_lines = np.flatnonzero(is_vertex)
+    face_lines = np.flatnonzero(is_face)
+    positions, colours = _vertices(text, vertex_lines, notes)
+    named = _named(text, other, notes)
+    counts, corners = _faces(text, face_lines, np.cumsum(is_vertex)[face_lines], len(positions))
+    if not len(counts):
+        raise AssetError(text.path, "has no faces", fix="export it with its polygons")
+    keep = counts >= 3
+    if not keep.all():
+        notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+        corners, counts, face_lines = corners[np.repeat(keep, counts)], counts[keep], face_lines[keep]
+    return Statements(
+        positions,
+        colours,
+        counts,
+        corners,
+        face_lines,
+        tuple(named["o"]),
+        tuple(named["g"]),
+        tuple(named["usemtl"]),
+        tuple(named["mtllib"]),
+    )
+
+
+def texture_coordinates(text: Text, said: Statements) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Read what ``vt`` says of all corners.
+
+    Returns
+    -------
+    uv
+        float64, shape (corners, 2), v upwards; 0 where a corner has none.
+    given
+        bool, shape (F,): whether all corners of a face have some.
+
+    Raises
+    ------
+    AssetError
+        A corner names coordinates that are none.
+    """
+    first, second = text.buffer[text.starts], text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
+    is_texture = (first == ord("v")) & (second == ord("t"))
+    values, widths = real_rows(text, np.flatnonzero(is_texture), 2)
+    begins = np.cumsum(widths) - widths
+    stored = np.zeros((len(widths), 2))
+    for column in range(2):  # v is 0 where a line has u alone
+        wide = widths > column
+        stored[wide, column] = values[begins[wide] + column]
+    numbers, counts = index_rows(text, said.face_lines, 1, 1)
+    before = np.repeat(np.cumsum(is_texture)[said.face_lines], counts)
+    rows = np.where(numbers < 0, before + numbers, numbers - 1)
+    wrong = np.flatnonzero((numbers != 0) & ((rows < 0) | (rows >= len(stored))))
+    if len(wrong):
+        face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
+        problem = f"texture coordinate {numbers[wrong[0]]} of a face is none of the file's {len(stored)}"
+        raise AssetError(text.path, problem, place=text.place(int(said.face_lines[face])), fix="export it again")
+    missing = numbers == 0
+    uv = np.zeros((len(rows), 2))
+    uv[~missing] = stored[rows[~missing]]
+    missing |= ~np.isfinite(uv).all(axis=1)
+    uv[missing] = 0.0
+    return uv, ~np.logical_or.reduceat(missing, np.cumsum(counts) - counts)
+
+
+def _vertices(
+    text: Text, lines: NDArray[np.int64], notes: Notes
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    values, counts = real_rows(text, lines, 1)
+    short = np.flatnonzero(counts < 3)
+    if len(short):
+        raise AssetError(
+            text.path, "a vertex needs three numbers", place=text.place(lines[short[0]]), fix="repair the vertex"
+        )
+    begins = np.cumsum(counts) - counts
+    coloured = counts >= 6
+    colours = None
+    if coloured.any():
+        colours = np.ones((len(counts), 3))
+        # Three numbers or four: a weight may stand before the colour.
+        colours[coloured] = values[(begins + counts)[coloured, None] + np.arange(-3, 0)]
+        broken = ~np.isfinite(colours).all(axis=1)
+        notes.add("vertex-colour", "vertex colours that are not numbers were taken as black", int(broken.sum()))
+        colours[broken] = 0.0
+        if colours.max() > 1.0:  # some programs write 0 ... 255
+            colours[coloured] /= 255.0
+        colours = np.clip(colours, 0.0, 1.0)
+    if len(counts) and (counts == counts[0]).all():
+        return np.ascontiguousarray(values.reshape(len(counts), -1)[:, :3]), colours
+    return values[begins[:, None] + np.arange(3)], colours
+
+
+def _faces(
+    text: Text, lines: NDArray[np.int64], vertices_before: NDArray[np.int64], vertices: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Corners per face and rows of the vertices, with negative numbers counted back from the face."""
+    numbers, counts = index_rows(text, lines, 1, 0)
+    corners = numbers
+    negative = corners < 0
+    if negative.any():
+        corners = np.where(negative, corners + np.repeat(vertices_before, counts), corners - 1)
+    else:
+        corners = corners - 1
+    wrong = np.flatnonzero((corners < 0) | (corners >= vertices))
+    if len(wrong):
+        face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
+        raise AssetError(
+            text.path,
+            f"vertex {numbers[wrong[0]]} of a face is none of the file's {vertices}",
+            place=text.place(lines[face]),
+            fix="export it again",
+        )
+    return counts, corners
+
+
+def _named(text: Text, lines: NDArray[np.int64], notes: Notes) -> dict[str, list[tuple[int, str]]]:
+    named: dict[str, list[tuple[int, str]]] = {"o": [], "g": [], "usemtl": [], "mtllib": []}
+    for line in lines.tolist():
+        words = text.words(line)
+        keyword, _, argument = words.replace("\t", " ").partition(" ")
+        keyword, argument = keyword.lower(), argument.strip()
+        if keyword in named:
+            named[keyword].append((line, argument))
+        elif keyword in ("l", "p"):
+            notes.add("no-area", "lines and points have no volume and no area and were left out")
+        elif keyword in _FREE_FORM:
+            notes.add("free-form", "curves and free-form surfaces are not honoured; export them as polygons")
+        elif keyword and keyword not in _WITHOUT_BEARING:
+            notes.add("unknown-statement", "statements that are none of the format were ignored")
+    return named

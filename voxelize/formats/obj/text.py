@@ -1,0 +1,293 @@
+"""The lines of an OBJ or MTL file, and their numbers, as arrays."""
+
+from __future__ import annotations
+
+import codecs
+import math
+import re
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.asset_bytes import read_asset
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+_Number = TypeVar("_Number", np.float64, np.int64)
+
+# Longer ones are beyond any file's vertices, and beyond 64 bits.
+_INDEX = re.compile(rb"[+-]?\d{1,18}")
+
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark it begins with
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Text:
+    """A file's text with ASCII line ends and continued lines joined in place.
+
+    Attributes
+    ----------
+    path
+        The file, for errors.
+    data
+        Its bytes, ASCII compatible, ending in a line feed. A joined continuation keeps its length and, in
+        `newlines`, its line number.
+    buffer
+        uint8, shape (len(data),): the same bytes.
+    starts
+        int64, shape (L,): where each line's first character that is no blank stands; its line feed where it has none.
+    ends
+        int64, shape (L,): where each line's line feed stands.
+    newlines
+        int64: positions of all line feeds of the file, joined ones included.
+    """
+
+    path: Path
+    data: bytes
+    buffer: NDArray[np.uint8]
+    starts: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    newlines: NDArray[np.int64]
+
+    def place(self, line: int) -> str:
+        """Where line `line` (an index into `starts`) stands, for people: ``line 12``."""
+        return f"line {int(np.searchsorted(self.newlines, self.starts[line])) + 1}"
+
+    def words(self, line: int) -> str:
+        """Return the text of line `line` without comment and surrounding blanks."""
+        raw = self.data[self.starts[line] : self.ends[line]]
+        return decode(raw.partition(b"#")[0]).strip()
+
+
+def decode(raw: bytes) -> str:
+    """Text of a name: UTF-8, or Windows-1252 as old exporters wrote it, in which every byte has a meaning."""
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", errors="replace")
+
+
+def read_text(path: Path) -> Text:
+    """Read a text file of any usual encoding.
+
+    Raises
+    ------
+    AssetError
+        The file cannot be read, or its bytes are not what its byte order mark says.
+    """
+    data = read_asset(path)
+    return as_text(path, _to_ascii_compatible(path, data))
+
+
+def as_text(path: Path, data: bytes) -> Text:
+    """Find the lines of ASCII compatible bytes."""
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if not data.endswith(b"\n"):
+        data += b"\n"
+    newlines = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == ord("\n"))
+    ends = newlines
+    if b"\\\n" in data:
+        data = data.replace(b"\\\n", b"  ")
+        ends = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == ord("\n"))
+        if not len(ends):
+            data += b"\n"
+            ends = np.array([len(data) - 1])
+    buffer = np.frombuffer(data, dtype=np.uint8)
+    starts = np.empty_like(ends)
+    starts[0] = 0
+    starts[1:] = ends[:-1] + 1
+    indented = np.flatnonzero((buffer[starts] <= ord(" ")) & (starts != ends))
+    if len(indented):
+        solid = np.append(np.flatnonzero(buffer > ord(" ")), len(buffer))
+        starts[indented] = np.minimum(solid[np.searchsorted(solid, starts[indented])], ends[indented])
+    return Text(path, data, buffer, starts, ends, newlines)
+
+
+def _to_ascii_compatible(path: Path, data: bytes) -> bytes:
+    encoding = next((name for mark, name in _BOMS if data.startswith(mark)), None)
+    if encoding is None and len(data) >= 4 and 0 in data[:4]:
+        # No mark, but one byte in two is zero: UTF-16 of ASCII text.
+        encoding = "utf-16-be" if data[0] == 0 and data[1] else "utf-16-le" if data[1] == 0 and data[0] else None
+    if encoding is None or encoding == "utf-8":
+        return data.removeprefix(codecs.BOM_UTF8)
+    try:
+        return data.decode(encoding).lstrip("\ufeff").encode("utf-8")
+    except UnicodeDecodeError:
+        raise AssetError(
+            path, f"is not the {encoding.upper()} text that it begins as", fix="save it as UTF-8"
+        ) from None
+
+
+def real_rows(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read the reals of many lines at once.
+
+    Parameters
+    ----------
+    text, lines
+        The lines to read, ascending indices.
+    keyword
+        Length of the keyword that each begins with.
+
+    Returns
+    -------
+    values
+        float64, flat; NaN for what is no number.
+    counts
+        int64, shape (len(lines),): numbers per line.
+    """
+    if not len(lines):
+        return np.zeros(0), np.zeros(0, dtype=np.int64)
+    characters, counts = _gathered(text, lines, keyword)
+    values = _parsed(characters, int(counts.sum()), np.float64)
+    if values is None:
+        words = (word for row in characters.tobytes().split(b"\n") for word in row.split())
+        values = np.array([_real(word) for word in words])
+    return values, counts
+
+
+def index_rows(
+    text: Text, lines: NDArray[np.int64], keyword: int, field: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Read one field of the corners of many faces at once: ``12/7/3`` is 12 in field 0 and 7 in field 1.
+
+    Parameters
+    ----------
+    text, lines, keyword
+        As in :func:`real_rows`.
+    field
+        0 or 1. A corner without field 1 gives 0, which is no index in OBJ files.
+
+    Returns
+    -------
+    As :func:`real_rows`, but int64.
+
+    Raises
+    ------
+    AssetError
+        An index that is no integer, or a corner without field 0.
+    """
+    if not len(lines):
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    characters, counts = _gathered(text, lines, keyword)
+    rows = characters.tobytes()
+    slashes = np.flatnonzero(characters == ord("/"))
+    if len(slashes):
+        _keep_field(characters, slashes, field)
+    elif field:
+        return np.zeros(int(counts.sum()), dtype=np.int64), counts
+    values = _parsed(characters, int(counts.sum()), np.int64)
+    if values is None:
+        values = np.array(_slow_indices(text, lines, rows, field), dtype=np.int64)
+    return values, counts
+
+
+def _keep_field(characters: NDArray[np.uint8], slashes: NDArray[np.int64], field: int) -> None:
+    """Blank all of each word but one of its fields, which slashes separate."""
+    solid = characters > ord(" ")
+    begins = np.flatnonzero(solid[1:] & ~solid[:-1]) + 1
+    ends = np.flatnonzero(~solid[1:] & solid[:-1]) + 1
+    before = np.searchsorted(slashes, begins)
+    padded = np.append(slashes, [len(characters), len(characters)])
+    first = np.minimum(padded[before], ends)
+    # +1 where a stretch to blank begins and -1 where it ends; their running sum says what lies within.
+    steps = np.zeros(len(characters) + 1, dtype=np.int8)
+    if field == 0:
+        np.add.at(steps, first, np.int8(1))
+    else:
+        second = np.where(first < ends, np.minimum(padded[before + 1], ends), ends)
+        np.add.at(steps, begins, np.int8(1))
+        np.subtract.at(steps, np.minimum(first + 1, ends), np.int8(1))
+        np.add.at(steps, second, np.int8(1))
+    np.subtract.at(steps, ends, np.int8(1))
+    characters[np.cumsum(steps[:-1], dtype=np.int8) > 0] = ord(" ")
+
+
+def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Return the lines end to end, keywords and comments blanked, and the words in each."""
+    # Lines that follow one another are copied as one piece.
+    breaks = np.flatnonzero(np.diff(lines) != 1) + 1
+    first = lines[np.concatenate([[0], breaks])]
+    last = lines[np.concatenate([breaks - 1, [len(lines) - 1]])]
+    data = text.data
+    pieces = [data[a : b + 1] for a, b in zip(text.starts[first].tolist(), text.ends[last].tolist(), strict=True)]
+    characters = np.frombuffer(bytearray(b"".join(pieces)), dtype=np.uint8)
+    line_ends = np.flatnonzero(characters == ord("\n"))
+    np.maximum(characters, ord(" "), out=characters)  # all that is no text is blank, to NumPy and Python alike
+    characters[line_ends] = ord("\n")
+    line_starts = np.empty_like(line_ends)
+    line_starts[0] = 0
+    line_starts[1:] = line_ends[:-1] + 1
+    if len(breaks) + 1 != len(lines):  # inside a piece, lines keep their indentation
+        piece_starts = np.cumsum([0] + [len(piece) for piece in pieces[:-1]])
+        line_starts += text.starts[lines] - _line_begins(text, lines)
+        line_starts[np.searchsorted(lines, first)] = piece_starts
+    for offset in range(keyword):
+        characters[line_starts + offset] = ord(" ")
+    _blank_comments(characters)
+    solid = characters > ord(" ")
+    begins = np.flatnonzero(solid[1:] & ~solid[:-1]) + 1
+    return characters, np.diff(np.searchsorted(begins, line_ends), prepend=0)
+
+
+def _line_begins(text: Text, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where lines begin, their indentation included."""
+    begins = np.zeros(len(lines), dtype=np.int64)
+    begins[lines > 0] = text.ends[lines[lines > 0] - 1] + 1
+    return begins
+
+
+def _blank_comments(characters: NDArray[np.uint8]) -> None:
+    marks = characters == ord("#")
+    if marks.any():
+        seen = np.cumsum(marks, dtype=np.int64)
+        before = np.maximum.accumulate(np.where(characters == ord("\n"), seen, 0))
+        characters[(seen > before) & (characters != ord("\n"))] = ord(" ")
+
+
+def _parsed(characters: NDArray[np.uint8], total: int, kind: type[_Number]) -> NDArray[_Number] | None:
+    """Parse all numbers, or None where one of the `total` words is none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # how older NumPy says that it stopped early
+        try:
+            values = np.fromstring(characters.tobytes(), dtype=kind, sep=" ")
+        except ValueError:
+            return None
+    return values if len(values) == total else None
+
+
+def _real(word: bytes) -> float:
+    try:
+        return math.nan if b"_" in word else float(word)  # underscores are Python's own notation
+    except ValueError:
+        return math.nan
+
+
+def _slow_indices(text: Text, lines: NDArray[np.int64], rows: bytes, field: int) -> list[int]:
+    """Read word by word, to say where something is wrong."""
+    indices: list[int] = []
+    for line, row in zip(lines.tolist(), rows.split(b"\n"), strict=False):
+        for word in row.split():
+            fields = word.split(b"/")
+            digits = fields[field] if field < len(fields) else b""
+            if field and not digits:
+                indices.append(0)
+                continue
+            if not _INDEX.fullmatch(digits):
+                raise AssetError(
+                    text.path, f"{decode(word)!r} is no corner", place=text.place(line), fix="repair the face"
+                )
+            indices.append(int(digits))
+    return indices

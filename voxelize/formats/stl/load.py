@@ -1,0 +1,139 @@
+"""STL, binary and ASCII."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.colour.material_table import MaterialTable
+from voxrt.voxelize.colour.paint import Coat, Paint
+from voxrt.voxelize.colour.painted import Unfinished, finish
+from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.stl.text import ascii_solids
+from voxrt.voxelize.frames import scene_transform
+from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.scene import Scene, SceneObject
+from voxrt.voxelize.weld import weld
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_HEADER = 84
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
+    """Read an STL file.
+
+    Corners at exactly one place become one vertex. Normals are not used: the order of corners says what is outside.
+
+    Parameters
+    ----------
+    path
+        The file: binary, or ASCII with any number of solids, each of which becomes an object.
+    up
+        The file's up axis; None means y.
+    unit
+        Metres per unit of the file; None means 1.
+
+    Raises
+    ------
+    AssetError
+        The file cannot be read, is cut short, or has no triangles.
+    """
+    path = Path(path)
+    data = read_asset(path)
+    notes = Notes()
+    tints = None
+    if _is_binary(data):
+        corners, tints = _binary(path, data, notes)
+        solids = [(path.stem, corners)]
+    else:
+        solids = ascii_solids(path, data)
+    table = MaterialTable()
+    transform = scene_transform(up, unit)
+    objects = []
+    for name, corners in solids:
+        if not len(corners):
+            notes.add("empty-mesh", "solids without triangles were left out")
+            continue
+        if not np.isfinite(corners).all():
+            raise AssetError(path, "has a coordinate that is no number", place=f"solid {name!r}", fix="export it again")
+        positions, triangles = weld(corners)
+        coat = None if tints is None else _coat(tints)
+        bare = np.ones(len(triangles), dtype=np.bool_) if coat is None else coat.rows < 0
+        materials = np.zeros(len(triangles), dtype=np.uint8)
+        if bare.any():
+            materials[bare] = table.default(notes, int(bare.sum()))
+        (mesh,) = finish([Unfinished(positions, triangles, materials, coat)], table, notes)
+        objects.append(SceneObject(name, mesh, transform))
+    if not objects:
+        raise AssetError(path, "has no triangles", fix="export it with its surface")
+    return Scene(path.stem, tuple(objects), table.materials(), notes.warnings())
+
+
+def _is_binary(data: bytes) -> bool:
+    """Binary when the length is what the header's count says, or when it does not begin as ASCII files do.
+
+    The word ``solid`` alone proves nothing: many exporters begin binary files with it.
+    """
+    if len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little"):
+        return True
+    head = data[:1024]
+    return not (head.lstrip().lower().startswith(b"solid") and b"\0" not in head)
+
+
+def _binary(
+    path: Path, data: bytes, notes: Notes
+) -> tuple[NDArray[np.float64], tuple[NDArray[np.uint8], NDArray[np.bool_]] | None]:
+    """Corners, float64, shape (3 * T, 3), and the colours of facets, where some have one."""
+    if len(data) < _HEADER:
+        problem = "is empty" if not data else "is too short for an STL file"
+        raise AssetError(path, problem, fix="export it again")
+    count = int.from_bytes(data[80:84], "little")
+    stored = (len(data) - _HEADER) // 50
+    if stored < count:
+        raise AssetError(path, f"is cut short: {stored} of {count} triangles", fix="copy or export it again")
+    notes.add("trailing-bytes", "bytes after the last triangle were ignored", len(data) - _HEADER - 50 * count)
+    records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
+    corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    return corners, _facet_colours(data[:80], records["attribute"], notes)
+
+
+def _facet_colours(
+    header: bytes, attributes: NDArray[np.uint16], notes: Notes
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]] | None:
+    """Read colours of 15 bits: uint8 (T, 3), sRGB, and which facets have one; None where no facet has.
+
+    Materialise Magics writes COLOR= and the colour of the object into the header, and red in the lowest bits of those
+    facets that have a colour of their own, whose highest bit is clear. VisCAM and SolidView write blue in the lowest
+    bits, and set the highest bit of facets that have a colour. Source: Wikipedia, "STL (file format)".
+    """
+    low, middle, high = ((attributes >> shift & 31).astype(np.uint32) for shift in (0, 5, 10))
+    flagged = attributes >= 1 << 15
+    at = header.find(b"COLOR=")
+    if 0 <= at <= len(header) - 10:
+        colours = np.stack([low, middle, high], axis=1) * 255 // 31
+        colours[flagged] = list(header[at + 6 : at + 9])
+        return colours.astype(np.uint8), np.ones(len(flagged), dtype=np.bool_)
+    notes.add(
+        "stl-attribute",
+        "triangle attributes that are no colours were ignored",
+        int(((attributes != 0) & ~flagged).sum()),
+    )
+    if not flagged.any():
+        return None
+    return (np.stack([high, middle, low], axis=1) * 255 // 31).astype(np.uint8), flagged
+
+
+def _coat(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> Coat:
+    """Paint facets with their colours."""
+    colours, coloured = tints
+    linear = np.ones((len(colours), 3, 4), dtype=np.float32)
+    linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]
+    rows = np.where(coloured, 0, -1).astype(np.int32)
+    return Coat((Paint("facet colours"),), rows, np.zeros((len(colours), 3, 2)), linear)

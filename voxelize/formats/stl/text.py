@@ -1,0 +1,92 @@
+"""The ASCII form of STL: by its lines where they are laid out as all exporters do, else word by word."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.obj.text import Text, as_text, real_rows
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+# A solid's first line; its name may be empty and its end may lack the name.
+_SOLID = re.compile(rb"^[ \t]*solid\b[ \t]*(?P<name>[^\r\n]*)", re.IGNORECASE | re.MULTILINE)
+# Longer words are no numbers, and would each get the longest one's room in the array.
+_VERTEX = re.compile(rb"vertex\s+(\S{1,64})\s+(\S{1,64})\s+(\S{1,64})(?!\S)", re.IGNORECASE)
+
+_FACET = np.frombuffer(b"fovvvee", dtype=np.uint8)  # facet, outer loop, three vertices, endloop, endfacet
+_LOWER = 0x20
+
+
+def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return each solid's name, once, and corners (float64, shape (3 * T, 3)).
+
+    Raises
+    ------
+    AssetError
+        A facet is no triangle, or a coordinate no number.
+    """
+    found = _by_lines(as_text(path, data))
+    solids = _by_words(path, data) if found is None else found
+    used: set[str] = set()
+    named = []
+    for said, corners in solids:
+        stem = said.decode("utf-8", errors="replace").strip() or path.stem
+        name, number = stem, 2
+        while name in used:
+            name, number = f"{stem} ({number})", number + 1
+        used.add(name)
+        named.append((name, corners))
+    return named
+
+
+def _by_lines(text: Text) -> list[tuple[bytes, NDArray[np.float64]]] | None:
+    """Read a file of one statement a line; None where it is laid out otherwise, or something is wrong."""
+
+    def at(place: int) -> NDArray[np.uint8]:
+        return text.buffer[np.minimum(text.starts + place, text.ends)] | np.uint8(_LOWER)
+
+    first, fourth = at(0), at(3)
+    blank = text.starts == text.ends
+    heads = np.flatnonzero((first == ord("s")) & ~blank)
+    ends = (first == ord("e")) & (fourth == ord("s"))
+    facets = first[~(blank | ends | (first == ord("s")))]
+    if not len(heads) or len(facets) % 7 or not (facets.reshape(-1, 7) == _FACET).all():
+        return None
+    lines = np.flatnonzero((first == ord("v")) & ~blank)
+    if any((at(place)[lines] != letter).any() for place, letter in enumerate(b"vertex ")):
+        return None
+    if any((at(place)[heads] != letter).any() for place, letter in enumerate(b"solid")):
+        return None
+    if len(lines) and lines[0] < heads[0]:
+        return None
+    values, counts = real_rows(text, lines, len("vertex"))
+    if (counts != 3).any() or not np.isfinite(values).all():
+        return None
+    begins = np.searchsorted(lines, heads) * 3
+    names = [text.data[text.starts[line] + 5 : text.ends[line]] for line in heads.tolist()]
+    return list(zip(names, np.split(values.reshape(-1, 3), begins[1:] // 3), strict=True))
+
+
+def _by_words(path: Path, data: bytes) -> list[tuple[bytes, NDArray[np.float64]]]:
+    # `endsolid` begins no solid: the pattern wants the word at the line's beginning.
+    heads = list(_SOLID.finditer(data))
+    solids = []
+    for head, end in zip(heads, [*(head.start() for head in heads), len(data)][1:], strict=True):
+        name, body = head["name"], data[head.end() : end]
+        place = f"solid {name.decode('utf-8', errors='replace').strip()!r}"
+        words = _VERTEX.findall(body)
+        if len(words) % 3 or len(words) // 3 != len(re.findall(rb"\bendfacet\b", body, re.IGNORECASE)):
+            raise AssetError(path, "has a facet that is no triangle", place=place, fix="export it again")
+        try:
+            corners = np.array(words, dtype=np.bytes_).astype(np.float64).reshape(-1, 3)
+        except ValueError as error:
+            raise AssetError(path, f"has a vertex that is no number: {error}", place=place) from None
+        solids.append((name, corners))
+    return solids

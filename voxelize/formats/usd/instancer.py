@@ -1,0 +1,65 @@
+"""Where a point instancer puts copies of which prototype."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.usd.values import integers
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.notes import Notes
+
+
+def placed_copies(
+    prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes
+) -> tuple[list[Usd.Prim], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
+    """Evaluate a point instancer.
+
+    Returns
+    -------
+    prototypes
+        The roots of what is copied.
+    indices
+        int64, shape (N,): which prototype each copy is of.
+    transforms
+        float64, shape (N, 4, 4), column vectors: from the prototype root's own frame to the instancer's.
+    numbers
+        int64, shape (N,): each copy's place in the instancer's arrays. Masked copies are left out and counted.
+
+    Raises
+    ------
+    AssetError
+        Its arrays contradict each other, or a prototype does not exist.
+    """
+    instancer = UsdGeom.PointInstancer(prim)
+    place = str(prim.GetPath())
+    targets = instancer.GetPrototypesRel().GetForwardedTargets()
+    prototypes = [prim.GetStage().GetPrimAtPath(target) for target in targets]
+    for target, prototype in zip(targets, prototypes, strict=True):
+        if not prototype:
+            raise AssetError(path, f"prototype {target} does not exist", place=place, fix="repair its prototypes")
+    indices = integers(instancer.GetProtoIndicesAttr(), time, path)
+    if len(indices) and (indices.min() < 0 or indices.max() >= len(prototypes)):
+        problem = f"protoIndices go from {indices.min()} to {indices.max()} and there are {len(prototypes)} prototypes"
+        raise AssetError(path, problem, place=place, fix="export the instancer again")
+    rows = instancer.ComputeInstanceTransformsAtTime(
+        time, time, UsdGeom.PointInstancer.IncludeProtoXform, UsdGeom.PointInstancer.IgnoreMask
+    )
+    if len(rows) != len(indices):
+        problem = f"protoIndices has {len(indices)} entries and the positions, orientations or scales have others"
+        raise AssetError(path, problem, place=place, fix="export the instancer again")
+    transforms = np.array(rows, dtype=np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
+    numbers = np.arange(len(indices))
+    mask = np.array(instancer.ComputeMaskAtTime(time), dtype=bool)
+    if len(mask):
+        notes.add("invisible", "masked copies of point instancers were left out", int((~mask).sum()))
+        indices, transforms, numbers = indices[mask], transforms[mask], numbers[mask]
+    return prototypes, indices, transforms, numbers

@@ -1,5 +1,0 @@
-"""glTF 2.0 and GLB to a :class:`~voxrt.voxelize.scene.Scene`: a reader of our own over NumPy accessors."""
-
-from voxrt.voxelize.gltf.load import load_gltf
-
-__all__ = ["load_gltf"]

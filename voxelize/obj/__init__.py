@@ -1,9 +1,0 @@
-"""Wavefront OBJ with its MTL material libraries.
-
-An OBJ file is read as arrays of bytes: one pass finds the lines, one parse reads the numbers of all vertices and one
-those of all faces, so that time goes with the file's size and hardly with its number of lines.
-"""
-
-from voxrt.voxelize.obj.load import load_obj
-
-__all__ = ["load_obj"]

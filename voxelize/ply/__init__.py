@@ -1,5 +1,0 @@
-"""PLY, ASCII and binary of both byte orders."""
-
-from voxrt.voxelize.ply.load import load_ply
-
-__all__ = ["load_ply"]
