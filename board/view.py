@@ -1,4 +1,4 @@
-"""What a frame shows: camera, size, background, light and features."""
+"""The view of a frame: camera, size, background, light and features."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 Triple = tuple[int, int, int]
 
 FEATURES = ("flat", "shadows", "mirrors")
-"""What a device may be able to do besides shading, in the order that people are shown it."""
+"""Optional features of a device, in the order in which users see them."""
 
 
 @dataclass(frozen=True, slots=True)
