@@ -7,10 +7,12 @@ import contextlib
 import json
 import zlib
 from contextlib import asynccontextmanager
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from fakes.device import FakeDevice, scene
+from fakes.device import FakeDevice, scene, wide_scene
 from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -171,6 +173,32 @@ def test_upload(run):
             assert set(stages) == {"send", "read", "write", "verify"}
             packet = await frame_where(client, lambda packet: packet.scene == 2)
             assert pixel(packet)[0] == 6
+
+    run(check())
+
+
+def test_frames_while_a_scene_is_loaded(run):
+    """Frames and the steps of the upload take turns: before `done` all frames show the old scene, then the new one."""
+
+    async def check():
+        device = FakeDevice(capacity=40000)
+        old, new = (replace(wide_scene(str(material), 2000, material), depth=6) for material in (5, 6))
+        async with served(device, old) as server:
+            renderer = server.session.renderer
+            device.calls.clear()
+            loading = asyncio.create_task(renderer.load(new, ignore))
+            materials = []
+            while not loading.done():
+                materials.append(int((await renderer.render_view(renderer.view)).colour[0, 0, 0]))
+            await loading
+            after = await renderer.render_view(renderer.view)
+            assert after.colour[0, 0, 0] == 6
+            before = [material for material in materials if material == 5]
+            assert materials == before + [6] * (len(materials) - len(before))
+            assert len(before) >= 8  # 4 bursts are written and 4 read back
+            written = [number for number, call in enumerate(device.calls) if call == "write_memory"]
+            assert all("frame" in device.calls[a:b] for a, b in pairwise(written))
+            assert "hold" not in device.calls
 
     run(check())
 
