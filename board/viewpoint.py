@@ -1,4 +1,4 @@
-"""Cameras that nobody made by hand: of a world that comes without one, and of frames of another size."""
+"""Default cameras: one for a world without a camera, and one for a frame of another size."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DIRECTION = (1 << 20) - 1
 
 
 def face_world(depth: int, size: tuple[int, int]) -> Camera:
-    """Make the right-handed camera that sees a whole world of 2**`depth` voxels a side in a frame of `size`."""
+    """Make the right-handed camera that sees a whole world of 2**`depth` voxels per side in a frame of `size`."""
     look = _SIGHT / np.linalg.norm(_SIGHT)
     right = np.cross(look, (0.0, 1.0, 0.0))
     right /= np.linalg.norm(right)

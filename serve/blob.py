@@ -95,5 +95,5 @@ def _camera(section: bytes) -> Camera:
 
 def _lighting(section: bytes) -> Lighting:
     x, y, z, ambient, flags, bounces, _ = _LIGHT.unpack(section)
-    said = {"shadows": flags & _LIGHT_ON, "flat": flags & _FLAT, "mirrors": bounces}
-    return Lighting((x, y, z), ambient, min(bounces, 15), frozenset(name for name, on in said.items() if on))
+    features_on = {"shadows": flags & _LIGHT_ON, "flat": flags & _FLAT, "mirrors": bounces}
+    return Lighting((x, y, z), ambient, min(bounces, 15), frozenset(name for name, on in features_on.items() if on))

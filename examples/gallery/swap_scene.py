@@ -16,8 +16,8 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.view import View
-from voxrt.export import Blob
 from voxrt.board_scenes import board_scene
+from voxrt.export import Blob
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
 device = open_rtl("tiny")
