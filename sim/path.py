@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import SimulatorError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree
-    from voxrt.sim.camera import Camera, Triple
+    from voxrt.octree.camera import Camera, Triple
 
 
 @dataclass(frozen=True, slots=True)
