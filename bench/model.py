@@ -1,4 +1,4 @@
-"""Benchmark of the exact model: pixels per second and core, against the report's C++ algorithm and the simulated hardware.
+"""Benchmark of the exact model: pixels per second and core, beside the report's C++ algorithm and the hardware.
 
 Usage: ``python bench/model.py [MEMORY.mem ...] [--size N] [--clock MHZ] [--write]``. Without memories it takes the
 demo scene at two depths. ``original.cpp``, the report's algorithm, is compiled with ``c++ -O2`` and run beside it,

@@ -28,9 +28,9 @@ LANES = {name: it["Lanes"] for name, it in json.loads((ROOT / "rtl" / "configura
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 MIRRORS = np.ones(256, np.uint8)
 NOTES = (
-    "Bound: max(1, words per pixel / lanes). With light and with mirrors the words are those of all rays of a pixel: the",
-    "camera's, the shadow's and the reflected. A lane looks for the place that a shadow ray leaves from in turns that",
-    "read no word, so that frames with light stay above the bound.",
+    "Bound: max(1, words per pixel / lanes). With light and with mirrors the words are those of all rays of a pixel:",
+    "camera ray, shadow ray and reflected rays. A lane refines the hit point of a shadow ray in turns that read no",
+    "word, so frames with light stay above the bound.",
 )
 
 

@@ -2,9 +2,9 @@
 Cycles against lanes
 ====================
 
-The report's figure 38: clocks per frame against ray processors, simulated. Theirs fell as 1/n plus an offset, since the
-pixel buffer polled the processors in turn. Ours has a bound: each lane reads one octree word per clock, and one pixel per
-clock leaves the shader.
+The report's figure 38 shows clocks per frame against ray processors, simulated. The clocks fell as 1/n plus an offset,
+since the pixel buffer polled the processors in turn. Here there is a bound: each lane reads one octree word per clock,
+and one pixel per clock leaves the shader.
 """
 
 import sys
