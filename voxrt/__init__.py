@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, ViewerError, diff, differing_regions
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.plain_verilog import ToolError
     from voxrt.sim import (
         Camera,
         Frame,
@@ -69,6 +70,7 @@ __all__ = [
     "SceneWarning",
     "Shading",
     "SimulatorError",
+    "ToolError",
     "ViewerError",
     "ViewpointError",
     "aim_camera",
@@ -98,6 +100,7 @@ _HOMES = {
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.plain_verilog": ("ToolError",),
     "voxrt.sim": (
         "Camera",
         "Frame",

