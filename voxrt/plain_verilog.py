@@ -55,6 +55,7 @@ write_verilog core.v
 _MODULE = re.compile(r"^module (\\\S+|\w+) ?\((.*?)\);\n(.*?)^endmodule\n", re.MULTILINE | re.DOTALL)
 # The module of an instance: its name in the sources, and where the instance stands in the design.
 _INSTANCE = re.compile(r"\\(\w+)\$" + TOP + r"\.\S+")
+_USE = re.compile(rf"({_INSTANCE.pattern}) ")
 _ESCAPED = re.compile(r"\\(\S+) ")
 # What autoname calls a net between two that it has named itself: long, and of no use to anybody.
 _LONG = re.compile(r"\b\w+?__\w+?__\w+")
@@ -124,7 +125,7 @@ def merge_modules(text: str) -> str:
     def merge(name: str) -> str:
         if name not in alike:
             ports, body = modules[name]
-            below = _INSTANCE.sub(lambda match: merge(match[0]) + " ", body)
+            below = _USE.sub(lambda match: merge(match[1]) + " ", body)
             alike[name] = first.setdefault((_source_name(name), ports, below), name)
             if alike[name] == name:
                 order.append(name)
@@ -144,7 +145,7 @@ def merge_modules(text: str) -> str:
         ports, body = modules[name]
         listed = ", ".join(port.strip() for port in ports.split(","))
         head = textwrap.fill(listed, 116, initial_indent="  ", subsequent_indent="  ")
-        below = _shorten(_INSTANCE.sub(lambda match: names[alike[match[0]]], body))
+        below = _shorten(_USE.sub(lambda match: names[alike[match[1]]], body))
         written.append(f"\nmodule {names[name]} (\n{head}\n);\n{below}endmodule\n")
     return "".join(written)
 
@@ -154,7 +155,7 @@ def _source_name(name: str) -> str:
 
 
 def _shorten(body: str) -> str:
-    """Number the nets with long names, and write the memories of generate blocks with underscores."""
+    """Replace long names of nets by numbers, and the dots in names of memories by underscores."""
     body = _ESCAPED.sub(lambda match: re.sub(r"\W", "_", match[1]), body)
     numbers: dict[str, int] = {}
     return _LONG.sub(lambda match: f"_net{numbers.setdefault(match[0], len(numbers) + 1)}", body)
@@ -173,7 +174,7 @@ def _run_yosys(configuration: Configuration, folder: Path, progress: Callable[[s
     environment = {**os.environ, "TMPDIR": str(folder)}
     with (
         (folder / "errors").open("w") as errors,
-        subprocess.Popen(
+        subprocess.Popen(  # noqa: S603 - nothing in it comes from outside
             [sys.executable, "-c", call],
             cwd=folder,
             env=environment,

