@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.plain_verilog import ToolError
     from voxrt.sim import (
         Frame,
         NoSuchConfigurationError,
@@ -67,6 +68,7 @@ __all__ = [
     "Scene",
     "SceneWarning",
     "SimulatorError",
+    "ToolError",
     "ViewerError",
     "ViewpointError",
     "aim_camera",
@@ -97,6 +99,7 @@ _HOMES = {
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.plain_verilog": ("ToolError",),
     "voxrt.sim": (
         "Camera",
         "Frame",

@@ -7,7 +7,6 @@ and a C++ compiler.
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
@@ -20,14 +19,13 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
 
 BENCHES = Path(__file__).resolve().parent
-RTL = BENCHES.parent
+sys.path.insert(1, str(BENCHES.parent))
+from configurations import RTL, TOP, list_sources, read_configurations  # noqa: E402 - found by the line above
+
 GENERATED = RTL / "generated"
 BUILDS_FOLDER = RTL.parent / "build" / "benches"
-CONFIGURATIONS = {
-    name: {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
-    for name, parameters in json.loads((RTL / "configurations.json").read_text()).items()
-}
-CORE = "voxrt_core"
+CONFIGURATIONS = {name: configuration.parameters for name, configuration in read_configurations().items()}
+CORE = TOP
 SEED = 1  # Of all that is random: what fails, fails again.
 
 
@@ -98,9 +96,7 @@ def run(name: str) -> None:
     """Build a top and run its benches; exits with an error when one fails."""
     build = BUILDS[name]
     folder = BUILDS_FOLDER / name
-    sources = [RTL / "lint.vlt", RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv"]
-    sources += [GENERATED / "voxrt_registers.sv"]
-    sources += sorted(path for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
+    sources = [RTL / "lint.vlt", *list_sources()]
     share_runtime(folder)
     runner = get_runner("verilator")
     runner.build(

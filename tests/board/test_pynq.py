@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import runpy
 from dataclasses import replace
@@ -24,6 +23,7 @@ from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Camera, View, frame_world
 from voxrt.board.view_check import check_view
+from voxrt.rtl.configurations import read_configurations
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
@@ -138,8 +138,7 @@ def test_the_block_design_has_these_names():
     for name, base in BASE.items():
         assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
     mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
-    blocks = json.loads((RTL / "configurations.json").read_text())["z1"]["BlockBits"]
-    assert mapped >= 4 * (1 + (8 << blocks))
+    assert mapped >= 4 * read_configurations()["z1"].words
 
 
 def test_the_map_is_the_generated_one():
