@@ -60,8 +60,8 @@ module voxrt_banked_memory
   end
 
   always_ff @(posedge clk_i) begin
-    in_top_q[1] <= read_i & in_top;
-    in_top_q[2] <= in_top_q[1];
+    in_top_q[1] <= rst_ni ? read_i & in_top : '0;
+    in_top_q[2] <= rst_ni ? in_top_q[1] : '0;
     bank_q[1]   <= bank;
     bank_q[2]   <= bank_q[1];
     bank_q[3]   <= bank_q[2];
@@ -78,8 +78,9 @@ module voxrt_banked_memory
   logic [  PayloadBits:0] access_word_q [1:2];
 
   always_ff @(posedge clk_i) begin
-    access_q[1]       <= access_i && rst_ni;
-    access_q[2]       <= access_q[1] && rst_ni;
+    // No reset: a reset of the core drops rays, and no word that the processor writes or reads.
+    access_q[1]       <= access_i;
+    access_q[2]       <= access_q[1];
     access_write_q[1] <= access_write_i;
     access_write_q[2] <= access_write_q[1];
     access_row_q[1]   <= access_row_i[RowBits-1:BankBits];
@@ -118,8 +119,8 @@ module voxrt_banked_memory
 
   always_ff @(posedge clk_i) begin
     late_q  <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
-    first_q <= first;
-    last_q  <= last;
+    first_q <= rst_ni ? first : '0;
+    last_q  <= rst_ni ? last : '0;
     for (int unsigned k = 0; k < Banks; k++) begin
       for (int unsigned i = 0; i < Lanes; i++) in_bank_q[k][i] <= bank[i] == BankBits'(k);
     end
@@ -141,7 +142,7 @@ module voxrt_banked_memory
     assign accessed = access_q[1] && access_bank_q[1] == BankBits'(k);
 
     always_ff @(posedge clk_i) begin
-      accessed2_q <= accessed && rst_ni;
+      accessed2_q <= accessed;
       a_row2_q    <= accessed ? access_row_q[1] : row_q[1][number_of(first_q & in_bank_q[k])];
       b_row2_q    <= row_q[1][number_of(last_q & in_bank_q[k])];
     end
@@ -183,6 +184,7 @@ module voxrt_banked_memory
     .PayloadBits(PayloadBits)
   ) u_top (
     .clk_i,
+    .rst_ni,
     .access_i      (writes_top),
     .access_write_i(1'b1),
     .access_row_i  ({access_row_q[2][TopRowBits-1:0], access_bank_q[2]}),
@@ -209,8 +211,13 @@ module voxrt_banked_memory
     from_b_q[2]  <= last_q;
     from_b_q[3]  <= from_b_q[2];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | from_top : '0;
+    ack_q        <= from_a_q[4] | from_b_q[4] | from_top;
     access_out_q <= a_word[access_bank_q[4]];
+    if (!rst_ni) begin
+      from_a_q <= '{default: '0};
+      from_b_q <= '{default: '0};
+      ack_q    <= '0;
+    end
   end
 
   assign ack_o         = ack_q;

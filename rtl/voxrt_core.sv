@@ -118,6 +118,20 @@ module voxrt_core
     shading.bounces = control.shading.bounces.value;
   end
 
+  // Illegal sizes and depths count as the next legal ones.
+  logic [ SizeBits-1:0] width, height;
+  logic [DepthBits-1:0] depth;
+
+  always_comb begin
+    width  = control.size.width.value;
+    height = control.size.height.value;
+    depth  = control.depth.depth.value[DepthBits-1:0];
+    if (control.size.width.value == '0) width = SizeBits'(1);
+    if (control.size.height.value == '0) height = SizeBits'(1);
+    if (control.depth.depth.value == '0) depth = DepthBits'(1);
+    if (control.depth.depth.value > 5'(MaxDepth)) depth = DepthBits'(MaxDepth);
+  end
+
   logic        pixel_valid, pixel_ready, pixel_first, pixel_line_end;
   colour_t     pixel_colour;
   logic [31:0] cycles, rays, words_read, hits, stalls;
@@ -142,9 +156,9 @@ module voxrt_core
     .look_i          (look),
     .right_i         (right),
     .up_i            (up),
-    .width_i         (control.size.width.value),
-    .height_i        (control.size.height.value),
-    .depth_i         (control.depth.depth.value[DepthBits-1:0]),
+    .width_i         (width),
+    .height_i        (height),
+    .depth_i         (depth),
     .root_i          (control.root.address.value),
     .shading_i       (shading),
     .light_i         (light),

@@ -208,6 +208,10 @@ module voxrt_lane
     child_level3_q <= level_of(size2 >> 1);
     bad_pointer_q  <= active_q[2+Extra] && arrived && bad_pointer;
     step_limit_q   <= active_q[2+Extra] && arrived && step_limit;
+    if (!rst_ni) begin
+      bad_pointer_q <= 1'b0;
+      step_limit_q  <= 1'b0;
+    end
   end
 
   assign bad_pointer_o = bad_pointer_q;
@@ -283,6 +287,7 @@ module voxrt_lane
     .Light   (Light)
   ) u_next_cell (
     .clk_i,
+    .rst_ni,
     .beyond_i,
     .top_size_i    (top_size),
     .active_i      (active_q[8+Extra:6+Extra]),

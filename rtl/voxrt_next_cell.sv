@@ -18,6 +18,7 @@ module voxrt_next_cell
   localparam int unsigned KeyBits  = key_bits(MaxDepth, Light)
 ) (
   input  logic                clk_i,
+  input  logic                rst_ni,
   // Held during a frame.
   input  logic [MaxDepth-1:0] beyond_i,           // Bits of a voxel's coordinate that are not the world's.
   input  logic [CellBits-1:0] top_size_i,         // Half of the world.
@@ -149,6 +150,11 @@ module voxrt_next_cell
     finishes9_q   <= active_i[8] && finished;
     goes_on9_q    <= active_i[8] && !finished;
     key_face9_q   <= key_face8_q;
+    // Or a ray of before the reset would release its row, and start again where it is reflected.
+    if (!rst_ni) begin
+      finishes9_q <= 1'b0;
+      goes_on9_q  <= 1'b0;
+    end
   end
 
   assign finishes_o    = finishes9_q;

@@ -77,6 +77,7 @@ module voxrt_octree_memory
       .BlockBits(BlockBits)
     ) u_memory (
       .clk_i,
+      .rst_ni,
       .access_i      (access_i && in_memory),
       .access_write_i,
       .access_row_i  (row[RowBits-1:0]),

@@ -152,4 +152,46 @@ async def reset_at_any_clock(dut):
         for _ in range(memory.clocks + 1):
             await RisingEdge(dut.clk_i)
             assert not int(dut.access_valid_o.value)
+            assert not int(dut.ack_o.value)
         await memory.read(100, "random", "random")
+
+
+@cocotb.test()
+@cocotb.parametrize(writes=[False, True])
+async def no_lane_starves(dut, writes):
+    """All lanes ask at every clock, and the processor too: each turn of a ring of rays is served now and then."""
+    memory = Memory(dut)
+    await memory.begin()
+    ring, laps = 10 + memory.clocks, 40
+    served = [[0] * ring for _ in range(memory.lanes)]
+    drive(dut, read_i=(1 << memory.lanes) - 1, access_i=1, access_write_i=writes)
+    for clock in range(ring * laps):
+        address = random.randrange(1, WORDS)
+        word = memory.words[address]
+        drive(dut, access_address_i=address, access_word_i=word)
+        drive(dut, block_i=[random.randrange(1 << BLOCK_BITS) for _ in range(memory.lanes)])
+        await RisingEdge(dut.clk_i)
+        acknowledged = dut.ack_o.value.to_unsigned()
+        for lane in range(memory.lanes):
+            served[lane][clock % ring] += acknowledged >> lane & 1
+    drive(dut, read_i=0, access_i=0, access_write_i=0)
+    # Banks have conflicts of their own.
+    least = laps // 2 - 2 if memory.clocks == 2 else laps // 8
+    assert min(map(min, served)) >= least, served
+
+
+@cocotb.test()
+async def a_reset_loses_no_word(dut):
+    """Write through a reset of one clock, and read all again."""
+    memory = Memory(dut)
+    await memory.begin()
+    for number, address in enumerate(random.sample(range(WORDS), 60)):
+        dut.rst_ni.value = number % 7 != 3
+        word = some_word()
+        drive(dut, access_i=1, access_write_i=1, access_address_i=address, access_word_i=word)
+        memory.words[address] = kept(word)
+        await RisingEdge(dut.clk_i)
+    dut.rst_ni.value = 1
+    drive(dut, access_i=0, access_write_i=0)
+    await ClockCycles(dut.clk_i, 5)
+    await memory.read(2000, "random", "random")
