@@ -25,7 +25,7 @@ RTL = Path(__file__).resolve().parent
 ROOT = RTL.parent
 RESULTS = ROOT / "bench" / "results" / "area.md"
 TOP = "voxrt_core"
-LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 9}
+LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}

@@ -20,7 +20,7 @@ BIN = Path(sys.executable).parent
 CORE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12}
 # What is placed: a lane; a core of one lane without its registers and packer; the whole.
 PARTS = {
-    "one lane": ("voxrt_lane", {**CORE, "TagBits": 9}),
+    "one lane": ("voxrt_lane", CORE),
     "ray tracing unit of one lane": ("voxrt_rtu", {**CORE, "Lanes": 1, "Banked": 0}),
     "core of one lane": (TOP, {**CORE, "Lanes": 1, "Banked": 0}),
 }

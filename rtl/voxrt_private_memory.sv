@@ -1,32 +1,28 @@
-// The octree memory as private copies, for the shortest way from address to word: two lanes share a copy, one at each
+// The octree memory as private copies, for the shortest path from address to word: two lanes share a copy, one at each
 // port of its block RAMs. A word comes two clocks after its address.
 //
-// Address 1 + 8 * block + octant stands in row {block, octant}; word 0, the root, is elsewhere (voxrt_octree_memory).
+// Word 1 + a of the octree is in row a; word 0 is elsewhere (voxrt_octree_memory).
 //
-// The access port has port A: of all copies to write, of the first one to read. It never waits. At such a clock the two
-// lanes share port B: who is refused gets no ack_o and asks again. Each lane is preferred for 8 clocks of 16, which is
-// at two of four turns of every ray of a ring of 12 stages or 15: so each ray keeps at least half of its turns, even if
-// the processor never pauses. What the memory was in a frame in which it was written shows in the picture alone.
-module voxrt_private_memory
-  import voxrt_pkg::*;
-#(
-  parameter  int unsigned Lanes       = 1,
-  parameter  int unsigned BlockBits   = 12,
-  parameter  int unsigned PayloadBits = payload_bits(BlockBits),
-  localparam int unsigned RowBits     = BlockBits + 3
+// The access port has port A: of all copies to write, of the first one to read. It never waits. At such a clock, both
+// lanes share port B: a lane that is refused gets no ack_o and asks again. Each lane is preferred for 8 clocks of 16,
+// which are half of the passes of every ray, in a ring of 12 stages as of 15: so each ray keeps at least half of its
+// reads, even if the processor uses the port at every clock.
+module voxrt_private_memory #(
+  parameter int unsigned Lanes       = 1,
+  parameter int unsigned AddressBits = 15,
+  parameter int unsigned PayloadBits = 12
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  input  logic                 access_i,
-  input  logic                 access_write_i,
-  input  logic [  RowBits-1:0] access_row_i,
-  input  logic [PayloadBits:0] access_word_i,
-  output logic [PayloadBits:0] access_word_o,              // Two clocks later.
-  input  logic [    Lanes-1:0] read_i,
-  input  logic [BlockBits-1:0] block_i            [Lanes],
-  input  logic [          2:0] octant_i           [Lanes],
-  output logic [    Lanes-1:0] ack_o,
-  output logic [PayloadBits:0] word_o             [Lanes]
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   access_i,
+  input  logic                   access_write_i,
+  input  logic [AddressBits-1:0] access_address_i,
+  input  logic [  PayloadBits:0] access_word_i,
+  output logic [  PayloadBits:0] access_word_o,              // Two clocks later.
+  input  logic [      Lanes-1:0] read_i,
+  input  logic [AddressBits-1:0] address_i         [Lanes],
+  output logic [      Lanes-1:0] ack_o,
+  output logic [  PayloadBits:0] word_o            [Lanes]
 );
   localparam int unsigned Copies = (Lanes + 1) / 2;
 
@@ -54,23 +50,20 @@ module voxrt_private_memory
     localparam bit          Paired = Even + 1 < Lanes;
     localparam int unsigned Odd = Paired ? Even + 1 : Even;
 
-    logic                 accessed, odd_reads, swaps, swapped_q, swapped2_q;
-    logic [  RowBits-1:0] even_row, odd_row;
+    logic                 accessed, odd_reads, swaps, swapped1_q, swapped2_q;
     logic [PayloadBits:0] a_word, b_word;
 
     assign accessed  = access_i && (access_write_i || c == 0);
     assign odd_reads = Paired && read_i[Odd];
-    assign even_row  = {block_i[Even], octant_i[Even]};
-    assign odd_row   = {block_i[Odd], octant_i[Odd]};
 
-    // While port A is the processor's, port B serves the even lane: half of the time, and where the odd one is idle.
+    // Port B serves the even lane.
     assign swaps          = accessed && read_i[Even] && (prefers_even || !odd_reads);
     assign accepted[Even] = read_i[Even] && (!accessed || swaps);
     assign word_o[Even]   = swapped2_q ? b_word : a_word;
 
     always_ff @(posedge clk_i) begin
-      swapped_q  <= swaps;
-      swapped2_q <= swapped_q;
+      swapped1_q <= swaps;
+      swapped2_q <= swapped1_q;
     end
 
     if (Paired) begin : gen_odd
@@ -83,16 +76,16 @@ module voxrt_private_memory
 
     voxrt_block_ram #(
       .Width(PayloadBits + 1),
-      .Depth(2 ** RowBits)
+      .Depth(2 ** AddressBits)
     ) u_ram (
       .clk_i,
       .a_read_i (read_i[Even] || accessed),
       .a_write_i(accessed && access_write_i),
-      .a_row_i  (accessed ? access_row_i : even_row),
+      .a_row_i  (accessed ? access_address_i : address_i[Even]),
       .a_data_i (access_word_i),
       .a_data_o (a_word),
       .b_read_i (odd_reads || swaps),
-      .b_row_i  (swaps ? even_row : odd_row),
+      .b_row_i  (swaps ? address_i[Even] : address_i[Odd]),
       .b_data_o (b_word)
     );
   end

@@ -75,7 +75,8 @@ class Memory:
             blocks = [random.choice([hot, random.randrange(1 << BLOCK_BITS)]) for _ in reads]
             octants = [random.randrange(8) for _ in reads]
             address = random.choice([0, random.randrange(WORDS)]) if next(accesses) else None
-            drive(dut, read_i=sum(bit << lane for lane, bit in enumerate(reads)), block_i=blocks, octant_i=octants)
+            addresses = [8 * block + octant for block, octant in zip(blocks, octants, strict=True)]
+            drive(dut, read_i=sum(bit << lane for lane, bit in enumerate(reads)), address_i=addresses)
             is_write = writes and bool(address) and random.random() < 0.5
             word = some_word()
             drive(dut, access_i=address is not None, access_write_i=is_write, access_address_i=address or 0)
@@ -83,8 +84,7 @@ class Memory:
             await RisingEdge(dut.clk_i)
             if clock >= self.clocks:
                 answered += self.check(*asked.pop(0))
-            addresses = [1 + 8 * block + octant for block, octant in zip(blocks, octants, strict=True)]
-            wanted = [self.words[a] if bit else None for a, bit in zip(addresses, reads, strict=True)]
+            wanted = [self.words[1 + a] if bit else None for a, bit in zip(addresses, reads, strict=True)]
             asked.append((wanted, None if address is None or is_write else self.words[address], address is not None))
             if is_write:
                 self.words[address] = kept(word)
@@ -94,7 +94,7 @@ class Memory:
     def check(self, wanted, read, accessed):
         """Compare the answers to what was asked `clocks` ago; give how many lanes got theirs."""
         dut = self.dut
-        assert dut.root_o.value.to_unsigned() == encoded(self.words[0])
+        assert dut.first_word_o.value.to_unsigned() == encoded(self.words[0])
         assert int(dut.access_valid_o.value) == (read is not None)
         if read is not None:
             assert dut.access_word_o.value.to_unsigned() == read
@@ -169,7 +169,7 @@ async def no_lane_starves(dut, writes):
         address = random.randrange(1, WORDS)
         word = memory.words[address]
         drive(dut, access_address_i=address, access_word_i=word)
-        drive(dut, block_i=[random.randrange(1 << BLOCK_BITS) for _ in range(memory.lanes)])
+        drive(dut, address_i=[random.randrange(8 << BLOCK_BITS) for _ in range(memory.lanes)])
         await RisingEdge(dut.clk_i)
         acknowledged = dut.ack_o.value.to_unsigned()
         for lane in range(memory.lanes):
