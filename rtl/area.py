@@ -26,7 +26,7 @@ from configurations import RTL, TOP, list_sources, read_configurations
 ROOT = RTL.parent
 RESULTS = ROOT / "bench" / "results" / "area.md"
 Z1 = read_configurations()["z1"].parameters
-LANE = {**{name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}, "TagBits": 9}
+LANE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}

@@ -9,11 +9,12 @@ voxrt_cell_times.sv
 voxrt_counters.sv
 voxrt_divide.sv
 voxrt_fifo.sv
-voxrt_free_rows.sv
+voxrt_frame.sv
+voxrt_free_list.sv
 voxrt_lane.sv
-voxrt_lane_turn.sv
+voxrt_slot_scheduler.sv
 voxrt_light.sv
-voxrt_light_way.sv
+voxrt_light_direction.sv
 voxrt_merge.sv
 voxrt_multiply.sv
 voxrt_next_cell.sv
@@ -34,6 +35,6 @@ voxrt_rtu.sv
 voxrt_scan.sv
 voxrt_shader.sv
 voxrt_stream_register.sv
-voxrt_track.sv
+voxrt_buffered_lane.sv
 voxrt_word_decoder.sv
 voxrt_word_encoder.sv
