@@ -124,9 +124,9 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
         **_shading(rom, shading),
     )
     return Frame(
-        colour=pixels["colour"],
-        material=pixels["material"],
-        face=pixels["face"],
+        colour=pixels.colour,
+        material=pixels.material,
+        face=pixels.face,
         cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 
