@@ -202,17 +202,17 @@ def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> V
     memory = _model.Memory(rom.octree.words, rom.octree.depth)
     registers = np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
     hits = memory.trace(np.ascontiguousarray(origins), flat.astype(np.int32))
-    axis = np.minimum(hits["face"], 2)[:, None].astype(np.int64)
+    axis = np.minimum(hits.face, 2)[:, None].astype(np.int64)
     lateral = np.take_along_axis(flat, axis, 1)[:, 0]
     # The plane crossed is the near one of the cell hit.
-    plane = np.take_along_axis(hits["cell"], axis, 1)[:, 0] + (lateral < 0)
+    plane = np.take_along_axis(hits.cell, axis, 1)[:, 0] + (lateral < 0)
     start = np.array(camera.position)[axis[:, 0]] / POSITION_UNITS
-    crossed = hits["face"] != FACE_NONE
+    crossed = hits.face != FACE_NONE
     parameter = np.where(crossed, (plane - start) / np.where(crossed, lateral, 1), 0)
-    depth = np.where(hits["material"] > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
+    depth = np.where(hits.material > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
     normal = np.zeros_like(flat)
     np.put_along_axis(normal, axis, np.where(crossed, -np.sign(lateral), 0)[:, None], 1)
-    colour = memory.render(palette_of(rom), registers, width, height)["colour"]
+    colour = memory.render(palette_of(rom), registers, width, height).colour
     return View(colour, depth.reshape(height, width), normal.reshape(height, width, 3))
 
 

@@ -30,7 +30,7 @@ from voxrt.voxelize.colliders import (
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import DEPTH_LIMIT
 from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider, Tints
-from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
+from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,17 +39,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.grid import Grid
     from voxrt.voxelize.scene import Collider, Scene, SceneObject
 
-    _NativeMesh = tuple[
-        NDArray[np.float64],
-        NDArray[np.int32],
-        NDArray[np.uint8],
-        NDArray[np.int32],
-        NDArray[np.float32],
-        NDArray[np.uint8],
-    ]
-
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding", "open", "turned")
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
 _NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -96,26 +86,39 @@ def voxelize(
     reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
     try:
         result = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
-    except _native.OutOfReachError as error:
+    except _native.OutOfRangeError as error:
         raise _unreachable(scene, int(error.args[0])) from None
     objects = tuple(
-        ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
-        for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
+        ObjectReport(item.name, source, ObjectMode(_native.OBJECT_MODES[mode]), int(count), moved, grown)
+        for item, (source, moved, grown), mode, count in zip(
+            scene.objects, reports, result.object_modes, result.object_voxels, strict=True
+        )
     )
-    standing_open = sum(report.mode == "open" for report in objects)
+    standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
     if standing_open:
         parts.warn(
             "open-surface",
             "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
         )
-    if pieces := int(result[10].sum()):
+    if pieces := int(result.object_flipped.sum()):
         parts.warn(
             "turned-pieces",
             "closed pieces that were inside out beside others of their object were turned: recalculate their normals",
             pieces,
         )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[11])
+    voxels = Voxels(
+        depth=grid.depth,
+        brick_codes=result.brick_codes,
+        brick_masks=result.brick_masks,
+        brick_materials=result.brick_materials,
+        brick_rows=result.brick_rows,
+        cells=result.cells,
+        octant_codes=result.octant_codes,
+        octant_levels=result.octant_levels,
+        octant_materials=result.octant_materials,
+    )
+    return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
 
 
 def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
@@ -140,7 +143,7 @@ class _Parts:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
-        self._meshes: list[_NativeMesh] = []
+        self._meshes: list[_native.MeshArrays] = []
         self._mesh_index: dict[int, int] = {}
         self._keys: list[object] = []
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
@@ -185,18 +188,18 @@ class _Parts:
             self._keys.append(key)  # an id is unique only while its object lives
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
-                (
-                    _vertices(mesh[0], mesh[1]),
-                    np.ascontiguousarray(mesh[1], dtype=np.int32),
-                    np.ascontiguousarray(mesh[2], dtype=np.uint8),
-                    np.ascontiguousarray(tints.sizes, dtype=np.int32),
-                    np.ascontiguousarray(tints.places, dtype=np.float32),
-                    np.ascontiguousarray(tints.materials, dtype=np.uint8),
+                _native.MeshArrays(
+                    positions=_vertices(mesh[0], mesh[1]),
+                    triangles=np.ascontiguousarray(mesh[1], dtype=np.int32),
+                    materials=np.ascontiguousarray(mesh[2], dtype=np.uint8),
+                    raster_sizes=np.ascontiguousarray(tints.sizes, dtype=np.int32),
+                    raster_coordinates=np.ascontiguousarray(tints.places, dtype=np.float32),
+                    raster_materials=np.ascontiguousarray(tints.materials, dtype=np.uint8),
                 )
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Arrays:
+    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Voxelized:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,

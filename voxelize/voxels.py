@@ -7,6 +7,7 @@ octants.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -58,6 +59,25 @@ class Voxels:
     octant_materials: NDArray[np.uint8]
 
 
+class ObjectMode(StrEnum):
+    """How the inside of an object was told from its outside. ``src/object_mode.h`` decides it."""
+
+    SURFACE = "surface"
+    """It was not filled."""
+
+    EXACT = "exact"
+    """It closes and does not overlap itself, or is an analytic solid: signed crossings."""
+
+    WINDING = "winding"
+    """It has holes or overlaps itself: the generalized winding number."""
+
+    OPEN = "open"
+    """Some of it stands open, like a room without a front, and has a shell alone; the rest is as in `WINDING`."""
+
+    TURNED = "turned"
+    """It closes; connected components that were inside out were flipped, walls of cavities excepted."""
+
+
 @dataclass(frozen=True, slots=True)
 class ObjectReport:
     """How one object was voxelized.
@@ -70,10 +90,7 @@ class ObjectReport:
         What was voxelized: ``"mesh"``, ``"box"``, ``"sphere"``, ``"hull"``; colliders of several kinds are joined by
         ``"+"``.
     mode
-        How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
-        ``"winding"`` (open or self-intersecting: generalized winding number), ``"open"`` (some of it stands open, like
-        a room without a front, and has a shell alone; the rest as in ``"winding"``), ``"turned"`` (closed; connected
-        pieces that were inside out beside the others were turned, walls of cavities excepted).
+        How its inside was told from its outside.
     voxels
         Voxels that ended up belonging to it, first object first.
     moved
@@ -84,7 +101,7 @@ class ObjectReport:
 
     name: str
     source: str
-    mode: str
+    mode: ObjectMode
     voxels: int
     moved: tuple[float, float, float] = (0.0, 0.0, 0.0)
     grown: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -103,7 +120,7 @@ class Voxelization:
     warnings
         What was not honoured as it stands.
     seconds
-        Wall seconds by stage of the native voxelizer, in order: ``"survey"``, ``"bin"``, ``"coverage"``, ``"fill"``,
+        Wall seconds by stage of the native voxelizer, in order: ``"analysis"``, ``"bin"``, ``"coverage"``, ``"fill"``,
         ``"holes"``, ``"order"``, ``"gather"``; ``src/voxelizer.h`` says what each does and what bounds it.
     """
 

@@ -146,7 +146,7 @@ class ModelDevice:
             raise DeviceError(f"the model refuses the frame: {error}") from error
         self._view = view
         counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
-        return Frame(pixels["colour"], counters)
+        return Frame(pixels.colour, counters)
 
     def close(self) -> None:
         """Nothing to let go of."""

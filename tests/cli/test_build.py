@@ -271,7 +271,7 @@ def test_profile_has_a_row_a_stage(voxrt):
     stages = [line.split()[0] for line in lines if not line.startswith(" ")]
     assert stages == ["stage", *json.loads(finished.out)["seconds"], "all"]
     first = next(i for i, line in enumerate(lines) if line.startswith("voxelize")) + 1
-    parts = ["survey", "bin", "coverage", "fill", "holes", "order", "gather"]
+    parts = ["analysis", "bin", "coverage", "fill", "holes", "order", "gather"]
     assert [line.split()[0] for line in lines[first : first + len(parts)]] == parts
 
 

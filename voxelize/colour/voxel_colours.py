@@ -3,7 +3,8 @@
 Each painted triangle gets a raster whose cells are about a voxel wide: its columns run along a side of the triangle,
 its rows towards the corner across. So there are about two cells a voxel that it covers, slivers included. A cell has
 the colour of the paint in its middle; textures finer than cells are reduced first. All cells of the scene share one
-palette. Then the voxelizer gives each voxel of the shell the material of the cell nearest to it (src/tint.h).
+palette. Then the voxelizer gives each voxel of the shell the material of the cell nearest to it
+(src/material_raster.h).
 """
 
 from __future__ import annotations

@@ -1,18 +1,18 @@
-#include "hole_winding.h"
+#include "cap_winding.h"
 
-#include "parallel.h"
+#include "interrupt.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 namespace {
 
-constexpr double kStep = 1.0 / 1024; // what one node or cap may be off by when it is taken as far
-constexpr double kSlight = 1.0 / 64; // what one cap may add without a closer look
-constexpr double kFarthest = 0.5;    // of its distance, the most that the ends of a dipole may lie off
-constexpr double kPerTurn = 1 / (4 * std::numbers::pi);
+constexpr double kFarError = 1.0 / 1024; // largest error of a node or cap that is taken as far
+constexpr double kNegligible = 1.0 / 64; // what one cap may add without a gradient of its own
+constexpr double kFarthestEnd = 0.5;     // largest distance of a dipole's ends from its centre, of its distance
+constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
 
 Point plus(const Point& a, double s, const Point& b) { return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -21,20 +21,20 @@ double length(const Point& a) { return std::sqrt(dot(a, a)); }
 Point cross(const Point& a, const Point& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Point centre(const HoleWinding::Cap& cap) {
+Point centre(const CapWinding::Cap& cap) {
     const auto& [a, b, c] = cap;
     return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
 }
 /// Twice its area, along its normal.
-Point normal(const HoleWinding::Cap& cap) { return cross(minus(cap[1], cap[0]), minus(cap[2], cap[0])); }
+Point normal(const CapWinding::Cap& cap) { return cross(minus(cap[1], cap[0]), minus(cap[2], cap[0])); }
 
-/// What a dipole of unit area, at most t < 1 of its distance off, may be off by at distance 1.
-double dipole_error(double t) { return kPerTurn * t * t * (3 - 2 * t) / ((1 - t) * (1 - t)); }
+/// Error bound of a dipole of unit area at distance 1 whose ends lie at most t < 1 off its centre.
+double dipole_error(double t) { return kInverse4Pi * t * t * (3 - 2 * t) / ((1 - t) * (1 - t)); }
 
 /// Tangents of half solid angles, multiplied as complex numbers: a sum of angles with one arc tangent at the end.
 class AngleSum {
 public:
-    /// Adds the angle of (under, over).
+    /// Adds an angle whose half has the tangent over / under.
     void add(double over, double under) {
         const double size = std::abs(over) + std::abs(under);
         if (size == 0)
@@ -42,25 +42,25 @@ public:
         over /= size;
         under /= size;
         const double x = x_ * under - y_ * over, y = x_ * over + y_ * under;
-        // Past half a turn the sign of y changes against that of both angles.
+        // Beyond pi the sign of y is opposite to that of both angles.
         if (y_ >= 0 && over >= 0 && y < 0)
-            ++turns_;
+            ++wraps_;
         else if (y_ < 0 && over < 0 && y >= 0)
-            --turns_;
+            --wraps_;
         const double scale = 1 / (std::abs(x) + std::abs(y));
         x_ = x * scale;
         y_ = y * scale;
     }
-    double over_four_pi() const { return 2 * kPerTurn * (std::atan2(y_, x_) + 2 * std::numbers::pi * turns_); }
+    double over_4_pi() const { return 2 * kInverse4Pi * (std::atan2(y_, x_) + 2 * std::numbers::pi * wraps_); }
 
 private:
     double x_ = 1, y_ = 0;
-    int turns_ = 0;
+    int wraps_ = 0;
 };
 
-/// On which side of a cap's plane q lies: the sign of the solid angle. Exact; on the plane q counts as just below it,
-/// or left of it where it is upright, as the crossings of columns have it.
-int side(const HoleWinding::Cap& cap, const Point& q) {
+/// On which side of a cap's plane q lies: the sign of the solid angle. Exact. On the plane q counts as just below it,
+/// or left of it where it is upright, as in the crossings of columns.
+int side(const CapWinding::Cap& cap, const Point& q) {
     auto whole = [](double v) { return int128(std::llround(v * (2 * kUnit))); };
     int128 v[3][3];
     for (int i = 0; i < 3; ++i) {
@@ -79,14 +79,15 @@ int side(const HoleWinding::Cap& cap, const Point& q) {
     return 0;
 }
 
-/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983: the tangent of half of it is over / under.
-void add_solid_angle(AngleSum& sum, const HoleWinding::Cap& cap, const Point& q) {
-    constexpr double kDoubtful = 1e-12; // of the volume that float64 sees
+/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983: the tangent of half the angle is over /
+/// under.
+void add_solid_angle(AngleSum& sum, const CapWinding::Cap& cap, const Point& q) {
+    constexpr double kRoundoff = 1e-12; // of the products: below it the sign is decided in integers
     const Point a = minus(cap[0], q), b = minus(cap[1], q), c = minus(cap[2], q);
     const double la = length(a), lb = length(b), lc = length(c), size = la * lb * lc;
     double over = dot(a, cross(b, c));
     const double under = size + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    if (under <= kDoubtful * size && std::abs(over) <= kDoubtful * size) {
+    if (under <= kRoundoff * size && std::abs(over) <= kRoundoff * size) {
         const int sign = side(cap, q);
         if (sign == 0)
             return;
@@ -95,17 +96,17 @@ void add_solid_angle(AngleSum& sum, const HoleWinding::Cap& cap, const Point& q)
     sum.add(over, under);
 }
 
-/// A cap about the centre of a ball.
-struct CapSlope {
+/// How the solid angle of a cap changes inside a ball.
+struct CapGradient {
     Point gradient{0, 0, 0};
-    double error = 0;
-    bool crosses = false;
+    double error_bound = 0;
+    bool crosses = false; // the cap passes through the ball
 };
 
-/// The solid angle changes as the rim of the cap alone lets it, like the field of a current in a wire (Biot and
-/// Savart). The field of a short wire, along x d / d^3, changes by at most 2 length / d^3 a way. False where the error
-/// would not be below `limit`.
-bool find_slope(const HoleWinding::Cap& cap, const Point& q, double reach, double limit, CapSlope& slope) {
+/// The gradient of the solid angle depends on the edges of the cap alone, like the magnetic field of a current in a
+/// wire (law of Biot and Savart). The field of a short wire, direction x d / d^3, changes by at most 2 length / d^3 per
+/// distance. Returns false where the error bound for a ball of `radius` about q would not be below `limit`.
+bool find_gradient(const CapWinding::Cap& cap, const Point& q, double radius, double limit, CapGradient& found) {
     Point corners[3];
     double lengths[3];
     for (int i = 0; i < 3; ++i) {
@@ -113,39 +114,39 @@ bool find_slope(const HoleWinding::Cap& cap, const Point& q, double reach, doubl
         lengths[i] = length(corners[i]);
     }
     const Point n = normal(cap);
-    bool beside = false;
+    bool outside = false;
     for (int i = 0; i < 3; ++i) {
         const int j = i == 2 ? 0 : i + 1;
-        const Point &a = corners[i], &b = corners[j], way = minus(b, a);
-        const double square = dot(way, way);
+        const Point &a = corners[i], &b = corners[j], edge = minus(b, a);
+        const double square = dot(edge, edge);
         if (square == 0)
             continue;
-        const double gap = length(plus(a, std::clamp(-dot(a, way) / square, 0.0, 1.0), way)) - reach;
+        const double gap = length(plus(a, std::clamp(-dot(a, edge) / square, 0.0, 1.0), edge)) - radius;
         if (gap <= 0)
             return false;
         // Summed along the edge or, where that is less, along the whole line.
-        slope.error += kPerTurn * reach * reach * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
-        if (slope.error >= limit)
+        found.error_bound += kInverse4Pi * radius * radius * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
+        if (found.error_bound >= limit)
             return false;
         const double product = lengths[i] * lengths[j];
-        slope.gradient =
-            plus(slope.gradient, kPerTurn * (lengths[i] + lengths[j]) / (product * (product + dot(a, b))), cross(a, b));
-        beside = beside || dot(cross(n, way), a) > 0;
+        found.gradient = plus(found.gradient,
+                              kInverse4Pi * (lengths[i] + lengths[j]) / (product * (product + dot(a, b))), cross(a, b));
+        outside = outside || dot(cross(n, edge), a) > 0;
     }
     const double height = dot(corners[0], n);
-    slope.crosses = !beside && height * height <= reach * reach * dot(n, n);
+    found.crosses = !outside && height * height <= radius * radius * dot(n, n);
     return true;
 }
 
 } // namespace
 
-HoleWinding::HoleWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
+CapWinding::CapWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
     if (!caps_.empty())
         build(0, uint32_t(caps_.size()));
 }
 
-int32_t HoleWinding::build(uint32_t first, uint32_t last) {
-    pulse(10 * (last - first));
+int32_t CapWinding::build(uint32_t first, uint32_t last) {
+    count_work(10 * (last - first));
     Node node;
     node.first = first;
     node.last = last;
@@ -193,56 +194,57 @@ int32_t HoleWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
-HoleView HoleWinding::start() const {
-    HoleView view;
+LocalExpansion CapWinding::unresolved() const {
+    LocalExpansion expansion;
     if (!nodes_.empty())
-        view.open.push_back(0);
-    return view;
+        expansion.unresolved.push_back(0);
+    return expansion;
 }
 
-double HoleWinding::dipole_angle(const Node& node, const Point& d, double square) {
+double CapWinding::dipole_angle(const Node& node, const Point& d, double square) {
     const double* m = node.moment;
-    const double twist = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
-                         2 * (m[3] * d.x * d.y + m[4] * d.y * d.z + m[5] * d.z * d.x);
-    return kPerTurn * (dot(node.dipole, d) + m[0] + m[1] + m[2] - 3 * twist / square) / (square * std::sqrt(square));
+    const double quadrupole = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
+                              2 * (m[3] * d.x * d.y + m[4] * d.y * d.z + m[5] * d.z * d.x);
+    return kInverse4Pi * (dot(node.dipole, d) + m[0] + m[1] + m[2] - 3 * quadrupole / square) /
+           (square * std::sqrt(square));
 }
 
-void HoleWinding::add_dipole(const Node& node, const Point& d, double square, LinearAngle& sum) {
-    const double cube = kPerTurn / (square * std::sqrt(square));
+void CapWinding::add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum) {
+    const double cube = kInverse4Pi / (square * std::sqrt(square));
     sum.angle += dipole_angle(node, d, square);
     sum.gradient = plus(plus(sum.gradient, -cube, node.dipole), 3 * cube * dot(node.dipole, d) / square, d);
 }
 
-void HoleWinding::look(const HoleView& from, const Point& centre, double reach, HoleView& to) const {
+void CapWinding::expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const {
     to.centre = centre;
     to.far = from.far;
     to.far.angle += dot(from.far.gradient, minus(centre, from.centre));
     to.near = {};
-    to.open.clear();
-    to.doubt = 0;
+    to.unresolved.clear();
+    to.remainder_bound = 0;
     to.crossed = false;
     AngleSum far, near;
     int32_t stack[64];
-    uint32_t looked_at = 0;
-    for (const uint32_t root : from.open) {
+    uint32_t visited = 0;
+    for (const uint32_t root : from.unresolved) {
         int depth = 0;
         stack[depth++] = int32_t(root);
         while (depth > 0) {
-            ++looked_at;
+            ++visited;
             const int32_t index = stack[--depth];
             const Node& node = nodes_[index];
             const Point d = minus(node.centre, centre);
-            const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + reach;
+            const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
             double error = 1;
-            if (spread < kFarthest * distance)
+            if (spread < kFarthestEnd * distance)
                 error = node.area * dipole_error(spread / distance) / square;
-            if (error <= kStep) {
+            if (error <= kFarError) {
                 add_dipole(node, d, square, to.far);
-                to.far.error += error;
+                to.far.error_bound += error;
                 continue;
             }
             const bool is_cap = node.left < 0;
-            if (!is_cap && node.radius > reach) {
+            if (!is_cap && node.radius > radius) {
                 stack[depth++] = node.left;
                 stack[depth++] = node.right;
                 continue;
@@ -250,42 +252,42 @@ void HoleWinding::look(const HoleView& from, const Point& centre, double reach, 
             const double gap = distance - spread;
             if (is_cap) {
                 const Cap& cap = caps_[node.first];
-                if (reach == 0) {
+                if (radius == 0) {
                     add_solid_angle(far, cap, centre);
                     continue;
                 }
-                const double most = gap > 0 ? std::min({0.5, error, kPerTurn * node.area / (gap * gap)}) : 0.5;
-                CapSlope slope;
-                if (most > kSlight && find_slope(cap, centre, reach, most, slope)) {
-                    const bool stays = slope.crosses || slope.error > kStep;
-                    add_solid_angle(stays ? near : far, cap, centre);
-                    LinearAngle& sum = stays ? to.near : to.far;
-                    sum.gradient = plus(sum.gradient, 1, slope.gradient);
-                    sum.error += slope.error;
-                    to.crossed = to.crossed || slope.crosses;
-                    if (stays)
-                        to.open.push_back(uint32_t(index));
+                const double most = gap > 0 ? std::min({0.5, error, kInverse4Pi * node.area / (gap * gap)}) : 0.5;
+                CapGradient gradient;
+                if (most > kNegligible && find_gradient(cap, centre, radius, most, gradient)) {
+                    const bool is_near = gradient.crosses || gradient.error_bound > kFarError;
+                    add_solid_angle(is_near ? near : far, cap, centre);
+                    LinearExpansion& sum = is_near ? to.near : to.far;
+                    sum.gradient = plus(sum.gradient, 1, gradient.gradient);
+                    sum.error_bound += gradient.error_bound;
+                    to.crossed = to.crossed || gradient.crosses;
+                    if (is_near)
+                        to.unresolved.push_back(uint32_t(index));
                     continue;
                 }
             }
-            to.open.push_back(uint32_t(index));
+            to.unresolved.push_back(uint32_t(index));
             // Caps that may pass through the ball jump by a whole number there.
             const double most =
-                gap > 0 ? std::min((node.last - node.first) / 2.0, kPerTurn * node.area / (gap * gap)) : 1;
+                gap > 0 ? std::min((node.last - node.first) / 2.0, kInverse4Pi * node.area / (gap * gap)) : 1;
             if (error < most) {
                 add_dipole(node, d, square, to.near);
-                to.near.error += error;
+                to.near.error_bound += error;
             } else {
-                to.doubt += most;
+                to.remainder_bound += most;
             }
         }
     }
-    pulse(2 * looked_at);
-    to.far.angle += far.over_four_pi();
-    to.near.angle += near.over_four_pi();
+    count_work(2 * visited);
+    to.far.angle += far.over_4_pi();
+    to.near.angle += near.over_4_pi();
 }
 
-double HoleWinding::at(const Point& q, double tolerance) const {
+double CapWinding::at(const Point& q, double tolerance) const {
     double total = 0;
     AngleSum near;
     int32_t stack[64];
@@ -293,13 +295,13 @@ double HoleWinding::at(const Point& q, double tolerance) const {
     if (!nodes_.empty())
         stack[depth++] = 0;
     const double share = nodes_.empty() ? 0 : tolerance / nodes_[0].area;
-    uint32_t looked_at = 0;
+    uint32_t visited = 0;
     while (depth > 0) {
-        ++looked_at;
+        ++visited;
         const Node& node = nodes_[stack[--depth]];
         const Point d = minus(node.centre, q);
         const double square = dot(d, d), distance = std::sqrt(square), t = node.radius / distance;
-        if (t < kFarthest && dipole_error(t) <= share * square) {
+        if (t < kFarthestEnd && dipole_error(t) <= share * square) {
             total += dipole_angle(node, d, square);
         } else if (node.left >= 0) {
             stack[depth++] = node.left;
@@ -308,8 +310,8 @@ double HoleWinding::at(const Point& q, double tolerance) const {
             add_solid_angle(near, caps_[node.first], q);
         }
     }
-    pulse(2 * looked_at);
-    return total + near.over_four_pi();
+    count_work(2 * visited);
+    return total + near.over_4_pi();
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,7 +1,7 @@
-// How far a triangle's edges reach inside consecutive slabs one voxel wide, in one projection.
+// The extent of a triangle inside consecutive slabs one voxel wide, in one projection.
 //
 // An edge is walked from plane to plane between the slabs. A quotient is a product with a float64 reciprocal where that
-// is exact, one division an edge; bound: 10 cycles a plane.
+// is exact: one division per edge. Cost: about 10 cycles per plane.
 #pragma once
 
 #include "fixed_point.h"
@@ -9,14 +9,14 @@
 #include <algorithm>
 #include <climits>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 inline constexpr int kTileSide = 64;
 
 namespace coverage {
 
-/// floor(n / divisor) for n >= -divisor. int64: n < 2^49 and divisor < 2^33, so that float64 errs by less than half
-/// of what parts n / divisor from the next integer.
+/// floor(n / divisor) for n >= -divisor. int64: n < 2^49 and divisor < 2^33, so that the error of float64 is less than
+/// half the distance of n / divisor from the next integer.
 template <typename Wide> class Divisor {
 public:
     explicit Divisor(Wide divisor) : divisor_(divisor) {}
@@ -34,10 +34,11 @@ private:
     double reciprocal_;
 };
 
-/// Reach of a triangle inside consecutive slabs, as covered voxel indices.
-struct Reach {
+/// By slab: the first and last voxel that the triangle covers there.
+struct SlabExtent {
     int lo[kTileSide], hi[kTileSide];
 
+    /// Makes the first `count` slabs empty.
     void clear(int count) {
         for (int i = 0; i < count; ++i) {
             lo[i] = INT_MAX;
@@ -51,13 +52,13 @@ struct Reach {
 };
 
 /// Adds a vertex (p, q) to the slabs first … last along p that contain it (two where it lies between them).
-template <typename Wide> void extend_vertex(Reach& reach, int first, int last, Wide p, Wide q) {
+template <typename Wide> void extend_vertex(SlabExtent& extent, int first, int last, Wide p, Wide q) {
     const int low = voxel_floor(static_cast<int64_t>(q)), high = voxel_below(static_cast<int64_t>(q));
     const int a = voxel_below(static_cast<int64_t>(p)), b = voxel_floor(static_cast<int64_t>(p));
     if (a >= first && a <= last)
-        reach.extend(a - first, low, high);
+        extent.extend(a - first, low, high);
     if (b != a && b >= first && b <= last)
-        reach.extend(b - first, low, high);
+        extent.extend(b - first, low, high);
 }
 
 /// One edge, walked upwards along p: where it passes planes between slabs, and the sample lines within them.
@@ -66,21 +67,21 @@ public:
     EdgeWalk(Wide p0, Wide p1) : p0_(p0), run_(p1 - p0), planes_(run_ * kUnit), samples_(2 * run_ * kUnit) {}
 
     /// Adds the points where coordinate q (q0 … q0 + rise) passes the planes between the slabs first … last. q >= 0.
-    void extend(Reach& reach, int first, int last, Wide q0, Wide rise) const {
+    void extend(SlabExtent& extent, int first, int last, Wide q0, Wide rise) const {
         const int from = std::max(voxel_floor(static_cast<int64_t>(p0_)) + 1, first);
         const int to = std::min(voxel_below(static_cast<int64_t>(p0_ + run_)), last + 1);
         Wide at = q0 * run_ + rise * (from * static_cast<Wide>(kUnit) - p0_);
         for (int plane = from; plane <= to; ++plane, at += rise * kUnit) {
             const int low = planes_.floor(at), high = planes_.floor(at - 1);
             if (plane > first)
-                reach.extend(plane - 1 - first, low, high);
+                extent.extend(plane - 1 - first, low, high);
             if (plane <= last)
-                reach.extend(plane - first, low, high);
+                extent.extend(plane - first, low, high);
         }
     }
 
     /// Adds, for the rows first … last whose sample line the edge passes, the first column whose sample lies beyond.
-    void cross(Reach& ends, int first, int last, Wide q0, Wide rise) const {
+    void cross(SlabExtent& ends, int first, int last, Wide q0, Wide rise) const {
         const int from = std::max(line_above(2 * p0_), first), to = std::min(line_above(2 * (p0_ + run_)) - 1, last);
         const Wide start = 2 * q0 * run_ - (kUnit + 1) * run_ - 2 * rise * p0_ + rise * (kUnit + 1);
         for (int row = from; row <= to; ++row) {
@@ -101,4 +102,4 @@ private:
 
 } // namespace coverage
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

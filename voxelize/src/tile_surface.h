@@ -1,10 +1,10 @@
-// What one object covers in one tile of columns, before objects compete: shell bricks and the crossings of its surface.
+// The surface of one object in one tile of columns, before objects compete: shell voxels and crossings.
 //
-// A tile is kTileSide x kTileSide columns over the grid's whole height. Bricks exist where the surface is; they are
-// found through a dense table of the tile (4 bytes a brick place), which is cleared entry by entry.
+// A tile is kTileSide x kTileSide columns over the grid's whole height. Bricks exist where the surface is; a dense
+// table of the tile finds them (4 bytes per slot of a brick) and is cleared entry by entry.
 //
-// A crossing of a column's ray is one bit in `enters` or `leaves` of the voxel it is marked at; opposite crossings in
-// a voxel cancel, repeated ones spill into a list. So the winding number along a column is a running sum of bits.
+// A crossing of a column's ray is one bit in `enters` or `leaves` of the voxel it is marked at. Opposite crossings in a
+// voxel cancel; repeated ones go to a list. So the winding number along a column is a running sum of bits.
 #pragma once
 
 #include "brick.h"
@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 inline constexpr int kTileBricks = kTileSide / kBrickSide;
 inline constexpr int kTileColumns = kTileBricks * kTileBricks; // brick columns
@@ -24,45 +24,47 @@ inline constexpr uint32_t kNone = 0xFFFF'FFFF;
 
 struct ShellBrick {
     Columns shell{}, enters{}, leaves{};
-    uint32_t cells = kNone; // row of materials where the shell has several
-    uint32_t cuts = kNone;  // row of voxels that surface without material is in
-    uint8_t material = 0;   // the shell's only material, else 0
-    bool crossed = false;   // enters or leaves may hold something
-    bool has_spill = false; // crossings of this brick are in the layer's list too
+    uint32_t cells = kNone;       // row of materials where the shell has several
+    uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
+    uint8_t material = 0;         // the shell's only material, else 0
+    bool crossed = false;         // enters or leaves may hold something
+    bool has_repeated = false;    // crossings of this brick are in the list of repeated ones too
     bool has_shell() const { return material != 0 || cells != kNone; }
 };
 
-struct Spill {
+/// A crossing whose bit is already set.
+struct RepeatedCrossing {
     uint32_t brick;
     uint8_t z, bit;
     bool enters;
 };
 
-class ObjectLayer {
+class TileSurface {
 public:
-    /// A layer for tiles of a grid of `side` voxels.
-    explicit ObjectLayer(int side)
+    /// For tiles of a grid of `side` voxels.
+    explicit TileSurface(int side)
         : side_(side), height_((side + kBrickSide - 1) / kBrickSide), table_(size_t(kTileColumns) * height_, kNone) {}
 
     int side() const { return side_; }
     int height() const { return height_; }
 
     /// Forgets the last object; the next one lies in the tile whose lowest column is (x, y).
-    void start(int x, int y) {
-        for (uint32_t place : places_)
-            table_[place] = kNone;
-        places_.clear();
+    void reset(int x, int y) {
+        for (uint32_t slot : slots_)
+            table_[slot] = kNone;
+        slots_.clear();
         bricks_.clear();
         cells_.clear();
-        cuts_.clear();
-        spills_.clear();
+        transparent_.clear();
+        repeated_.clear();
         x_ = x;
         y_ = y;
     }
 
+    /// The material of what is covered from now on, 1 … 255.
     void set_material(uint8_t material) { material_ = material; }
 
-    /// Sink of cover_triangle.
+    /// Of cover_triangle: voxels lo … hi of column (x, y) are shell. A voxel keeps the first material it gets.
     void cover(int x, int y, int lo, int hi) {
         const auto [column, bit] = locate(x, y);
         for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
@@ -79,18 +81,18 @@ public:
         }
     }
 
-    /// Takes note of surface that has no material: it is no shell, but what it is in is not inside either.
-    void cut(int x, int y, int z) {
+    /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
+    void cover_transparent(int x, int y, int z) {
         const auto [column, bit] = locate(x, y);
         ShellBrick& brick = at(column, z >> kBrickBits);
-        if (brick.cuts == kNone) {
-            brick.cuts = uint32_t(cuts_.size());
-            cuts_.emplace_back();
+        if (brick.transparent == kNone) {
+            brick.transparent = uint32_t(transparent_.size());
+            transparent_.emplace_back();
         }
-        cuts_[brick.cuts][bit] |= uint8_t(1 << (z & (kBrickSide - 1)));
+        transparent_[brick.transparent][bit] |= uint8_t(1 << (z & (kBrickSide - 1)));
     }
 
-    /// Sink of cover_triangle.
+    /// Of cover_triangle: the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
         const auto [column, bit] = locate(x, y);
         ShellBrick& brick = at(column, z >> kBrickBits);
@@ -102,8 +104,8 @@ public:
         if (opposite[bit] & one) {
             opposite[bit] ^= one;
         } else if (same[bit] & one) {
-            brick.has_spill = true;
-            spills_.push_back({uint32_t(&brick - bricks_.data()), uint8_t(slice), uint8_t(bit), enters});
+            brick.has_repeated = true;
+            repeated_.push_back({uint32_t(&brick - bricks_.data()), uint8_t(slice), uint8_t(bit), enters});
         } else {
             same[bit] |= one;
         }
@@ -115,38 +117,40 @@ public:
         return index == kNone ? nullptr : &bricks_[index];
     }
 
+    /// The same brick, made where there is none.
     ShellBrick& at(int column, int k) {
         uint32_t& index = table_[size_t(column) * height_ + k];
         if (index == kNone) {
             index = uint32_t(bricks_.size());
             bricks_.emplace_back();
-            places_.push_back(uint32_t(size_t(column) * height_ + k));
+            slots_.push_back(uint32_t(size_t(column) * height_ + k));
         }
         return bricks_[index];
     }
 
     bool empty() const { return bricks_.empty(); }
-    const std::vector<uint32_t>& places() const { return places_; }
-    const std::vector<Spill>& spills() const { return spills_; }
+    /// Slots of all bricks: column * height() + k.
+    const std::vector<uint32_t>& slots() const { return slots_; }
+    const std::vector<RepeatedCrossing>& repeated_crossings() const { return repeated_; }
     uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
     const Cells& cells(uint32_t row) const { return cells_[row]; }
 
-    /// The voxels of a brick that surface is in, its shell and what is cut away.
-    Slices surface(const ShellBrick& brick, const Slices& shell) const {
+    /// The voxels of a brick that have surface: its shell, and what is fully transparent.
+    Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
         Slices found = shell;
-        if (brick.cuts != kNone) {
-            const Slices cut = slices_of(cuts_[brick.cuts]);
+        if (brick.transparent != kNone) {
+            const Slices transparent = slices_of(transparent_[brick.transparent]);
             for (int z = 0; z < kBrickSide; ++z)
-                found[z] |= cut[z];
+                found[z] |= transparent[z];
         }
         return found;
     }
 
 private:
-    struct Place {
+    struct Position {
         int column, bit;
     };
-    Place locate(int x, int y) const {
+    Position locate(int x, int y) const {
         const int u = x - x_, v = y - y_;
         return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), column_bit(u, v)};
     }
@@ -171,10 +175,10 @@ private:
     uint8_t material_ = 0;
     std::vector<uint32_t> table_;
     std::vector<ShellBrick> bricks_;
-    std::vector<uint32_t> places_;
+    std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
-    std::vector<Columns> cuts_;
-    std::vector<Spill> spills_;
+    std::vector<Columns> transparent_;
+    std::vector<RepeatedCrossing> repeated_;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,25 +1,25 @@
-#include "stand_ins.h"
+#include "representatives.h"
+
+#include "hidden.h"
+#include "levels.h"
+
+#include <voxrt/voxelize/workers.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "hidden.h"
-#include "interrupt.h"
-#include "levels.h"
-#include "workers.h"
-
 namespace voxrt::octree {
 namespace {
 
-constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 20; // more weigh the same; keeps sums of costs in 64 bits
+constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 20; // more count as so many: sums of costs fit 64 bits
 constexpr std::uint32_t kFewPatterns = 4000;
-constexpr std::size_t kChoices = 32;
-constexpr std::size_t kLooks = 24'000'000; // of a pattern at a stand-in, with ever more solid cells; for all of them,
-constexpr std::size_t kFewestLooks = 1000; // and for each
+constexpr std::size_t kChoices = 32;             // per pattern
+constexpr std::size_t kPairs = 24'000'000;       // of a pattern and a representative that are tried, for all patterns,
+constexpr std::size_t kFewestPairs = 1000;       // and at least for each
 constexpr unsigned kNearlyFull[] = {24, 40, 52}; // of 64 cells
 
 // Octants of `count` cells made uniform, of the material that most of their solid cells have.
-Cells512 coarser(const Cells512& cells, unsigned count) {
+Cells512 coarsened(const Cells512& cells, unsigned count) {
     Cells512 result;
     for (unsigned first = 0; first < 512; first += count) {
         std::array<unsigned, 256> counts{};
@@ -40,7 +40,7 @@ void read_cells(const Memory& memory, Word word, unsigned level, std::uint8_t* c
         read_cells(memory, memory.child(word, octant, level), level - 1, cells + octant * (count / 8), count / 8);
 }
 
-bool holds(const Mask512& mask, const Mask512& part) {
+bool contains(const Mask512& mask, const Mask512& part) {
     for (unsigned word = 0; word < 8; word += 2)
         if ((part[word] & ~mask[word]) | (part[word + 1] & ~mask[word + 1]))
             return false;
@@ -51,14 +51,15 @@ bool cheaper(const Match& a, const Match& b) { return a.cost != b.cost ? a.cost 
 
 } // namespace
 
-StandIns::StandIns(const Memory& base, const Memory& hidden, unsigned finest, const SightCosts& costs) {
+Representatives::Representatives(const Memory& base, const Memory& hidden, unsigned finest,
+                                 const AppearanceCosts& costs) {
     read_patterns(base, hidden, finest + 3);
-    add_coarser();
-    find_parts();
-    match(costs);
+    add_coarsened();
+    find_blocks();
+    match_all(costs);
 }
 
-std::uint32_t StandIns::add(const Cells512& cells) {
+std::uint32_t Representatives::add(const Cells512& cells) {
     const Node node = builder_.from_cells(cells.data());
     const auto [entry, missing] = numbers_.try_emplace(node, count());
     if (missing) {
@@ -68,8 +69,8 @@ std::uint32_t StandIns::add(const Cells512& cells) {
     return entry->second;
 }
 
-void StandIns::read_patterns(const Memory& base, const Memory& hidden, unsigned level) {
-    const auto hidden_ones = hidden_octants(base, hidden, level);
+void Representatives::read_patterns(const Memory& base, const Memory& hidden, unsigned level) {
+    const auto hidden_count = hidden_octants(base, hidden, level);
     std::vector<std::pair<Cells512, Occurrence>> found;
     const auto blocks = blocks_by_level(base);
     for (const Occurrence& block : blocks[level]) {
@@ -85,9 +86,9 @@ void StandIns::read_patterns(const Memory& base, const Memory& hidden, unsigned 
         pattern_of_.emplace(block.block, pattern);
         octants_.resize(count());
         visible_.resize(count());
-        const auto entry = hidden_ones.find(block.block);
+        const auto entry = hidden_count.find(block.block);
         octants_[pattern] += block.octants;
-        visible_[pattern] += block.octants - (entry == hidden_ones.end() ? 0 : entry->second);
+        visible_[pattern] += block.octants - (entry == hidden_count.end() ? 0 : entry->second);
     }
     for (std::uint32_t pattern = 0; pattern < patterns(); ++pattern) {
         octants_[pattern] = std::min(octants_[pattern], kMostOctants);
@@ -95,9 +96,9 @@ void StandIns::read_patterns(const Memory& base, const Memory& hidden, unsigned 
     }
 }
 
-void StandIns::add_coarser() {
+void Representatives::add_coarsened() {
     std::array<bool, 256> used{};
-    for (const Brick& brick : bricks_)
+    for (const BrickAppearance& brick : bricks_)
         for (const std::uint8_t id : brick.cells)
             used[id] = true;
     std::vector<std::uint32_t> uniform;
@@ -109,17 +110,17 @@ void StandIns::add_coarser() {
         }
     for (std::uint32_t pattern = 0; pattern < patterns(); ++pattern) {
         const Cells512 cells = bricks_[pattern].cells;
-        std::vector<std::uint32_t> always = uniform;
-        always.push_back(add(coarser(cells, 8)));
-        always.push_back(add(coarser(cells, 64)));
-        std::sort(always.begin(), always.end());
-        always.erase(std::unique(always.begin(), always.end()), always.end());
-        always_.push_back(std::move(always));
+        std::vector<std::uint32_t> fallbacks = uniform;
+        fallbacks.push_back(add(coarsened(cells, 8)));
+        fallbacks.push_back(add(coarsened(cells, 64)));
+        std::sort(fallbacks.begin(), fallbacks.end());
+        fallbacks.erase(std::unique(fallbacks.begin(), fallbacks.end()), fallbacks.end());
+        fallbacks_.push_back(std::move(fallbacks));
     }
-    plain_ = count();
+    unfilled_ = count();
     for (std::uint32_t pattern = 0; patterns() <= kFewPatterns && pattern < patterns(); ++pattern)
-        for (const Cells512& cells : {bricks_[pattern].cells, coarser(bricks_[pattern].cells, 8)}) {
-            const Cells512 full = coarser(cells, 64);
+        for (const Cells512& cells : {bricks_[pattern].cells, coarsened(bricks_[pattern].cells, 8)}) {
+            const Cells512 full = coarsened(cells, 64);
             for (const unsigned least : kNearlyFull) {
                 Cells512 filled = cells;
                 for (unsigned first = 0; first < 512; first += 64)
@@ -130,7 +131,7 @@ void StandIns::add_coarser() {
         }
 }
 
-void StandIns::find_parts() {
+void Representatives::find_blocks() {
     for (const Node node : nodes_) {
         std::vector<Node> parts;
         if (!is_leaf(node))
@@ -143,11 +144,11 @@ void StandIns::find_parts() {
                 }
         std::sort(parts.begin(), parts.end());
         parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-        parts_.push_back(std::move(parts));
+        blocks_.push_back(std::move(parts));
     }
 }
 
-void StandIns::match(const SightCosts& costs) {
+void Representatives::match_all(const AppearanceCosts& costs) {
     ascending_.resize(count());
     std::iota(ascending_.begin(), ascending_.end(), 0u);
     std::stable_sort(ascending_.begin(), ascending_.end(),
@@ -157,55 +158,57 @@ void StandIns::match(const SightCosts& costs) {
     choices_.resize(patterns());
     constexpr std::uint32_t kChunk = 64;
     const std::size_t chunks = (patterns() + kChunk - 1) / kChunk;
-    for_each_chunk(worker_count(0, chunks), chunks, [&](unsigned worker, std::size_t chunk) {
-        if (worker == 0)
-            Interrupt::check();
+    voxelize::Workers(0).run(chunks, [&](std::size_t chunk, int) {
         const auto first = static_cast<std::uint32_t>(chunk) * kChunk;
         for (std::uint32_t pattern = first; pattern < std::min(first + kChunk, patterns()); ++pattern)
             choices_[pattern] = match(pattern, costs);
     });
-    users_.resize(count());
+    represented_.resize(count());
     for (std::uint32_t pattern = 0; pattern < patterns(); ++pattern)
         for (const Match& choice : choices_[pattern])
-            users_[choice.brick].push_back({choice.cost, pattern});
+            represented_[choice.brick].push_back({choice.cost, pattern});
 }
 
-std::vector<Match> StandIns::match(std::uint32_t pattern, const SightCosts& costs) const {
+std::vector<Match> Representatives::match(std::uint32_t pattern, const AppearanceCosts& costs) const {
     constexpr std::uint64_t kAny = ~std::uint64_t{0};
-    const Brick& brick = bricks_[pattern];
-    const std::vector<std::uint32_t>& always = always_[pattern];
-    const auto grown = [&](std::uint32_t i) {
-        return octants_[pattern] * kAppeared * (bricks_[i].solid - brick.solid);
+    const BrickAppearance& brick = bricks_[pattern];
+    const std::vector<std::uint32_t>& fallbacks = fallbacks_[pattern];
+    const auto added_cost = [&](std::uint32_t i) {
+        return octants_[pattern] * kAddedCellCost * (bricks_[i].solid - brick.solid);
     };
     const std::uint64_t visible = visible_[pattern];
-    std::vector<Match> choices; // a heap, the dearest on top
-    std::uint64_t most = kAny;
-    const auto fewest = std::lower_bound(ascending_.begin(), ascending_.end(), brick.solid,
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
+    std::vector<Match> choices; // a heap, the most expensive on top
+    std::uint64_t worst = kAny;
+    const auto lowest = std::lower_bound(ascending_.begin(), ascending_.end(), brick.solid,
                                          [&](std::uint32_t i, unsigned solid) { return bricks_[i].solid < solid; });
-    const std::size_t begin = static_cast<std::size_t>(fewest - ascending_.begin());
-    const std::size_t looks = std::max(kFewestLooks, kLooks / patterns());
-    for (std::size_t place = begin; place < std::min(begin + looks, masks_.size()); ++place) {
-        if (!holds(masks_[place], brick.mask))
+    const std::size_t begin = static_cast<std::size_t>(lowest - ascending_.begin());
+    const std::size_t pairs = std::max(kFewestPairs, kPairs / patterns());
+    work.count(static_cast<std::uint32_t>(pairs / 4));
+    for (std::size_t rank = begin; rank < std::min(begin + pairs, masks_.size()); ++rank) {
+        if (!contains(masks_[rank], brick.mask))
             continue;
-        const std::uint32_t i = ascending_[place];
-        if (grown(i) >= most)
+        const std::uint32_t i = ascending_[rank];
+        if (added_cost(i) >= worst)
             break;
-        if (std::binary_search(always.begin(), always.end(), i))
+        if (std::binary_search(fallbacks.begin(), fallbacks.end(), i))
             continue;
-        const std::uint64_t dearest = most == kAny ? kAny : (most - grown(i)) / std::max<std::uint64_t>(visible, 1) + 1;
-        const std::uint64_t cost = grown(i) + visible * sight_change(brick, bricks_[i], costs, dearest);
-        if (cost >= most)
+        const std::uint64_t limit =
+            worst == kAny ? kAny : (worst - added_cost(i)) / std::max<std::uint64_t>(visible, 1) + 1;
+        work.count(50);
+        const std::uint64_t cost = added_cost(i) + visible * appearance_cost(brick, bricks_[i], costs, limit);
+        if (cost >= worst)
             continue;
         choices.push_back({cost, i});
         std::push_heap(choices.begin(), choices.end(), cheaper);
         if (choices.size() > kChoices) {
             std::pop_heap(choices.begin(), choices.end(), cheaper);
             choices.pop_back();
-            most = choices.front().cost;
+            worst = choices.front().cost;
         }
     }
-    for (const std::uint32_t i : always)
-        choices.push_back({grown(i) + visible * sight_change(brick, bricks_[i], costs, kAny), i});
+    for (const std::uint32_t i : fallbacks)
+        choices.push_back({added_cost(i) + visible * appearance_cost(brick, bricks_[i], costs, kAny), i});
     std::sort(choices.begin(), choices.end(), cheaper);
     return choices;
 }

@@ -1,19 +1,20 @@
-// Triangles found by where they lie: a tree of boxes.
+// A bounding volume hierarchy over triangles: finds those whose boxes overlap a box.
 //
-// Bound: sorting the triangles by halves to build it; their logarithm, and what is found, to ask it.
+// Built by halving the triangles along the longest axis of their box, at the median of their centres. Building takes
+// n log n; a query takes log n, and what it finds.
 #pragma once
 
 #include "fixed_point.h"
-#include "parallel.h"
+#include "interrupt.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-/// Closed, in grid space.
+/// A closed box in grid space; empty at first.
 struct TriangleBox {
     std::array<int32_t, 3> low{INT32_MAX, INT32_MAX, INT32_MAX}, high{INT32_MIN, INT32_MIN, INT32_MIN};
 
@@ -30,20 +31,19 @@ struct TriangleBox {
             high[i] = std::max(high[i], box.high[i]);
         }
     }
-    bool meets(const TriangleBox& box) const {
+    bool overlaps(const TriangleBox& box) const {
         for (int i = 0; i < 3; ++i)
             if (low[i] > box.high[i] || high[i] < box.low[i])
                 return false;
         return true;
     }
-    bool holds(const TriangleBox& box) const {
+    bool contains(const TriangleBox& box) const {
         for (int i = 0; i < 3; ++i)
             if (low[i] > box.low[i] || high[i] < box.high[i])
                 return false;
         return true;
     }
-    /// Its volume; no box within is larger.
-    double size() const {
+    double volume() const {
         double product = 1;
         for (int i = 0; i < 3; ++i)
             product *= double(high[i]) - low[i];
@@ -51,24 +51,24 @@ struct TriangleBox {
     }
 };
 
-class TriangleTree {
+class TriangleBvh {
 public:
     /// Takes triangles as their boxes and numbers.
-    explicit TriangleTree(std::vector<std::pair<TriangleBox, uint32_t>> triangles) : triangles_(std::move(triangles)) {
+    explicit TriangleBvh(std::vector<std::pair<TriangleBox, uint32_t>> triangles) : triangles_(std::move(triangles)) {
         if (!triangles_.empty())
             build(0, uint32_t(triangles_.size()));
     }
 
-    /// Calls visit(number) for every triangle whose box meets `box`.
+    /// Calls visit(number) for every triangle whose box overlaps `box`.
     template <class Visit> void find(const TriangleBox& box, Visit&& visit) const {
         uint32_t stack[64];
         int depth = 0;
         if (!nodes_.empty())
             stack[depth++] = 0;
         while (depth > 0) {
-            pulse(1);
+            count_work(1);
             const Node& node = nodes_[stack[--depth]];
-            if (!node.box.meets(box))
+            if (!node.box.overlaps(box))
                 continue;
             if (node.right != 0) {
                 stack[depth++] = node.right;
@@ -76,13 +76,13 @@ public:
                 continue;
             }
             for (uint32_t i = node.first; i < node.last; ++i)
-                if (triangles_[i].first.meets(box))
+                if (triangles_[i].first.overlaps(box))
                     visit(triangles_[i].second);
         }
     }
 
 private:
-    static constexpr uint32_t kLeaf = 8;
+    static constexpr uint32_t kLeafTriangles = 8;
 
     struct Node {
         TriangleBox box;
@@ -91,12 +91,12 @@ private:
     };
 
     uint32_t build(uint32_t first, uint32_t last) {
-        pulse(last - first);
+        count_work(last - first);
         const auto index = uint32_t(nodes_.size());
         nodes_.push_back({{}, first, last});
         for (uint32_t i = first; i < last; ++i)
             nodes_[index].box.add(triangles_[i].first);
-        if (last - first <= kLeaf)
+        if (last - first <= kLeafTriangles)
             return index;
         const TriangleBox& box = nodes_[index].box;
         int axis = 0;
@@ -119,4 +119,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

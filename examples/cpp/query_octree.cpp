@@ -1,14 +1,15 @@
-// A dense array to an octree memory, and questions to it: counts, a region, hidden voxels, differences, a ray.
+// From a dense array to an octree memory, and queries of it: counts, bounds, hidden voxels, differences, a ray.
 //
 // Build and run:
 //     cmake -S examples/cpp -B build/cpp -DCMAKE_BUILD_TYPE=Release
-//     cmake --build build/cpp && build/cpp/ask_octree
+//     cmake --build build/cpp && build/cpp/query_octree
 #include <voxrt/octree/dense.h>
 #include <voxrt/octree/diff.h>
 #include <voxrt/octree/hidden.h>
 #include <voxrt/octree/interior.h>
 #include <voxrt/octree/query.h>
 #include <voxrt/octree/validate.h>
+#include <voxrt/octree/verify.h>
 #include <voxrt/sim/ray.h>
 
 #include <cstdio>
@@ -55,11 +56,10 @@ int main() {
     std::printf("%zu words once hidden voxels may be anything: %llu are of another material\n", shared.size(),
                 static_cast<unsigned long long>(difference.recoloured));
 
-    const model::Memory traced{words.data(), words.size(), kDepth};
-    traced.verify();
-    const model::Line line{{-16 * 10, 16 * kSide / 2, 16 * kSide / 2}, {16, 1, -1}}; // positions in 1/16 voxel
-    const auto hit = model::Ray<model::WideKey>(traced, line).trace();
-    std::printf("a ray meets material %u in voxel %d, %d, %d\n", unsigned{hit.material}, hit.cell[0], hit.cell[1],
+    const octree::VerifiedMemory verified(memory);
+    const sim::Line line{{-16 * 10, 16 * kSide / 2, 16 * kSide / 2}, {16, 1, -1}}; // positions in 1/16 voxel
+    const auto hit = sim::Ray<sim::WideKey>(verified, line).trace();
+    std::printf("the ray hits material %u in voxel %d, %d, %d\n", unsigned{hit.material}, hit.cell[0], hit.cell[1],
                 hit.cell[2]);
     return difference.appeared + difference.vanished == 0 && hit.material != 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,29 +1,31 @@
-// How well some triangles enclose: the winding number on a lattice over their box, where it is beyond 1/2.
+// How well some triangles enclose space: their generalized winding number on a lattice of 8x8x8 points over their box.
 //
-// With its caps a surface closes, and the number is a sum of crossings along the lattice's upright lines; what the caps
-// add is taken off. Bound: the triangles, and 512 sums over the caps' tree.
+// With its caps a surface closes, and its winding number is a sum of crossings along the vertical lines of the lattice.
+// Less what the caps add (cap_winding.h), it is the generalized winding number. Cost: the triangles, and 512 sums over
+// the tree of caps.
 #pragma once
 
-#include "hole_winding.h"
-#include "parallel.h"
+#include "cap_winding.h"
+#include "interrupt.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-class InsideProbes {
+class EnclosureProbe {
 public:
-    InsideProbes(const Point& low, const Point& high)
+    /// For a lattice over the box low … high.
+    EnclosureProbe(const Point& low, const Point& high)
         : low_(low), step_{(high.x - low.x) / kSide, (high.y - low.y) / kSide, (high.z - low.z) / kSide} {}
 
-    /// Adds a triangle of the closed surface.
+    /// Adds a triangle of the closed surface: of the mesh or a cap.
     void add(const Point& a, const Point& b, const Point& c) {
         const auto [x0, x1] = lines(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), low_.x, step_.x);
         const auto [y0, y1] = lines(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), low_.y, step_.y);
         for (int j = y0; j <= y1; ++j)
             for (int i = x0; i <= x1; ++i) {
-                pulse(1);
+                count_work(1);
                 cross(a, b, c, i, j);
             }
     }
@@ -31,7 +33,9 @@ public:
     struct Enclosure {
         double mean = 0, highest = 0; // of the absolute winding number where it is beyond 1/2
     };
-    Enclosure measure(const HoleWinding& caps) const {
+
+    /// `caps`: those that were added.
+    Enclosure measure(const CapWinding& caps) const {
         constexpr double kTolerance = 1e-3;
         Enclosure found;
         int inside = 0;
@@ -40,11 +44,11 @@ public:
                 int number = 0;
                 for (int k = 0; k < kSide; ++k) {
                     number += changes_[j][i][k];
-                    const double share = std::min(1.0, std::abs(number - caps.at(at(i, j, k), kTolerance)));
-                    if (share < 0.5 + kTolerance)
+                    const double enclosed = std::min(1.0, std::abs(number - caps.at(at(i, j, k), kTolerance)));
+                    if (enclosed < 0.5 + kTolerance)
                         continue;
-                    found.mean += share;
-                    found.highest = std::max(found.highest, share);
+                    found.mean += enclosed;
+                    found.highest = std::max(found.highest, enclosed);
                     ++inside;
                 }
             }
@@ -69,17 +73,17 @@ private:
         return {low_.x + (i + kOffset) * step_.x, low_.y + (j + kOffset) * step_.y, low_.z + (k + kOffset) * step_.z};
     }
 
-    /// Marks where line (i, j) passes a triangle: enters from its back, leaves by its front.
+    /// Marks where line (i, j) crosses a triangle: it enters the solid against the normal.
     void cross(const Point& a, const Point& b, const Point& c, int i, int j) {
         const Point q = at(i, j, 0);
-        auto turn = [&q](const Point& u, const Point& v) {
+        auto orientation = [&q](const Point& u, const Point& v) {
             // The same for an edge and its reverse, but for the sign.
             const bool swap = std::pair(v.x, v.y) < std::pair(u.x, u.y);
             const Point &s = swap ? v : u, &e = swap ? u : v;
             const double t = (e.x - s.x) * (q.y - s.y) - (e.y - s.y) * (q.x - s.x);
             return swap ? -t : t;
         };
-        const double u = turn(b, c), v = turn(c, a), w = turn(a, b), sum = u + v + w;
+        const double u = orientation(b, c), v = orientation(c, a), w = orientation(a, b), sum = u + v + w;
         if (sum == 0 || !((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)))
             return;
         const double z = (u * a.z + v * b.z + w * c.z) / sum;
@@ -92,4 +96,4 @@ private:
     int changes_[kSide][kSide][kSide] = {};
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize
