@@ -302,14 +302,14 @@ def test_assets_of_names_that_no_file_can_have(tmp_path, name):
 
 PAINTED = """mtllib a.mtl
 v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1
-usemtl Paint Red\nf 1 3 2\nusemtl Glass\nf 1 2 4\nusemtl Trim\nf 2 3 4\nf 1 4 3
+usemtl Appearance Red\nf 1 3 2\nusemtl Glass\nf 1 2 4\nusemtl Trim\nf 2 3 4\nf 1 4 3
 """
 
 
 @pytest.fixture
 def car(tmp_path):
     (tmp_path / "car.obj").write_text(PAINTED)
-    (tmp_path / "a.mtl").write_text("newmtl Paint Red\nKd 1 0 0\nnewmtl Glass\nKd 0 0 1\nnewmtl Trim\nKd 0 1 0\n")
+    (tmp_path / "a.mtl").write_text("newmtl Appearance Red\nKd 1 0 0\nnewmtl Glass\nKd 0 0 1\nnewmtl Trim\nKd 0 1 0\n")
 
     def read(materials, objects='[[objects]]\nasset = { file = "car.obj" }\n'):
         path = tmp_path / "scene.toml"
@@ -321,22 +321,22 @@ def car(tmp_path):
 
 def test_ids_colours_and_mirrors_of_an_assets_materials_by_name(car):
     scene = car(
-        '[materials."Paint Red"]\nid = 7\n[materials.Trim]\nmirror = true\n'
+        '[materials."Appearance Red"]\nid = 7\n[materials.Trim]\nmirror = true\n'
         '[materials.Glass]\ncolour = "#102030"\nid = 9\n'
     )
     by_name = {one.name: (number, one.colour, one.mirror) for number, one in enumerate(scene.materials)}
-    assert by_name["Paint Red"] == (7, (255, 0, 0), False)
+    assert by_name["Appearance Red"] == (7, (255, 0, 0), False)
     assert by_name["Trim"] == (1, (0, 255, 0), True)
     assert by_name["Glass"] == (9, (16, 32, 48), False)
 
 
 def test_ids_stay_when_objects_come_and_go(car):
-    declared = '[materials."Paint Red"]\nid = 7\n[materials.Trim]\n[materials.stone]\ncolour = "#808080"\n'
+    declared = '[materials."Appearance Red"]\nid = 7\n[materials.Trim]\n[materials.stone]\ncolour = "#808080"\n'
     asset = '[[objects]]\nasset = { file = "car.obj" }\n'
     stone = '[[objects]]\nbox = { size = [1, 1, 1] }\nmaterial = "stone"\n'
     for objects in (asset, asset + stone, stone + asset):
         names = [one.name for one in car(declared, objects).materials]
-        assert [names.index(name) for name in ("Trim", "stone", "Glass", "Paint Red")] == [1, 2, 3, 7]
+        assert [names.index(name) for name in ("Trim", "stone", "Glass", "Appearance Red")] == [1, 2, 3, 7]
 
 
 def test_a_material_without_a_colour_must_be_some_assets(car):
