@@ -287,7 +287,7 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
     low, high = box_in_voxels(item, box, parts.grid)
     moved, grown = _ZERO, _ZERO
     if wants_rounding:
-        rounded = round_box(low, high, parts.grid)
+        rounded = round_box(low, high, parts.grid.size)
         low, high = rounded.low.astype(np.float64), rounded.high.astype(np.float64)
         moved, grown = rounded.moved, rounded.grown
     parts.add(_BOX, np.rint(np.concatenate([low, high]) * UNITS_PER_VOXEL), material)

@@ -102,7 +102,8 @@ class StageTraversal:
         if not np.isfinite(transform).all():
             raise AssetError(self.path, "its transform is not finite", place=one.name, fix="repair its xformOps")
         if np.abs(one.transform[3] - (0, 0, 0, 1)).max() > _AFFINE_TOLERANCE:
-            raise AssetError(self.path, "its transform is not affine", place=one.name, fix="repair its xformOps")
+            self.log.add("transform", "the projective part of transforms that are not affine was ignored")
+            transform[3] = (0.0, 0.0, 0.0, 1.0)
         return transform
 
     def _below(self, root: Usd.Prim, predicate: object) -> list[_PlacedMesh]:
