@@ -56,6 +56,8 @@ class MaterialMap:
         sizes = arguments.whole_array(
             "MaterialMap.sizes", self.sizes, ("T", 2), np.int32, low=0, high=_MOST_CELLS_PER_SIDE
         )
+        if ((sizes == 0).any(axis=1) != (sizes == 0).all(axis=1)).any():
+            raise ValueError("MaterialMap.sizes must be 0 in both columns of a row, or in neither")
         corners = arguments.real_array("MaterialMap.corners", self.corners, (len(sizes), 3, 2), finite=False)
         cells = int(np.prod(sizes, axis=1, dtype=np.int64).sum())
         materials = arguments.whole_array(

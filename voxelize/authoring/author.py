@@ -224,7 +224,12 @@ class Author:
         TypeError, ValueError
             A point that is not three finite numbers, an eye at the target, or a field of view out of range.
         """
-        self._viewpoint = Viewpoint(arguments.vector("eye", eye), arguments.vector("target", target), field_of_view)
+        eye, target = arguments.vector("eye", eye), arguments.vector("target", target)
+        if eye == target:
+            raise AuthoringError("the camera's eye and target must differ")
+        if field_of_view is not None:
+            field_of_view = arguments.real("field_of_view", field_of_view, above=0, below=180)
+        self._viewpoint = Viewpoint(eye, target, field_of_view)
 
     def light(self, position: Sequence[float]) -> None:
         """Set the point light's position, in metres.

@@ -312,7 +312,7 @@ def test_ids_that_were_left_out_are_taken_where_there_are_no_others():
     assert [one.name.split()[0] for one in scene.materials[2:6]] == ["appearance"] * 4
     assert scene.materials[255].name == "last"
     full = (EMPTY, PAINT, *[Material("own", (0, 0, 0))] * 254)
-    with pytest.raises(DoesNotFitError, match="leave none of the 255 to its painted surfaces; merge some"):
+    with pytest.raises(DoesNotFitError, match="leave none for textures and vertex colours; merge some"):
         assign_colours(replace(sphere_scene(), materials=full), UNIT_GRID[4])
 
 
@@ -328,7 +328,7 @@ def test_scenes_without_paint_and_objects_with_colliders_stay_as_they_are():
 
 @pytest.mark.parametrize("colours", [0, 255, -1])
 def test_the_number_of_colours_is_checked(colours):
-    with pytest.raises(ValueError, match="colours must be 1 … 254"):
+    with pytest.raises(ValueError, match="colours must be an integer 1 … 254"):
         assign_colours(sphere_scene(), UNIT_GRID[3], colours=colours)
 
 
@@ -342,14 +342,24 @@ def test_memory_is_bounded_however_many_voxels_are_covered(monkeypatch):
     assert assign_colours(painted(mesh), UNIT_GRID[16]).objects[0].mesh.material_map.sizes.tolist() == [[65536, 1]]
 
 
-@pytest.mark.parametrize("broken", ["sizes", "places", "materials", "negative", "long", "half"])
-def test_tints_that_do_not_fit_their_mesh_are_refused(broken):
+@pytest.mark.parametrize(
+    ("broken", "message"),
+    [
+        ("sizes", "Mesh.material_map is for 5 triangles, and the mesh has 12"),
+        ("corners", r"MaterialMap.corners must have shape \(12, 3, 2\), not \(5, 3, 2\)"),
+        ("materials", r"MaterialMap.materials must have shape \(12,\), not \(5,\)"),
+        ("negative", r"MaterialMap.sizes\[3, 0\] must be an integer 0 … 65536, not -1"),
+        ("long", r"MaterialMap.sizes\[3, 0\] must be an integer 0 … 65536, not 131072"),
+        ("half", "MaterialMap.sizes must be 0 in both columns of a row, or in neither"),
+    ],
+)
+def test_material_maps_that_do_not_fit_their_mesh_are_refused(broken, message):
     mesh = box_mesh([0, 0, 0], [4, 4, 4])
-    sizes, places, materials = np.ones((12, 2), np.int32), np.zeros((12, 3, 2), np.float32), np.ones(12, np.uint8)
+    sizes, corners, materials = np.ones((12, 2), np.int32), np.zeros((12, 3, 2), np.float32), np.ones(12, np.uint8)
     if broken == "sizes":
-        sizes, places = sizes[:5], places[:5]
-    elif broken == "places":
-        places = places[:5]
+        sizes, corners, materials = sizes[:5], corners[:5], materials[:5]
+    elif broken == "corners":
+        corners = corners[:5]
     elif broken == "materials":
         materials = materials[:5]
     elif broken == "negative":
@@ -358,8 +368,8 @@ def test_tints_that_do_not_fit_their_mesh_are_refused(broken):
         sizes[3] = 1 << 17
     else:
         sizes[3] = (0, 1)
-    with pytest.raises(ValueError, match="raster"):
-        voxelize(one_object(replace(mesh, material_map=MaterialMap(sizes, places, materials))), UNIT_GRID[3])
+    with pytest.raises(ValueError, match=message):
+        replace(mesh, material_map=MaterialMap(sizes, corners, materials))
 
 
 def twins(folder):

@@ -203,7 +203,7 @@ def test_more_than_255_materials_do_not_fit(count, fits, tmp_path):
     if fits:
         assert len(load(path).materials) == 256
     else:
-        with pytest.raises(DoesNotFitError, match=r"a\.glb: more than 255 materials are in use; merge some"):
+        with pytest.raises(DoesNotFitError, match=r"a\.glb: uses more than 255 materials; merge some"):
             load(path)
 
 

@@ -120,7 +120,7 @@ def test_faces_without_texture_coordinates_are_counted(obj):
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [(("2/2/1 5/5/1", "2/2/1 5/9/1"), "line 16: texture coordinate 9 of a face is none of the file's 6")],
+    [(("2/2/1 5/5/1", "2/2/1 5/9/1"), "line 16: texture coordinate 9 of a face does not exist: the file has 6")],
 )
 def test_refused(obj, change, message):
     with pytest.raises(AssetError) as caught:

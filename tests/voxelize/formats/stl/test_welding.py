@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from voxrt.voxelize import weld as module
+from voxrt.voxelize.formats.stl import welding as module
 from voxrt.voxelize.formats.stl.welding import weld
 
 soups = st.integers(0, 6).flatmap(
