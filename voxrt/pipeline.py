@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from voxrt.sim import Engine, Frame
     from voxrt.voxelize import Grid, ObjectReport, Scene
     from voxrt.voxelize.assets import UpAxis
-    from voxrt.voxelize.colliders import Geometry, Pow2
+    from voxrt.voxelize.box_rounding import Pow2
+    from voxrt.voxelize.object_proxies import Geometry
 
 DEFAULT_DEPTH = 7
 """Levels of the octree when neither they nor the voxels' size are given."""
@@ -68,7 +69,7 @@ class BuildResult:
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
         ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
@@ -210,8 +211,8 @@ def build(
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=voxel_size, geometry=geometry, pow2=pow2)
-    with stage("tint"):
-        scene = voxelize.tint(scene, grid, colours=colours, geometry=geometry)
+    with stage("colour"):
+        scene = voxelize.assign_colours(scene, grid, colours=colours, geometry=geometry)
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.scene_memory import Progress
 
-_STAGES = ("load", "fit", "tint", "voxelize", "octree")
+_STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
 
 def board_scene(blob: Blob) -> Scene:

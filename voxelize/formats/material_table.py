@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import DoesNotFitError
-from voxrt.voxelize.scene import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 _DEFAULT_KEY = object()
 
@@ -32,20 +32,20 @@ class MaterialTable:
         mirror: bool = False,
         authored: bool = True,
     ) -> int:
-        """Return the id of the material known to its file as `key`, given on first use.
+        """Return the id of a material. Its first use adds it to the table.
 
         Parameters
         ----------
         key
-            What tells it from others in the file: a name, a prim path.
+            What identifies it in the file: a name, a prim path.
         name
-            The author's name; a number is appended where another material has it already.
+            The author's name; a number is appended where another material already has it.
         colour
-            sRGB, 8 bits a channel.
+            sRGB, 0 … 255 per channel.
         mirror
             Whether it reflects.
         authored
-            False for a stand-in.
+            False for a default that replaces a missing material.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class MaterialTable:
         if key in self._ids:
             return self._ids[key]
         if len(self._entries) > MATERIAL_LIMIT:
-            raise DoesNotFitError(f"more than {MATERIAL_LIMIT} materials are in use; merge some in the asset")
+            raise DoesNotFitError(f"uses more than {MATERIAL_LIMIT} materials; merge some in the asset")
         unique, number = name, 2
         while unique in self._names:
             unique, number = f"{name} ({number})", number + 1
@@ -64,9 +64,9 @@ class MaterialTable:
         self._entries.append(Material(unique, colour, mirror, authored))
         return self._ids[key]
 
-    def default(self, notes: Notes, faces: int = 1) -> int:
-        """Return the id of the default material, for `faces` faces that have none; counted in `notes`."""
-        notes.add("default-material", "faces without a material got the default one", faces)
+    def default(self, log: WarningLog, faces: int = 1) -> int:
+        """Return the id of the default material, and count `faces` faces that have none in `log`."""
+        log.add("default-material", "faces without a material got the default one", faces)
         return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
 
     def __len__(self) -> int:

@@ -1,4 +1,4 @@
-"""What a USD material or displayColor says about colour."""
+"""The colour properties of a USD material or displayColor."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from voxrt.voxelize.formats.usd.values import numbers
 
 if TYPE_CHECKING:
     from voxrt.voxelize.colour.texture import Wrap
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 Linear: TypeAlias = tuple[float, float, float]
 
 BLEND_CUTOFF = 0.5
-"""A surface is air where its opacity is below this, unless its material has a threshold of its own."""
+"""A surface is cut away where its opacity is below this, unless its material has an opacity threshold."""
 
 _FALLBACK_DIFFUSE: Linear = (0.18, 0.18, 0.18)  # UsdPreviewSurface's own
 
-# What shaders other than UsdPreviewSurface call their base colour.
+# Names of the base colour, of UsdPreviewSurface and other shaders.
 _COLOUR_INPUTS = (
     *("diffuseColor", "base_color", "baseColor", "diffuse_color_constant", "diffuse_reflection_color"),
     *("diffuse_color", "color"),
@@ -33,27 +33,26 @@ _WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "cla
 
 @dataclass(frozen=True, slots=True)
 class ImageSource:
-    """A texture: which image, and where on the surface it lies.
+    """A texture: its image and its placement on the surface.
 
     Attributes
     ----------
     file
-        The resolved asset path; empty where there is none.
+        The resolved asset path; empty for none.
     raw
-        Its colours are linear, not sRGB.
+        Whether its colours are linear instead of sRGB.
     wrap
-        What happens outside 0 … 1.
+        How coordinates outside 0 … 1 are treated.
     primvar
-        The name of the coordinates.
+        The name of the primvar with the texture coordinates.
     turn, scale, offset
-        Degrees counter-clockwise, factors and offsets applied to the coordinates: scale, then turn, then offset.
+        Applied to the coordinates: scale, then rotation (degrees counter-clockwise), then offset.
     factor, bias
         Applied to its linear colour and alpha.
     channel
-        Which of ``rgba`` gives an opacity.
+        The channel, one of ``rgba``, that gives an opacity.
     point
-        The coordinates of every point of a surface that has none of its own, where the author connected none; None
-        where some are connected.
+        The coordinates of every point, where no coordinates are connected; None where some are connected.
     """
 
     file: str
@@ -70,19 +69,19 @@ class ImageSource:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
-    """What faces look like.
+class Shading:
+    """The colour and opacity of faces.
 
     Attributes
     ----------
     name
-        The author's name; None for faces to which nothing gives a colour.
+        The author's name; None for faces without any colour.
     colour
-        Linear; what stands in where a texture or primvar is missing. None where the author gave none.
+        Linear; used where a texture or primvar is missing. None where the author gave none.
     opacity
         0 … 1.
     cutoff
-        Faces are air where their opacity is below it.
+        Faces are cut away where their opacity is below it.
     image
         A texture for the colour.
     alpha
@@ -100,19 +99,19 @@ class Look:
     primvar: str | None = None
 
 
-NO_LOOK = Look(None)
+NO_SHADING = Shading(None)
 
 
-def read_look(material: UsdShade.Material, time: Usd.TimeCode, notes: Notes) -> Look:
+def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLog) -> Shading:
     """Read a material's surface."""
     name = material.GetPrim().GetName()
     shader = next((found for one in _CONTEXTS if (found := material.ComputeSurfaceSource(one)[0])), None)
     if shader is None:
-        notes.add("material-colour", "materials without a surface that is understood got the default colour")
-        return Look(name)
-    threshold = _input(shader, ("opacityThreshold",), time, notes)
-    opacity = _input(shader, ("opacity",), time, notes)
-    colour = _input(shader, _COLOUR_INPUTS, time, notes)
+        log.add("material-colour", "materials without a supported surface shader got the default colour")
+        return Shading(name)
+    threshold = _input(shader, ("opacityThreshold",), time, log)
+    opacity = _input(shader, ("opacity",), time, log)
+    colour = _input(shader, _COLOUR_INPUTS, time, log)
     plain = colour.value if colour else None
     is_preview = shader.GetIdAttr().Get() == "UsdPreviewSurface"
     if plain is None and colour is not None and colour.image is None and colour.primvar is None and is_preview:
@@ -120,8 +119,8 @@ def read_look(material: UsdShade.Material, time: Usd.TimeCode, notes: Notes) -> 
     if colour is None:
         plain = _FALLBACK_DIFFUSE if is_preview else None
         if not is_preview:
-            notes.add("material-colour", "materials whose shader has no colour got the default colour")
-    return Look(
+            log.add("material-colour", "materials whose shader has no colour got the default colour")
+    return Shading(
         name,
         plain,
         opacity.value[0] if opacity and opacity.value else 1.0,
@@ -133,7 +132,7 @@ def read_look(material: UsdShade.Material, time: Usd.TimeCode, notes: Notes) -> 
 
 
 def display_srgb(colour: Linear) -> tuple[int, int, int]:
-    """Return a linear colour as sRGB of 8 bits; black where it is no number."""
+    """Return a linear colour as sRGB, 0 … 255; NaN becomes black."""
     finite = np.nan_to_num(np.array(colour), nan=0.0, posinf=1.0, neginf=0.0)
     red, green, blue = (int(value) for value in srgb_from_linear(finite))
     return red, green, blue
@@ -141,44 +140,44 @@ def display_srgb(colour: Linear) -> tuple[int, int, int]:
 
 @dataclass(frozen=True, slots=True)
 class _Input:
-    """What feeds a shader's input: a value, a texture, or a primvar."""
+    """The source of a shader's input: a value, a texture, or a primvar."""
 
     value: Linear | None = None
     image: ImageSource | None = None
     primvar: str | None = None
 
 
-def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, notes: Notes) -> _Input | None:
+def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, log: WarningLog) -> _Input | None:
     for name in names:
         source = shader.GetInput(name)
         if not source:
             continue
         for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
             if UsdShade.Output.IsOutput(attribute):
-                return _network(UsdShade.Shader(attribute.GetPrim()), attribute.GetBaseName(), time, notes)
+                return _network(UsdShade.Shader(attribute.GetPrim()), attribute.GetBaseName(), time, log)
             value = _colour(attribute.Get(time))
             if value is not None:
                 return _Input(value)
     return None
 
 
-def _network(node: UsdShade.Shader, output: str, time: Usd.TimeCode, notes: Notes) -> _Input:
+def _network(node: UsdShade.Shader, output: str, time: Usd.TimeCode, log: WarningLog) -> _Input:
     kind = str(node.GetIdAttr().Get()) if node else ""
     if kind == "UsdUVTexture":
         fallback = _colour(_value(node, "fallback", time))
-        return _Input(fallback, replace(_image_source(node, time, notes), channel=output))
+        return _Input(fallback, replace(_image_source(node, time, log), channel=output))
     if kind.startswith("UsdPrimvarReader_float3"):
         return _Input(_colour(_value(node, "fallback", time)), primvar=str(_value(node, "varname", time) or ""))
-    notes.add("shader", f"shader nodes {kind or 'without an id'} are not honoured; the default colour stands in")
+    log.add("shader", f"shader nodes {kind or 'without an id'} are not supported; the default colour was used")
     return _Input()
 
 
-def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes) -> ImageSource:
+def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, log: WarningLog) -> ImageSource:
     file = _value(node, "file", time)
     wrap_s, wrap_t = (str(_value(node, name, time) or "repeat") for name in ("wrapS", "wrapT"))
     if "black" in (wrap_s, wrap_t):
-        notes.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
-    primvar, turn, scale, offset = _coordinates(node, time, notes)
+        log.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
+    primvar, turn, scale, offset = _coordinates(node, time, log)
     connected = _upstream(node, "st") is not None
     return ImageSource(
         file=str(getattr(file, "resolvedPath", "") or ""),
@@ -195,7 +194,7 @@ def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes) -> Im
 
 
 def _coordinates(
-    node: UsdShade.Shader, time: Usd.TimeCode, notes: Notes
+    node: UsdShade.Shader, time: Usd.TimeCode, log: WarningLog
 ) -> tuple[str, float, tuple[float, float], tuple[float, float]]:
     """Return the primvar's name, and how its values are turned, scaled and moved."""
     turn, scale, offset = 0.0, (1.0, 1.0), (0.0, 0.0)
@@ -208,7 +207,7 @@ def _coordinates(
     if source and str(source.GetIdAttr().Get()).startswith("UsdPrimvarReader_float2"):
         return str(_value(source, "varname", time) or "st"), turn, scale, offset
     if source:
-        notes.add("shader", f"shader nodes {source.GetIdAttr().Get()} are not honoured; coordinates 'st' stand in")
+        log.add("shader", f"shader nodes {source.GetIdAttr().Get()} are not honoured; coordinates 'st' stand in")
     return "st", turn, scale, offset
 
 

@@ -14,26 +14,26 @@ from PIL import Image
 
 from voxrt.voxelize import (
     EMPTY,
+    Appearance,
     BoxCollider,
-    Coat,
     DoesNotFitError,
     Grid,
     Material,
+    MaterialMap,
     Mesh,
-    Paint,
     Scene,
     SceneObject,
+    SurfaceAppearance,
     Texture,
-    Tints,
+    assign_colours,
     fit_grid,
     load,
-    tint,
     voxelize,
 )
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
 UNIT_GRID = {depth: Grid(depth, (0.0, 0.0, 0.0), 1.0) for depth in range(1, 17)}
-PAINT = Material("paint", (1, 2, 3))
+PAINT = Material("appearance", (1, 2, 3))
 ARRAYS = (
     *("brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells"),
     *("octant_codes", "octant_levels", "octant_materials"),
@@ -47,11 +47,16 @@ def soup(random, side, count):
     return Mesh(corners.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3), np.ones(count, np.uint8))
 
 
-def coated(mesh, *, uv=None, colours=None, **paint):
+def coated(mesh, *, uv=None, colours=None, **appearance):
     count = len(mesh.triangles)
     uv = np.zeros((count, 3, 2)) if uv is None else uv
     colours = np.ones((count, 3, 4)) if colours is None else colours
-    return replace(mesh, coat=Coat((Paint("p", **paint),), np.zeros(count, np.int32), uv, colours.astype(np.float32)))
+    return replace(
+        mesh,
+        appearance=SurfaceAppearance(
+            (Appearance("p", **appearance),), np.zeros(count, np.int32), uv, colours.astype(np.float32)
+        ),
+    )
 
 
 def painted(mesh, **how):
@@ -93,7 +98,7 @@ def test_colours_do_not_change_what_is_covered(seed, depth, fill, closed):
     mesh = icosphere(1, (side / 2,) * 3, 0.4 * side) if closed else soup(random, side, 12)
     scene = painted(mesh, colours=random.random((len(mesh.triangles), 3, 4)))
     grid = UNIT_GRID[depth]
-    plain, tinted = voxelize(scene, grid, fill=fill), voxelize(tint(scene, grid), grid, fill=fill)
+    plain, tinted = voxelize(scene, grid, fill=fill), voxelize(assign_colours(scene, grid), grid, fill=fill)
     np.testing.assert_array_equal(dense(plain.voxels) != 0, dense(tinted.voxels) != 0)
     assert plain.objects == tinted.objects
 
@@ -109,7 +114,7 @@ def test_each_voxel_takes_the_cell_at_the_nearest_point_of_its_first_triangle(se
     places = (random.random((5, 3, 2)) * sizes[:, None]).astype(np.float32)
     materials = random.integers(2, 256, int(sizes.prod(axis=1).sum())).astype(np.uint8)
     starts = np.cumsum(sizes.prod(axis=1)) - sizes.prod(axis=1)
-    scene = one_object(replace(mesh, tints=Tints(sizes, places, materials)))
+    scene = one_object(replace(mesh, material_map=MaterialMap(sizes, places, materials)))
     found = dense(voxelize(scene, UNIT_GRID[depth], fill="surface").voxels)
 
     left = np.ones_like(found, bool)
@@ -162,7 +167,7 @@ def test_colours_are_those_of_the_image_around_the_nearest_point(seed, turned):
     texture = Texture(np.dstack([BLOCKS, np.full((2, 3), 255, np.uint8)]), ("clamp", "clamp"), nearest=True)
     mesh = Mesh(origin + flat * lengths @ axes, triangles, np.ones(2, np.uint8))
     grid = UNIT_GRID[5]
-    found = colours_of(tint(painted(mesh, uv=flat[triangles], texture=texture), grid), grid, fill="surface")
+    found = colours_of(assign_colours(painted(mesh, uv=flat[triangles], texture=texture), grid), grid, fill="surface")
     covered = np.argwhere(found[..., 0] >= 0)
     assert len(covered) > 20
     reach = 0.75 / lengths  # half a cell's diagonal
@@ -177,7 +182,7 @@ def test_vertex_colours_change_evenly_over_a_large_triangle():
     ends[0, :, :3] = np.eye(3)
     mesh = Mesh(corners, np.array([[0, 1, 2]], np.int32), np.ones(1, np.uint8))
     grid = UNIT_GRID[6]
-    found = colours_of(tint(painted(mesh, colours=ends), grid, colours=254), grid, fill="surface")
+    found = colours_of(assign_colours(painted(mesh, colours=ends), grid, colours=254), grid, fill="surface")
     for x, y, z in np.argwhere(found[..., 0] >= 0):
         if x + y < 59:
             linear = np.array([1 - x / 60 - y / 60, x / 60, y / 60])
@@ -191,7 +196,9 @@ def test_textures_finer_than_voxels_are_mixed_in_linear_light():
     corners = np.array([[0, 0, 0.5], [16, 0, 0.5], [16, 16, 0.5], [0, 16, 0.5]])
     triangles = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
     uv = (corners[:, :2] / 16)[triangles]
-    scene = tint(painted(Mesh(corners, triangles, np.ones(2, np.uint8)), uv=uv, texture=Texture(checks)), UNIT_GRID[4])
+    scene = assign_colours(
+        painted(Mesh(corners, triangles, np.ones(2, np.uint8)), uv=uv, texture=Texture(checks)), UNIT_GRID[4]
+    )
     assert [material.colour for material in scene.materials[2:]] == [(188, 188, 188)]
 
 
@@ -200,16 +207,16 @@ def test_few_colours_are_exact_and_uniform_materials_stay():
     colours = np.ones((12, 3, 4))
     shades = np.array([(9, 8, 7), (200, 100, 0), (0, 0, 0)], np.uint8)
     colours[..., :3] = linear_from_srgb(shades)[np.arange(12) % 3][:, None]
-    coat = coated(mesh, colours=colours).coat
-    mesh = replace(mesh, coat=replace(coat, rows=np.array([-1, *[0] * 11], np.int32)))
+    surface_appearance = coated(mesh, colours=colours).appearance
+    mesh = replace(mesh, appearance=replace(surface_appearance, rows=np.array([-1, *[0] * 11], np.int32)))
     mesh = replace(mesh, materials=np.array([2, *[1] * 11], np.uint8))
     own = (EMPTY, replace(PAINT, colour=(200, 100, 0)), Material("steel", (70, 70, 70)))
-    scene = tint(Scene("test", (SceneObject("o", mesh),), own), UNIT_GRID[3])
+    scene = assign_colours(Scene("test", (SceneObject("o", mesh),), own), UNIT_GRID[3])
     assert scene.materials[:3] == own
-    # A colour that the paint's own material has is that material.
+    # A colour that the appearance's own material has is that material.
     assert [(one.name, one.colour) for one in scene.materials[3:]] == [
-        ("paint #000000", (0, 0, 0)),
-        ("paint #090807", (9, 8, 7)),
+        ("appearance #000000", (0, 0, 0)),
+        ("appearance #090807", (9, 8, 7)),
     ]
     assert set(np.unique(dense(voxelize(scene, UNIT_GRID[3]).voxels))) == {1, 2, 3, 4}
 
@@ -227,7 +234,7 @@ def sphere_scene(count=3):
 def test_the_result_does_not_depend_on_threads_nor_on_the_run():
     results = []
     for threads in (1, 3):
-        scene = tint(sphere_scene(), UNIT_GRID[5])
+        scene = assign_colours(sphere_scene(), UNIT_GRID[5])
         results.append((scene.materials, voxelize(scene, UNIT_GRID[5], threads=threads).voxels))
     assert results[0][0] == results[1][0]
     assert same(results[0][1], results[1][1])
@@ -235,16 +242,16 @@ def test_the_result_does_not_depend_on_threads_nor_on_the_run():
 
 @pytest.mark.parametrize("colours", [1, 2, 32, 254])
 def test_there_are_no_more_colours_than_asked_for(colours):
-    scene = tint(sphere_scene(), UNIT_GRID[5], colours=colours)
+    scene = assign_colours(sphere_scene(), UNIT_GRID[5], colours=colours)
     assert len(scene.materials) <= 2 + colours
     assert len(scene.materials) > 2 + colours * 0.7
 
 
 def test_instances_share_one_raster_of_the_finest():
-    scene = tint(sphere_scene(), UNIT_GRID[5])
+    scene = assign_colours(sphere_scene(), UNIT_GRID[5])
     assert len({id(item.mesh) for item in scene.objects}) == 1
-    alone = tint(sphere_scene(1), UNIT_GRID[5])
-    assert np.array_equal(scene.objects[0].mesh.tints.sizes, alone.objects[0].mesh.tints.sizes)
+    alone = assign_colours(sphere_scene(1), UNIT_GRID[5])
+    assert np.array_equal(scene.objects[0].mesh.material_map.sizes, alone.objects[0].mesh.material_map.sizes)
 
 
 @pytest.mark.parametrize("fill", ["solid", "surface"])
@@ -255,7 +262,7 @@ def test_what_alpha_cuts_away_is_empty_and_the_rest_stays(fill):
     pixels = np.zeros((1, 8, 4), np.uint8)
     pixels[:, :4] = (255, 0, 0, 255)
     scene = painted(mesh, uv=uv, texture=Texture(pixels, ("clamp", "clamp"), nearest=True), cutoff=0.5)
-    found = dense(voxelize(tint(scene, UNIT_GRID[3]), UNIT_GRID[3], fill=fill).voxels)
+    found = dense(voxelize(assign_colours(scene, UNIT_GRID[3]), UNIT_GRID[3], fill=fill).voxels)
     uncut = dense(voxelize(scene, UNIT_GRID[3], fill=fill).voxels)
     shell = dense(voxelize(scene, UNIT_GRID[3], fill="surface").voxels) != 0
     np.testing.assert_array_equal(found[:4] != 0, uncut[:4] != 0)
@@ -269,14 +276,16 @@ def test_surface_that_is_cut_away_hides_no_other():
     mesh = Mesh(np.concatenate([near, far]), np.arange(6, dtype=np.int32).reshape(2, 3), np.ones(2, np.uint8))
     colours = np.ones((2, 3, 4))
     colours[0, :, 3] = 0
-    found = dense(voxelize(tint(painted(mesh, colours=colours, cutoff=0.5), UNIT_GRID[3]), UNIT_GRID[3]).voxels)
+    found = dense(
+        voxelize(assign_colours(painted(mesh, colours=colours, cutoff=0.5), UNIT_GRID[3]), UNIT_GRID[3]).voxels
+    )
     whole = dense(voxelize(painted(mesh), UNIT_GRID[3]).voxels)
     np.testing.assert_array_equal(found != 0, whole != 0)
 
 
 def test_all_may_be_cut_away():
     mesh = Mesh(np.array([[0.0, 0, 1], [8, 0, 1], [0, 8, 1]]), np.array([[0, 1, 2]], np.int32), np.ones(1, np.uint8))
-    scene = tint(painted(mesh, colours=np.zeros((1, 3, 4)), cutoff=0.5), UNIT_GRID[3])
+    scene = assign_colours(painted(mesh, colours=np.zeros((1, 3, 4)), cutoff=0.5), UNIT_GRID[3])
     assert scene.materials == (EMPTY, PAINT)
     assert not dense(voxelize(scene, UNIT_GRID[3]).voxels).any()
 
@@ -288,57 +297,69 @@ def test_mirrors_stay_mirrors():
         scene.objects[0],
         SceneObject("other", replace(scene.objects[0].mesh, materials=np.full(320, 2, np.uint8))),
     )
-    tinted = tint(Scene("test", objects, (EMPTY, glass, Material("matt", (0, 0, 0)))), UNIT_GRID[4], colours=20)
-    assert {one.mirror for one in tinted.materials[3:] if one.name.startswith("paint #")} == {True}
+    tinted = assign_colours(
+        Scene("test", objects, (EMPTY, glass, Material("matt", (0, 0, 0)))), UNIT_GRID[4], colours=20
+    )
+    assert {one.mirror for one in tinted.materials[3:] if one.name.startswith("appearance #")} == {True}
     assert {one.mirror for one in tinted.materials[3:] if one.name.startswith("matt #")} == {False}
 
 
 def test_ids_that_were_left_out_are_taken_where_there_are_no_others():
     gap = Material("unused", (0, 0, 0), authored=False)
     table = (EMPTY, PAINT, *[gap] * 253, Material("last", (4, 4, 4)))
-    scene = tint(replace(sphere_scene(), materials=table), UNIT_GRID[4], colours=4)
+    scene = assign_colours(replace(sphere_scene(), materials=table), UNIT_GRID[4], colours=4)
     assert len(scene.materials) == 256
-    assert [one.name.split()[0] for one in scene.materials[2:6]] == ["paint"] * 4
+    assert [one.name.split()[0] for one in scene.materials[2:6]] == ["appearance"] * 4
     assert scene.materials[255].name == "last"
     full = (EMPTY, PAINT, *[Material("own", (0, 0, 0))] * 254)
-    with pytest.raises(DoesNotFitError, match="leave none of the 255 to its painted surfaces; merge some"):
-        tint(replace(sphere_scene(), materials=full), UNIT_GRID[4])
+    with pytest.raises(DoesNotFitError, match="leave none for textures and vertex colours; merge some"):
+        assign_colours(replace(sphere_scene(), materials=full), UNIT_GRID[4])
 
 
 def test_scenes_without_paint_and_objects_with_colliders_stay_as_they_are():
     plain = one_object(box_mesh([0, 0, 0], [4, 4, 4]))
-    assert tint(plain, UNIT_GRID[3]) is plain
+    assert assign_colours(plain, UNIT_GRID[3]) is plain
     scene = painted(box_mesh([0, 0, 0], [4, 4, 4]))
     boxed = replace(scene.objects[0], colliders=(BoxCollider(np.zeros(3), np.ones(3)),))
     scene = replace(scene, objects=(boxed,))
-    assert tint(scene, UNIT_GRID[3]) is scene
-    assert tint(scene, UNIT_GRID[3], geometry="render") is not scene
+    assert assign_colours(scene, UNIT_GRID[3]) is scene
+    assert assign_colours(scene, UNIT_GRID[3], geometry="render") is not scene
 
 
 @pytest.mark.parametrize("colours", [0, 255, -1])
 def test_the_number_of_colours_is_checked(colours):
-    with pytest.raises(ValueError, match="colours must be 1 … 254"):
-        tint(sphere_scene(), UNIT_GRID[3], colours=colours)
+    with pytest.raises(ValueError, match="colours must be an integer 1 … 254"):
+        assign_colours(sphere_scene(), UNIT_GRID[3], colours=colours)
 
 
 def test_memory_is_bounded_however_many_voxels_are_covered(monkeypatch):
     monkeypatch.setattr(sys.modules["voxrt.voxelize.colour.voxel_colours"], "_MOST_CELLS", 1 << 12)
-    tints = tint(painted(box_mesh([0, 0, 0], [65536] * 3)), UNIT_GRID[16]).objects[0].mesh.tints
+    tints = assign_colours(painted(box_mesh([0, 0, 0], [65536] * 3)), UNIT_GRID[16]).objects[0].mesh.material_map
     assert 1 << 10 < tints.sizes.prod(axis=1).sum() == len(tints.materials) <= 1 << 12
     monkeypatch.undo()
     sliver = np.array([[0.0, 0, 0], [65536, 0, 0], [30000, 0.5, 0]])
     mesh = Mesh(sliver, np.array([[0, 1, 2]], np.int32), np.ones(1, np.uint8))
-    assert tint(painted(mesh), UNIT_GRID[16]).objects[0].mesh.tints.sizes.tolist() == [[65536, 1]]
+    assert assign_colours(painted(mesh), UNIT_GRID[16]).objects[0].mesh.material_map.sizes.tolist() == [[65536, 1]]
 
 
-@pytest.mark.parametrize("broken", ["sizes", "places", "materials", "negative", "long", "half"])
-def test_tints_that_do_not_fit_their_mesh_are_refused(broken):
+@pytest.mark.parametrize(
+    ("broken", "message"),
+    [
+        ("sizes", "Mesh.material_map is for 5 triangles, and the mesh has 12"),
+        ("corners", r"MaterialMap.corners must have shape \(12, 3, 2\), not \(5, 3, 2\)"),
+        ("materials", r"MaterialMap.materials must have shape \(12,\), not \(5,\)"),
+        ("negative", r"MaterialMap.sizes\[3, 0\] must be an integer 0 … 65536, not -1"),
+        ("long", r"MaterialMap.sizes\[3, 0\] must be an integer 0 … 65536, not 131072"),
+        ("half", "MaterialMap.sizes must be 0 in both columns of a row, or in neither"),
+    ],
+)
+def test_material_maps_that_do_not_fit_their_mesh_are_refused(broken, message):
     mesh = box_mesh([0, 0, 0], [4, 4, 4])
-    sizes, places, materials = np.ones((12, 2), np.int32), np.zeros((12, 3, 2), np.float32), np.ones(12, np.uint8)
+    sizes, corners, materials = np.ones((12, 2), np.int32), np.zeros((12, 3, 2), np.float32), np.ones(12, np.uint8)
     if broken == "sizes":
-        sizes, places = sizes[:5], places[:5]
-    elif broken == "places":
-        places = places[:5]
+        sizes, corners, materials = sizes[:5], corners[:5], materials[:5]
+    elif broken == "corners":
+        corners = corners[:5]
     elif broken == "materials":
         materials = materials[:5]
     elif broken == "negative":
@@ -347,8 +368,8 @@ def test_tints_that_do_not_fit_their_mesh_are_refused(broken):
         sizes[3] = 1 << 17
     else:
         sizes[3] = (0, 1)
-    with pytest.raises(ValueError, match="raster"):
-        voxelize(one_object(replace(mesh, tints=Tints(sizes, places, materials))), UNIT_GRID[3])
+    with pytest.raises(ValueError, match=message):
+        replace(mesh, material_map=MaterialMap(sizes, corners, materials))
 
 
 def twins(folder):
@@ -409,7 +430,7 @@ def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {{
 def test_one_model_in_three_formats_has_the_same_colours(tmp_path):
     scenes = twins(tmp_path)
     grid = fit_grid(scenes[0], depth=4)
-    first, *others = (colours_of(tint(scene, grid), grid) for scene in scenes)
+    first, *others = (colours_of(assign_colours(scene, grid), grid) for scene in scenes)
     assert len(np.unique(first.reshape(-1, 3), axis=0)) > 20
     for other in others:
         np.testing.assert_array_equal(first, other)

@@ -1,4 +1,4 @@
-"""Paint against a texture look-up written out pixel by pixel."""
+"""Appearance against a texture look-up written out pixel by pixel."""
 
 import math
 
@@ -7,17 +7,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voxrt.voxelize.colour.paint import Coat, Paint, remaining, sample
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance, sample, visible_triangles
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.colour.texture import Texture, halved
 
 WRAPS = ("repeat", "mirror", "clamp")
 
 
-def coat(uv=None, colours=None, **paint):
+def surface_appearance(uv=None, colours=None, **appearance):
     uv = np.zeros((1, 3, 2)) if uv is None else np.array(uv, float)
     colours = np.ones((len(uv), 3, 4)) if colours is None else np.array(colours)
-    return Coat((Paint("p", **paint),), np.zeros(len(uv), np.int32), uv, colours.astype(np.float32))
+    return SurfaceAppearance(
+        (Appearance("p", **appearance),), np.zeros(len(uv), np.int32), uv, colours.astype(np.float32)
+    )
 
 
 def pixel(texture, column, row):
@@ -64,7 +66,7 @@ def looked_up(texture, u, v):
 )
 def test_texture_look_up(pixels, wrap, nearest, place):
     texture = Texture(pixels, wrap, nearest)
-    painted = coat(uv=[[place, place, place]], texture=texture, factor=(0.5, 0.25, 1.0, 0.75))
+    painted = surface_appearance(uv=[[place, place, place]], texture=texture, factor=(0.5, 0.25, 1.0, 0.75))
     found = sample(painted, np.array([0]), np.array([[0.2, 0.3, 0.5]]))
     expected = looked_up(texture, *place) * (0.5, 0.25, 1.0, 0.75)
     np.testing.assert_allclose(found[0], expected, rtol=1e-9, atol=1e-12)
@@ -72,7 +74,7 @@ def test_texture_look_up(pixels, wrap, nearest, place):
 
 def test_far_coordinates_stay_exact():
     texture = Texture(np.array([[[255, 0, 0, 255], [0, 255, 0, 255]]], np.uint8), nearest=True)
-    painted = coat(uv=[[(2.0**40 + 0.75, 2.0**60)] * 3], texture=texture)
+    painted = surface_appearance(uv=[[(2.0**40 + 0.75, 2.0**60)] * 3], texture=texture)
     assert sample(painted, np.array([0]), np.array([[1.0, 0, 0]]))[0].tolist() == [0, 1, 0, 1]
 
 
@@ -81,7 +83,7 @@ def test_far_coordinates_stay_exact():
 @pytest.mark.parametrize("beyond", [np.nan, np.inf, -np.inf, 1.7e308, -1.7e308])
 def test_coordinates_beyond_numbers_have_some_colour(wrap, nearest, beyond):
     texture = Texture(np.full((3, 5, 4), 255, np.uint8), (wrap, wrap), nearest)
-    painted = coat(uv=[[(beyond, 0), (0, beyond), (beyond, beyond)]], texture=texture)
+    painted = surface_appearance(uv=[[(beyond, 0), (0, beyond), (beyond, beyond)]], texture=texture)
     assert sample(painted, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [1, 1, 1, 1]
 
 
@@ -120,13 +122,13 @@ def test_triangles_remain_of_which_any_is_not_cut_away():
     leaf[:, :2] = (0, 255, 0, 255)
     leaf[:, 2:] = (255, 0, 0, 0)
     left, whole, right = [(0.05, 0), (0.2, 0), (0.2, 1)], [(0, 0), (1, 0), (1, 1)], [(0.7, 0), (0.9, 0), (0.9, 1)]
-    painted = coat(uv=[left, whole, right, right], texture=Texture(leaf, nearest=True), cutoff=0.5)
-    painted = Coat(painted.paints, np.array([0, 0, 0, -1], np.int32), painted.uv, painted.colours)
-    assert remaining(painted).tolist() == [True, True, False, False]
+    painted = surface_appearance(uv=[left, whole, right, right], texture=Texture(leaf, nearest=True), cutoff=0.5)
+    painted = SurfaceAppearance(painted.entries, np.array([0, 0, 0, -1], np.int32), painted.uv, painted.colours)
+    assert visible_triangles(painted).tolist() == [True, True, False, False]
 
 
 @pytest.mark.parametrize("count", [1, 40_000])
 def test_the_number_of_samples_is_bounded(count):
     texture = Texture(np.full((1000, 1000, 4), 127, np.uint8))
     uv = np.tile([[(0, 0), (1, 0), (1, 1)]], (count, 1, 1))
-    assert not remaining(coat(uv=uv, texture=texture, cutoff=0.5)).any()
+    assert not visible_triangles(surface_appearance(uv=uv, texture=texture, cutoff=0.5)).any()

@@ -1,4 +1,4 @@
-"""A TOML text to the schema's values, or one line that says what is wrong and where."""
+"""Validation of ``scene.toml``: the schema's values, or one line that says what is wrong and where."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from voxrt.voxelize.authoring.scene_toml.positions import key_lines
-from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, File, Node
+from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, File, MaterialEntry, Node
 from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.authoring.scene_toml.positions import Path as KeyPath
 
 DEEPEST = 40
-"""How deeply shapes may stand in shapes."""
+"""The most levels of shapes within shapes."""
 
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
 _AT = re.compile(r" - at `\$(?P<path>.*)`$")
@@ -27,15 +27,15 @@ _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+|\.\.\.)\]")
 _TOML_PLACE = re.compile(r"^(?P<problem>.*?) \(at (?:line (?P<line>\d+), column \d+|end of document)\)$", re.DOTALL)
 
 
-class Checked:
-    """The file's values, and where each stood.
+class CheckedFile:
+    """The values of a valid file, and the line of each.
 
     Attributes
     ----------
     path
         The file.
     values
-        What it says.
+        Its content.
     """
 
     def __init__(self, path: Path, values: File, lines: dict[KeyPath, int]) -> None:
@@ -44,17 +44,17 @@ class Checked:
         self._lines = lines
 
     def error(self, where: KeyPath, problem: str, fix: str = "") -> AssetError:
-        """Return an error at the key or item `where`, or at what holds it."""
+        """Return an error at the key or item `where`, or at the table that holds it."""
         return _error(self.path, self._lines, where, problem, fix)
 
 
-def check(path: Path, text: str) -> Checked:
+def check_file(path: Path, text: str) -> CheckedFile:
     """Parse and check a scene file.
 
     Raises
     ------
     AssetError
-        It is no TOML, or says what the schema does not know.
+        It is not TOML, or does not match the schema.
     """
     try:
         raw = tomllib.loads(text)
@@ -70,24 +70,24 @@ def check(path: Path, text: str) -> Checked:
     except ValueError as error:  # an integer of thousands of digits
         raise AssetError(path, _lower(str(error)), fix="correct the number") from None
     if max(map(len, lines), default=0) > 2 * DEEPEST:
-        raise AssetError(path, f"shapes stand more than {DEEPEST} deep in shapes", fix="flatten them")
+        raise AssetError(path, f"shapes are nested more than {DEEPEST} levels deep", fix="flatten them")
     try:
         values = msgspec.convert(raw, File)
     except msgspec.ValidationError as error:
         raise _explained(path, lines, raw, str(error)) from None
-    checked = Checked(path, values, lines)
+    checked = CheckedFile(path, values, lines)
     for index, node in enumerate(values.objects):
         _check_shapes(checked, node, ("objects", index))
     return checked
 
 
-def _check_shapes(checked: Checked, node: Node, where: KeyPath) -> None:
+def _check_shapes(checked: CheckedFile, node: Node, where: KeyPath) -> None:
     given = [key for key in SHAPES if getattr(node, key) is not None]
     if not given:
-        raise checked.error(where, "has no shape", f"give one of {', '.join(SHAPES)}")
+        raise checked.error(where, "has no shape", f"add one of {', '.join(SHAPES)}")
     if len(given) > 1:
         raise checked.error(
-            (*where, given[1]), f"is both {given[0]} and {given[1]}", "make two objects or a group of it"
+            (*where, given[1]), f"is both {given[0]} and {given[1]}", "make two objects, or a group of both"
         )
     inner = getattr(node, given[0])
     if isinstance(inner, list):
@@ -109,7 +109,7 @@ def _explained(path: Path, lines: dict[KeyPath, int], raw: dict[str, Any], messa
 
 
 def _resolved(dotted: str, raw: dict[str, Any], problem: str) -> KeyPath:
-    """Turn msgspec's path into ours; msgspec writes ``[...]`` for any key of a dictionary."""
+    """Return the keys of msgspec's path; msgspec writes ``[...]`` for any key of a dictionary."""
     where: list[str | int] = []
     for name, index in _STEP.findall(dotted):
         if index == "...":
@@ -126,7 +126,7 @@ def _value_at(raw: Any, where: KeyPath) -> Any:  # noqa: ANN401 -- TOML holds an
 
 
 def _culprit(table: dict[str, Any], where: KeyPath, problem: str) -> str:
-    """Find the entry of a dictionary that alone gives the same complaint."""
+    """Return the entry of a dictionary that gives the same error by itself."""
     kind = _dictionary_values(where)
     for key, value in table.items():
         try:
@@ -138,9 +138,7 @@ def _culprit(table: dict[str, Any], where: KeyPath, problem: str) -> str:
 
 
 def _dictionary_values(where: KeyPath) -> Any:  # noqa: ANN401 -- a type expression
-    from voxrt.voxelize.authoring.scene_toml.schema import MaterialTable  # noqa: PLC0415 -- named like a type elsewhere
-
-    return MaterialTable if where == ("materials",) else str
+    return MaterialEntry if where == ("materials",) else str
 
 
 def _known_keys(where: KeyPath) -> list[str]:

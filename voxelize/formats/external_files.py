@@ -10,7 +10,7 @@ ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside, a
 
 
 @dataclass(frozen=True, slots=True)
-class Companions:
+class ExternalFiles:
     """Where the files that an asset names may stand.
 
     Attributes
@@ -25,7 +25,7 @@ class Companions:
     allow_outside: bool = False
 
     @classmethod
-    def of(cls, asset: Path, *, allow_outside: bool) -> Companions:
+    def of(cls, asset: Path, *, allow_outside: bool) -> ExternalFiles:
         """Return those of the file `asset`."""
         return cls(asset.parent.resolve(), allow_outside)
 

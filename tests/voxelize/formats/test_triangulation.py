@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from voxrt.voxelize.polygons import triangulate
+from voxrt.voxelize.formats.triangulation import triangulate
 
 
 def signed_area(points):
