@@ -1,4 +1,4 @@
-"""The verilated core as a device, driven as a board's is: by its registers, its memory port and its video stream."""
+"""The verilated core as a device: the driver of the boards uses its registers, memory port and video stream."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _PAUSE_CLOCKS = 1 << 15
 
 
 def open_rtl(config: str = "lit") -> RegisterDevice:
-    """Open a simulated core of this configuration.
+    """Open a simulated core with the configuration `config`.
 
     Raises
     ------
     NoSuchConfigurationError
-        The installation has no such core.
+        The installation has no core with this configuration.
     SimulatorError
         The verilated core is not in this installation.
     """
@@ -37,7 +37,7 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
 
 
 class _MemoryPort:
-    """The words behind the memory port, as a board's processor has them mapped."""
+    """The words of the scene memory, read and written through the memory port."""
 
     def __init__(self, core: Any) -> None:  # noqa: ANN401 - the native module may be absent
         self._core = core
@@ -55,7 +55,7 @@ class _MemoryPort:
 
 
 class _Stream:
-    """The stream's consumer, which takes whatever the core can send."""
+    """The receiver of the video stream; it never stalls the core."""
 
     size = (_FRAME_LIMIT, _FRAME_LIMIT)
     width_step = 1
