@@ -28,7 +28,7 @@ from voxrt.voxelize.scene import (
 from voxrt.voxelize.texture import Texture
 from voxrt.voxelize.tint import DEFAULT_COLOURS, tint
 from voxrt.voxelize.voxelize import voxelize
-from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
+from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 
 __all__ = [
     "DEFAULT_COLOUR",
@@ -45,6 +45,7 @@ __all__ = [
     "Material",
     "Mesh",
     "MeshCollider",
+    "ObjectMode",
     "ObjectReport",
     "Paint",
     "PointLight",
