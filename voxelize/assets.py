@@ -100,7 +100,7 @@ def load(
     ...     _ = path.write_text("v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n")
     ...     scene = load(path, unit=0.01)
     >>> scene
-    Scene('sail', 1 objects, 1 triangles, 2 materials, 1 warnings)
+    Scene(name='sail', objects=1, triangles=1, materials=2, warnings=1)
     >>> scene.warnings[0].message
     'faces without a material got the default one'
     """

@@ -48,7 +48,7 @@ class Author:
     >>> yard.look(eye=(6, 4, 9), target=(0, 1, 0))
     >>> yard.light((3, 8, 4))
     >>> yard.build()
-    Scene('yard', 1 objects, 12 triangles, 2 materials, 0 warnings)
+    Scene(name='yard', objects=1, triangles=12, materials=2, warnings=0)
     """
 
     def __init__(self, name: str, *, background: Colour = EMPTY.colour) -> None:
