@@ -250,29 +250,27 @@ def test_unused_vertices_may_be_anything():
     st.one_of(st.integers(), st.floats(), st.booleans(), st.text(), st.none()), st.integers(-3, 3), st.integers(0, 9)
 )
 def test_whole_returns_an_equal_int_in_range_or_refuses(value, low, span):
-    try:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if is_number and value in range(low, low + span + 1):
         found = arguments.whole("x", value, low, low + span)
-    except (TypeError, ValueError) as error:
-        assert str(error).startswith(f"x must be an integer {low} … {low + span}, not ")
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        assert not (is_number and value in range(low, low + span + 1))
-    else:
         assert type(found) is int
         assert found == value
-        assert low <= found <= low + span
+    else:
+        with pytest.raises((TypeError, ValueError), match=f"^x must be an integer {low} … {low + span}, not "):
+            arguments.whole("x", value, low, low + span)
 
 
 @given(
     st.lists(st.one_of(st.integers(-(2**70), 2**70), st.floats()), max_size=5), st.sampled_from([np.uint8, np.int32])
 )
 def test_whole_arrays_hold_equal_values_or_are_refused(values, dtype):
-    try:
+    if all(0 <= value <= 200 and value == int(value) for value in values):
         found = arguments.whole_array("x", values, ("N",), dtype, low=0, high=200)
-    except (TypeError, ValueError):
-        assert any(not (0 <= value <= 200 and value == int(value)) for value in values)
-    else:
         assert found.dtype == dtype
         assert found.tolist() == values
+    else:
+        with pytest.raises((TypeError, ValueError), match="^x"):
+            arguments.whole_array("x", values, ("N",), dtype, low=0, high=200)
 
 
 def test_values_have_short_reprs():

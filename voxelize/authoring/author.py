@@ -146,11 +146,9 @@ class Author:
         arguments.instance("solid", solid, Solid)
         positions, triangles, runs = (solid if material is None else solid.of(material)).surface()
         ids = np.concatenate([np.full(count, self._id_of(own, count), dtype=np.uint8) for own, count in runs])
-        colliders = ()
-        if collider is not None:
-            colliders = (collider_around(collider, positions, triangles, pow2=pow2),)
+        colliders = [] if collider is None else [collider_around(collider, positions, triangles, pow2=pow2)]
         mesh = Mesh(positions, triangles, ids)
-        self._enter(SceneObject(name, mesh, _finite(name, transform), colliders, int(ids[0])))
+        self._enter(SceneObject(name, mesh, _finite(name, transform), tuple(colliders), int(ids[0])))
 
     def add_asset(
         self,
