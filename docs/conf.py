@@ -4,7 +4,7 @@ from importlib.metadata import version as _version
 
 project = "voxrt"
 author = "the voxrt authors"
-release = _version("voxrt")
+release = _version("voxrt-build")
 extensions = ["sphinx.ext.autodoc", "sphinx.ext.intersphinx", "numpydoc", "myst_parser", "sphinx_gallery.gen_gallery"]
 source_suffix = [".rst", ".md"]
 html_theme = "furo"

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 # A checkout's Python and an installed wheel's extension modules make one package.
 __path__ = extend_path(__path__, __name__)
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "BOARDS",
