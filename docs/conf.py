@@ -49,7 +49,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["gallery", "study"],
     "filename_pattern": "",  # all are run
     "abort_on_example_error": True,
-    "image_scrapers": (check_pictures.scraper,),
+    "image_scrapers": ("check_pictures.scraper",),
     "download_all_examples": False,
     "write_computation_times": False,
     "min_reported_time": 1e9,  # seconds: how long a page took is nobody's question
@@ -80,7 +80,8 @@ def link_pages(app: Sphinx, doctree: nodes.document) -> None:
         folders = [(HERE / name).parent, *([REPOSITORY / INCLUDED_FROM[name]] if name in INCLUDED_FROM else [])]
         for folder in folders:
             path = (folder / target).resolve()
-            page = PAGES.get(str(path.relative_to(REPOSITORY))) if path.is_relative_to(REPOSITORY) else None
+            file = str(path.relative_to(REPOSITORY)) if path.is_relative_to(REPOSITORY) else ""
+            page = PAGES.get(file) or PAGES.get(f"{file}.md")  # MyST takes the suffix off files that could be pages
             if page:
                 wanted = {"refdomain": "std", "reftype": "doc", "reftarget": f"/{page}", "refexplicit": True}
                 node.replace_self(addnodes.pending_xref("", *node.children, refdoc=name, **wanted))

@@ -123,7 +123,7 @@ def page(package: str, listed: dict[int, str] | None = None) -> str:
     here = [name for name in names if name not in elsewhere]
     lines = [package, "=" * len(package), "", f".. automodule:: {package}", "   :no-members:", ""]
     if here:
-        lines += [".. autosummary::", "", *(f"   ~{name}" for name in here), ""]
+        lines += [".. autosummary::", "", *(f"   {name.removeprefix(package + '.')}" for name in here), ""]
     if elsewhere:
         lines += ["Also here, and described with their packages:", ""]
         roles = {"Functions": "func", "Classes": "class", "Exceptions": "exc", "Constants and types": "data"}
