@@ -36,6 +36,7 @@ extensions = [
 source_suffix = [".rst", ".md"]
 exclude_patterns = ["assets.md", "walk/pictures/*.md"]  # the first is a table for tests, the others are included
 html_theme = "furo"
+html_show_copyright = False
 html_title = f"voxrt {release}"
 html_static_path = ["static"]
 html_css_files = ["manual.css"]
@@ -73,7 +74,9 @@ INCLUDED_FROM = {"rtl": "rtl"}
 def link_pages(app: Sphinx, doctree: nodes.document) -> None:
     """Turn links to files of the repository into links to the pages that these files are in the manual."""
     name = app.env.docname
-    for node in list(doctree.findall(lambda node: isinstance(node, addnodes.download_reference | addnodes.pending_xref))):
+    for node in list(
+        doctree.findall(lambda node: isinstance(node, addnodes.download_reference | addnodes.pending_xref))
+    ):
         if node.get("reftype") != "myst":
             continue
         target = node["reftarget"].partition("#")[0]

@@ -1,7 +1,6 @@
 """Write the pages of measured tables, docs/measured/, one per file of bench/results; ``docs/conf.py`` runs it.
 
-The tables stand in ``bench/results`` as the benchmarks write them. A page gives each a title, where it has none, and
-says which benchmark writes it.
+The tables stand in ``bench/results`` as the benchmarks write them. A page adds a title.
 """
 
 from __future__ import annotations
@@ -10,16 +9,30 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 RESULTS = REPOSITORY / "bench" / "results"
-TITLES = {"rtl": "Cycles per pixel"}  # where the file's name is no title
+TITLES = {
+    "area": "Area",
+    "budget": "Budget",
+    "clock": "Clock",
+    "configurations": "Configurations",
+    "coverage": "Coverage",
+    "demo": "Demo",
+    "interior": "Interior",
+    "loading": "Loading",
+    "peers": "Other voxelizers",
+    "rtl": "Cycles per pixel",
+    "soak": "Soak",
+    "threads": "Threads",
+    "voxelize": "Voxelizer",
+}
+"""Titles by the file's name. A file that is not listed keeps its own title."""
 
 
 def page(path: Path) -> str:
     """Give the text of the page of one file of results."""
     text = path.read_text(encoding="utf-8")
-    if not text.startswith("# "):
-        text = f"# {TITLES.get(path.stem, path.stem.capitalize())}\n\n{text}"
-    head, _, rest = text.partition("\n")
-    return f"{head}\n\nThe file `bench/results/{path.name}`, as its benchmark wrote it.\n\n{rest.lstrip()}"
+    own, rest = (text[2:].split("\n", 1)) if text.startswith("# ") else (path.stem, text)
+    title = TITLES.get(path.stem, own)
+    return f"# {title}\n\nThe file `bench/results/{path.name}`, as its benchmark wrote it.\n\n{rest.lstrip()}"
 
 
 def cycles_table() -> str:

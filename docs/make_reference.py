@@ -11,12 +11,11 @@ import ast
 import inspect
 import pkgutil
 from importlib import import_module
-from pathlib import Path
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from sphinx.pycode import ModuleAnalyzer
-
 if TYPE_CHECKING:
+    from pathlib import Path
     from types import ModuleType
 
 FRONT = "voxrt"
@@ -89,13 +88,19 @@ def _constant_text(name: str) -> str:
     """Give the text that follows a constant where it is assigned; packages import it from there."""
     package, _, attribute = name.rpartition(".")
     module = import_module(package)
-    path = Path(inspect.getsourcefile(module) or "")
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    tree = ast.parse(inspect.getsource(module))
+    for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and any(alias.name == attribute for alias in node.names):
             return _constant_text(f"{node.module}.{attribute}")
-    lines = ModuleAnalyzer.for_module(package).find_attr_docs().get(("", attribute), [])
+    lines = []
+    for node, after in pairwise(tree.body):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        if any(isinstance(target, ast.Name) and target.id == attribute for target in targets) and (
+            isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
+        ):
+            lines = inspect.cleandoc(str(after.value.value)).splitlines()
     value = repr(_value(name))
-    shown = [f"   Value: ``{value}``", ""] if len(value) < 100 and "object at" not in value else []
+    shown = [f"   Value: ``{value}``", ""] if len(value) < 100 and " at 0x" not in value else []
     return "\n".join([*(f"   {line}" for line in lines), "", *shown])
 
 
@@ -122,8 +127,9 @@ def page(package: str, listed: dict[int, str] | None = None) -> str:
     elsewhere = {name: listed[id(_value(name))] for name in names if listed and id(_value(name)) in listed}
     here = [name for name in names if name not in elsewhere]
     lines = [package, "=" * len(package), "", f".. automodule:: {package}", "   :no-members:", ""]
-    if here:
-        lines += [".. autosummary::", "", *(f"   {name.removeprefix(package + '.')}" for name in here), ""]
+    summarized = [name.removeprefix(f"{package}.") for name in here if _kind(name) != "Constants and types"]
+    if summarized:
+        lines += [".. autosummary::", "", *(f"   {name}" for name in summarized), ""]
     if elsewhere:
         lines += ["Also here, and described with their packages:", ""]
         roles = {"Functions": "func", "Classes": "class", "Exceptions": "exc", "Constants and types": "data"}

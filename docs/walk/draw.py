@@ -85,9 +85,7 @@ def leaves() -> list[tuple[int, int, int, int]]:
 def point(time: int, origin: tuple[int, int] = ORIGIN) -> tuple[float, float]:
     """Give the point of the ray at T, in cells."""
     scale = DIRECTION[0] * DIRECTION[1]
-    x, y = (
-        float((start + Fraction(time * step, scale)) / UNIT) for start, step in zip(origin, DIRECTION, strict=True)
-    )
+    x, y = (float((start + Fraction(time * step, scale)) / UNIT) for start, step in zip(origin, DIRECTION, strict=True))
     return x, y
 
 
@@ -181,7 +179,9 @@ def draw_tree() -> Figure:
         if block in parents:
             above, child = parents[block]
             start = (spots[above][0] - 0.25 + 0.5 * (child & 1), spots[above][1] - 0.25 + 0.5 * (child >> 1) - 0.14)
-            arrow = FancyArrowPatch(start, (x, y + 0.52), arrowstyle="-|>", mutation_scale=10, color="#555555", zorder=3)
+            arrow = FancyArrowPatch(
+                start, (x, y + 0.52), arrowstyle="-|>", mutation_scale=10, color="#555555", zorder=3
+            )
             place.add_patch(arrow)
     for level in by_level:
         text = f"squares of\n{1 << level} x {1 << level} cells" if level else "squares of\n1 cell"
@@ -387,9 +387,7 @@ def follow_rounded(parts: int) -> list[tuple[Fraction, Fraction]]:
         steps = [((x, y)[axis] + (1 << level) - here[axis]) / DIRECTION[axis] for axis in AXES]
         axis = 0 if steps[0] <= steps[1] else 1
         moved = [here[other] + steps[axis] * DIRECTION[other] for other in AXES]
-        here = [
-            moved[other] if other == axis else Fraction(floor(moved[other] * parts), parts) for other in AXES
-        ]
+        here = [moved[other] if other == axis else Fraction(floor(moved[other] * parts), parts) for other in AXES]
         points.append((here[0], here[1]))
 
 
@@ -420,7 +418,9 @@ def draw_walk() -> Figure:
         if reading.word == quadtree.LEAF:
             square(place, *reading.corner, side, facecolor=VISITED, edgecolor="#777777", linewidth=0.8, zorder=1)
         x, y = reading.corner
-        place.text(x + side * 0.5, y + side * 0.17, str(number), fontsize=12 if side > 1 else 10, ha="center", va="center")
+        place.text(
+            x + side * 0.5, y + side * 0.17, str(number), fontsize=12 if side > 1 else 10, ha="center", va="center"
+        )
     ray(place, point(READINGS[-1].key[0]))
     for reading in READINGS[2:]:
         place.plot(*point(reading.key[0]), "o", color=LINE_COLOURS[reading.key[1]], markersize=5, zorder=7)
@@ -525,7 +525,13 @@ def main(folder: Path) -> None:
         "walk": draw_walk,
         "real": lambda: draw_real(path, picture),
     }
-    saving = {"dpi": 150, "facecolor": "white", "bbox_inches": "tight", "pad_inches": 0.1, "metadata": {"Software": None}}
+    saving = {
+        "dpi": 150,
+        "facecolor": "white",
+        "bbox_inches": "tight",
+        "pad_inches": 0.1,
+        "metadata": {"Software": None},
+    }
     with mpl.rc_context({"font.family": "DejaVu Sans", "figure.constrained_layout.use": True}):
         for name, draw in pictures.items():
             figure = draw()

@@ -110,7 +110,7 @@ def follow(words: list[int], depth: int, origin: tuple[int, int], direction: tup
     def crossing(axis: int, line: int) -> tuple[int, int]:
         return crossing_time(origin, direction, axis, line), axis
 
-    # Enter: lines with T <= 0 are behind the start. A ray from outside enters by the last of its near sides.
+    # Enter: lines with T <= 0 are behind the start. From outside, the last of the near sides counts.
     key = max((0, 1), *(crossing(axis, 0) for axis in AXES))
     if any(crossing(axis, side) <= key for axis in AXES):
         return []
@@ -143,7 +143,7 @@ def follow(words: list[int], depth: int, origin: tuple[int, int], direction: tup
         if stepped[axis] == side:
             return readings
 
-        # Go on from the smallest square that has both sides of that line: the highest bit that changed is its level.
+        # Go on in the smallest square with both sides of that line: the highest bit that changed.
         level = (corner[axis] ^ stepped[axis]).bit_length() - 1
         corner = (stepped[0] >> level << level, stepped[1] >> level << level)
         address = stack[level] + (corner[0] >> level & 1) + 2 * (corner[1] >> level & 1)
