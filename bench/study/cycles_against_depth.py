@@ -2,9 +2,9 @@
 Cycles against depth
 ====================
 
-The report expects a ray to cost O(log m + p), where m is the side of the world and p the number of steps (section 6.1.3).
-The ray tracer keeps a stack of the blocks on the way down. So a step starts at the smallest block that contains both
-neighbours, and not at the root.
+The report expects a ray to cost O(log m + p), where m is the side of the world and p the number of steps (section
+6.1.3). The ray tracer keeps a stack of the blocks on the way down. So a step starts at the smallest block that
+contains both neighbours, and not at the root.
 """
 
 import sys

@@ -2,9 +2,9 @@
 Cycles against lanes
 ====================
 
-Figure 38 of the report shows clock cycles per frame against ray processors, simulated: 1/n plus a constant, because their
-pixel buffer asked one processor after another. Our design has a clear bound: each lane reads one octree word per cycle,
-and one pixel per cycle leaves the shader.
+Figure 38 of the report shows clock cycles per frame against ray processors, simulated: 1/n plus a constant, because
+their pixel buffer asked one processor after another. Our design has a clear bound: each lane reads one octree word
+per cycle, and one pixel per cycle leaves the shader.
 """
 
 import sys

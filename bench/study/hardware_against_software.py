@@ -2,10 +2,11 @@
 Hardware against software
 =========================
 
-Figures 46 and 47 of the report compare the picture of the board with the picture of its C++ program: they differ in shade and
-along edges. Here are the pictures of our simulated hardware, of our exact model, and of the report's algorithm. That
-algorithm steps by whole voxels towards the border of an octant, so it leaves the ray by a small distance. It takes the
-normal of the first axis on whose border it stands. On a voxel of side one, this is always x (section 2.4.1 of the report).
+Figures 46 and 47 of the report compare the picture of the board with the picture of its C++ program: they differ in
+shade and along edges. Here are the pictures of our simulated hardware, of our exact model, and of the report's
+algorithm. That algorithm steps by whole voxels towards the border of an octant, so it leaves the ray by a small
+distance. It takes the normal of the first axis on whose border it stands. On a voxel of side one, this is always x
+(section 2.4.1 of the report).
 """
 
 import sys
@@ -52,4 +53,5 @@ plt.tight_layout()
 plt.show()
 
 # %%
-# The original hardware was simulated from its published sources. On its own scenes, 0.5 to 6.5 % of its pixels are wrong.
+# The original hardware was simulated from its published sources. On its own scenes, 0.5 to 6.5 % of its pixels are
+# wrong.

@@ -2,8 +2,8 @@
 Memory with and without sharing
 ===============================
 
-The report stores its octree in a ROM, with one block for each inner node (section 6.5). voxrt stores equal blocks once.
-The hardware needs no change for that, because it follows pointers wherever they lead.
+The report stores its octree in a ROM, with one block for each inner node (section 6.5). voxrt stores equal blocks
+once. The hardware needs no change for that, because it follows pointers wherever they lead.
 """
 
 import sys

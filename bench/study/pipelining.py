@@ -3,8 +3,9 @@ What pipelining gains
 =====================
 
 The report expects three stages (generate, step, shade) to take (N + 2) t instead of 3 N t, so at most three times the
-speed (section 6.3). Our lane is a ring of pipeline stages, with one ray in each. A ray that is alone reads one word per
-turn of the ring. A frame of one pixel shows the cost of a ray alone. A whole frame shows the cost of a ray among others.
+speed (section 6.3). Our lane is a ring of pipeline stages, with one ray in each. A ray that is alone reads one word
+per turn of the ring. A frame of one pixel shows the cost of a ray alone. A whole frame shows the cost of a ray among
+others.
 """
 
 import sys

@@ -2,9 +2,10 @@
 Resources
 =========
 
-Section 6.4 of the report: one of its cores takes 3,473 LUT and 42 DSP slices of an xc7z020. It takes no block RAM, because the
-octree is stored in logic. Four cores did not fit beside the video part. Our numbers are estimates of yosys, before place and
-route (``python rtl/area.py``). One more lane costs little, because ray generator and shader serve all lanes.
+Section 6.4 of the report: one of its cores takes 3,473 LUT and 42 DSP slices of an xc7z020. It takes no block RAM,
+because the octree is stored in logic. Four cores did not fit beside the video part. Our numbers are estimates of
+yosys, before place and route (``python rtl/area.py``). One more lane costs little, because ray generator and shader
+serve all lanes.
 """
 
 import sys

@@ -2,13 +2,14 @@
 Time against pixels
 ===================
 
-Figures 44, 45 and 48 of the report: the time of a frame grows in proportion to its pixels. The report measured 0.72 µs per
-pixel on the board, 84 µs in C++ and 768 µs in Python on a 1.4 GHz laptop, and concludes that the board is 116 times
-as fast as the C++ program (section 6.1.1). That program keeps coordinates in vectors on the heap. The same algorithm on plain
-arrays is a fairer opponent. Our exact model, which gives every pixel exactly, is the strongest one.
+Figures 44, 45 and 48 of the report: the time of a frame grows in proportion to its pixels. The report measured 0.72
+µs per pixel on the board, 84 µs in C++ and 768 µs in Python on a 1.4 GHz laptop, and concludes that the board is 116
+times as fast as the C++ program (section 6.1.1). That program keeps coordinates in vectors on the heap. The same
+algorithm on plain arrays is a fairer opponent. Our exact model, which gives every pixel exactly, is the strongest
+one.
 
-The simulation counts clock cycles of our hardware. It does not know how long a cycle lasts on an FPGA, so cycles have a plot
-of their own.
+The simulation counts clock cycles of our hardware. It does not know how long a cycle lasts on an FPGA, so cycles have
+a plot of their own.
 """
 
 import sys

@@ -16,117 +16,43 @@ from typing import TYPE_CHECKING
 import matplotlib as mpl
 import numpy as np
 import quadtree
+import real_ray
+from flat_world import (
+    DEPTH,
+    DIRECTION,
+    HIGHLIGHT,
+    LINE_COLOURS,
+    MATERIALS,
+    ORIGIN,
+    RAY,
+    READINGS,
+    ROUNDED_ORIGIN,
+    SIDE,
+    VISITED,
+    WIDTH,
+    WORDS,
+    WORLD,
+    X_COLOUR,
+    Y_COLOUR,
+    framed,
+    leaves,
+    point,
+    ray,
+    said,
+    square,
+    world,
+)
 from matplotlib import pyplot as plt
 from matplotlib.patches import FancyArrowPatch, Rectangle
 from quadtree import AXES, UNIT, Reading, crossing_time, is_leaf
-
-import voxrt
-from voxrt import sim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-
-WORLD = """
-................
-................
-................
-................
-................
-................
-............2222
-............2222
-....11......2222
-....11......2222
-....11..........
-................
-................
-................
-........33333333
-........33333333
-""".split()
-DEPTH = 4
-SIDE = 1 << DEPTH
-WORDS = quadtree.build(WORLD)
-ORIGIN, DIRECTION = (24, 36), (7, 4)
-ROUNDED_ORIGIN = (16, 36)  # the same direction from here shows what rounding does
-READINGS = quadtree.follow(WORDS, DEPTH, ORIGIN, DIRECTION)
-
-MATERIALS = {1: "#d9744c", 2: "#8c9bab", 3: "#7fae5a"}
-VISITED = "#d6e6f5"
-X_COLOUR, Y_COLOUR = "#b3262a", "#1f5fa8"  # lines x = ..., lines y = ...
-LINE_COLOURS = (X_COLOUR, Y_COLOUR)
-RAY = "#1a1a1a"
-HIGHLIGHT = "#f5b700"
-WIDTH = 7.6  # inches
-
-SCENE, SCENE_DEPTH = "courtyard.glb", 5
-PICTURE_SIZE, PIXEL = (320, 240), (170, 90)
-
-
-def leaves() -> list[tuple[int, int, int, int]]:
-    """Give the quadtree's leaves: x, y, level, material."""
-    found = []
-
-    def walk(word: int, x: int, y: int, level: int) -> None:
-        if is_leaf(word):
-            found.append((x, y, level, word & 0xFF))
-            return
-        half = 1 << level - 1
-        for child in range(4):
-            walk(WORDS[word + child], x + half * (child & 1), y + half * (child >> 1), level - 1)
-
-    walk(WORDS[0], 0, 0, DEPTH)
-    return found
-
-
-def point(time: int, origin: tuple[int, int] = ORIGIN) -> tuple[float, float]:
-    """Give the point of the ray at T, in cells."""
-    scale = DIRECTION[0] * DIRECTION[1]
-    x, y = (float((start + Fraction(time * step, scale)) / UNIT) for start, step in zip(origin, DIRECTION, strict=True))
-    return x, y
-
-
-def square(place: Axes, x: float, y: float, side: float, **style: object) -> None:
-    """Draw a square."""
-    place.add_patch(Rectangle((x, y), side, side, **style))
-
-
-def world(place: Axes, low: tuple[float, float] = (0, 0), high: tuple[float, float] = (SIDE, SIDE)) -> None:
-    """Draw the leaves in a window of the world."""
-    for x, y, level, material in leaves():
-        square(place, x, y, 1 << level, facecolor=MATERIALS.get(material, "white"), edgecolor="#999999", linewidth=0.8)
-    margin = 0.02 * (high[0] - low[0])
-    place.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
-    place.tick_params(labelsize=9, length=0)
-    for side in place.spines.values():
-        side.set_visible(False)
-
-
-def ray(place: Axes, end: tuple[float, float], start: tuple[float, float] | None = None, **style: object) -> None:
-    """Draw the ray as an arrow, its start as a dot."""
-    begin = start or point(0)
-    if style.pop("dot", True):
-        place.plot(*begin, "o", color=RAY, markersize=6, zorder=5)
-    arrow = {"color": RAY, "linewidth": 1.8, "arrowstyle": "-|>", "mutation_scale": 14, "shrinkA": 0, "shrinkB": 0}
-    place.add_patch(FancyArrowPatch(begin, end, zorder=4, **(arrow | style)))
-
-
-def framed(place: Axes, x: float, y: float, side: float, colour: str = HIGHLIGHT, width: float = 3) -> None:
-    """Draw a frame around a square."""
-    square(place, x, y, side, facecolor="none", edgecolor=colour, linewidth=width, zorder=6)
-
-
-def said(colour: str) -> dict[str, object]:
-    """Give the style of a text that stands on a drawing."""
-    box = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 1.5}
-    return {"fontsize": 11, "color": colour, "bbox": box, "zorder": 8}
-
 
 def draw_world() -> Figure:
-    """Cells on the left, leaves on the right."""
+    """Draw cells on the left, leaves on the right."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 4.1))
     world(right)
     solid = sum(1 for row in WORLD for cell in row if cell.isdigit())
@@ -145,8 +71,8 @@ def draw_world() -> Figure:
     return figure
 
 
-def draw_tree() -> Figure:
-    """Blocks of four words as 2 x 2 squares, with their addresses."""
+def blocks() -> tuple[dict[int, list[int]], dict[int, tuple[int, int]]]:
+    """Give the blocks by the level of their squares, and the word that points to each: its block and its quarter."""
     by_level: dict[int, list[int]] = {}
     parents: dict[int, tuple[int, int]] = {}
 
@@ -159,12 +85,18 @@ def draw_tree() -> Figure:
                 walk(word, level - 1)
 
     walk(WORDS[0], DEPTH - 1)
+    return by_level, parents
+
+
+def draw_tree() -> Figure:
+    """Draw blocks of four words as 2 x 2 squares, with their addresses."""
+    by_level, parents = blocks()
     figure, place = plt.subplots(figsize=(WIDTH, 5.4))
     spots: dict[int, tuple[float, float]] = {}
     read = {reading.address for reading in READINGS}
-    for level, blocks in by_level.items():
-        for number, block in enumerate(blocks):
-            spots[block] = (10 * (number + 0.5) / len(blocks), 1.75 * level)
+    for level, row in by_level.items():
+        for number, block in enumerate(row):
+            spots[block] = (10 * (number + 0.5) / len(row), 1.75 * level)
     for block, (x, y) in spots.items():
         for child in range(4):
             word = WORDS[block + child]
@@ -193,7 +125,7 @@ def draw_tree() -> Figure:
 
 
 def draw_times() -> Figure:
-    """Each grid line that the ray crosses has a whole number T."""
+    """Draw the lines that the ray crosses, each with its whole number T."""
     figure, (place, order) = plt.subplots(2, 1, figsize=(WIDTH, 5.6), height_ratios=(4, 1))
     low, high = (1, 2), (10, 7.5)
     place.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
@@ -245,7 +177,7 @@ def middle_lines(place: Axes, corner: tuple[int, int], level: int, key: tuple[in
 
 
 def draw_descent() -> Figure:
-    """From word 8 down to single cells: which quarter has the point where the ray is?"""
+    """Draw three pointers, and in which quarter of each square the ray is."""
     figure, places = plt.subplots(1, 3, figsize=(WIDTH, 3.6))
     windows = (((0, 0), (16, 16)), ((0, 0), (8, 8)), ((6, 0), (16, 10)))
     start = next(number for number, reading in enumerate(READINGS) if reading.address == 1)
@@ -257,7 +189,7 @@ def draw_descent() -> Figure:
             corner, level, key = (0, 0), DEPTH, (0, 1)
         else:
             corner, level, key = reading.corner, reading.level, reading.key
-        framed(place, *corner, 1 << level, "#555555", 2)
+        framed(place, *corner, 1 << level, colour="#555555", width=2)
         place.set_xlabel(middle_lines(place, corner, level, key), fontsize=9.5)
         half = 1 << level - 1
         upper = [crossing_time(ORIGIN, DIRECTION, axis, corner[axis] + half) <= key[0] for axis in AXES]
@@ -273,7 +205,7 @@ def draw_descent() -> Figure:
 
 
 def draw_leaving() -> Figure:
-    """An empty leaf has two lines ahead of the ray: the smaller T is the way out."""
+    """Draw an empty leaf with the two lines ahead of the ray."""
     figure, place = plt.subplots(figsize=(WIDTH, 4.0))
     reading = READINGS[2]
     (x, y), size = reading.corner, 1 << reading.level
@@ -298,7 +230,7 @@ def draw_leaving() -> Figure:
 
 
 def draw_stack() -> Figure:
-    """Two ways out of a leaf: within the block, and up to the world's own block."""
+    """Draw two ways out of a leaf: within its block, and up to the first block."""
     figure, places = plt.subplots(2, 2, figsize=(WIDTH, 7.0), width_ratios=(1.05, 1))
     steps = [(READINGS[5], READINGS[6]), (READINGS[7], READINGS[8])]
     windows = (((3.6, 3.6), (8.4, 8.4)), ((0, 0), (16, 16)))
@@ -307,8 +239,14 @@ def draw_stack() -> Figure:
         size = 1 << before.level
         square(place, *before.corner, size, facecolor=VISITED, edgecolor="#999999", zorder=1)
         common = 1 << after.level + 1
-        framed(place, *(corner >> after.level + 1 << after.level + 1 for corner in before.corner), common, "#555555", 2)
-        framed(place, *before.corner, size, Y_COLOUR, 2.4)
+        framed(
+            place,
+            *(corner >> after.level + 1 << after.level + 1 for corner in before.corner),
+            common,
+            colour="#555555",
+            width=2,
+        )
+        framed(place, *before.corner, size, colour=Y_COLOUR, width=2.4)
         framed(place, *after.corner, 1 << after.level)
         ray(place, point(after.key[0] + (60 if after.level == 0 else 190)))
         place.plot(*point(after.key[0]), "o", color=X_COLOUR, markersize=8, zorder=7)
@@ -346,7 +284,7 @@ def _tell_stack(told: Axes, before: Reading, after: Reading) -> None:
 
 
 def draw_tie() -> Figure:
-    """A ray through a corner: x goes first, whatever the tree looks like."""
+    """Draw a ray through a corner: x goes first, in either tree."""
     figure, places = plt.subplots(1, 2, figsize=(WIDTH, 3.9))
     for place, whole in zip(places, (True, False), strict=True):
         squares = [(0, 0, 2), (2, 0, 2), (0, 2, 2), (2, 2, 2)]
@@ -375,7 +313,7 @@ def draw_tie() -> Figure:
 
 
 def follow_rounded(parts: int) -> list[tuple[Fraction, Fraction]]:
-    """Walk from leaf to leaf by positions that are rounded down to 1 / parts of a cell: how not to do it."""
+    """Walk from leaf to leaf by positions that are rounded down to 1 / parts of a cell, which goes wrong."""
     here = [Fraction(start, UNIT) for start in ROUNDED_ORIGIN]
     points = [(here[0], here[1])]
     while True:
@@ -392,7 +330,7 @@ def follow_rounded(parts: int) -> list[tuple[Fraction, Fraction]]:
 
 
 def draw_rounding() -> Figure:
-    """The same ray exactly, and by positions rounded to quarters of a cell."""
+    """Draw a ray twice: exactly, and by positions rounded to quarters of a cell."""
     figure, place = plt.subplots(figsize=(WIDTH, 4.9))
     world(place, (0, 1), (14, 10))
     exact = quadtree.follow(WORDS, DEPTH, ROUNDED_ORIGIN, DIRECTION)
@@ -408,7 +346,7 @@ def draw_rounding() -> Figure:
 
 
 def draw_walk() -> Figure:
-    """The whole walk: every word in order, in its square."""
+    """Draw all leaves that the ray reads, with the numbers of their steps."""
     figure, place = plt.subplots(figsize=(WIDTH, 6.0))
     world(place, (0, 0), (16, 11))
     for number, reading in enumerate(READINGS, 1):
@@ -428,58 +366,6 @@ def draw_walk() -> Figure:
     return figure
 
 
-def real_ray() -> tuple[voxrt.Rom, sim.RayPath, np.ndarray]:
-    """Trace a pixel of an example scene."""
-    rom = voxrt.build(EXAMPLES / SCENE, depth=SCENE_DEPTH).rom
-    camera = voxrt.aim_camera(rom, PICTURE_SIZE)
-    path = sim.follow_pixel(rom.octree, camera, PICTURE_SIZE, PIXEL)
-    return rom, path, voxrt.render(rom, camera, size=PICTURE_SIZE, engine="model").colour
-
-
-def box_edges(low: tuple[int, int, int], high: tuple[int, int, int]) -> list[np.ndarray]:
-    """Give the twelve edges of a box, in matplotlib's axes: x, z, y."""
-    edges = []
-    for axis in range(3):
-        for corner in range(4):
-            first, second = [0, 0, 0], [0, 0, 0]
-            others = [other for other in range(3) if other != axis]
-            for bit, other in enumerate(others):
-                first[other] = second[other] = (low, high)[corner >> bit & 1][other]
-            first[axis], second[axis] = low[axis], high[axis]
-            edges.append(np.array([[first[0], first[2], first[1]], [second[0], second[2], second[1]]]))
-    return edges
-
-
-def draw_real(path: sim.RayPath, picture: np.ndarray) -> Figure:
-    """The pixel, and the leaves that its ray goes through."""
-    figure = plt.figure(figsize=(WIDTH, 4.4))
-    left = figure.add_subplot(1, 2, 1)
-    column, row = PIXEL
-    left.imshow(picture)
-    left.add_patch(Rectangle((column - 8, row - 8), 16, 16, facecolor="none", edgecolor="white", linewidth=2.4))
-    left.axis("off")
-    left.set_title(f"pixel {column},{row}", fontsize=11)
-    place = figure.add_subplot(1, 2, 2, projection="3d")
-    found = [reading for reading in path.readings if reading.is_leaf]
-    for reading in found:
-        solid = reading.word & 255
-        style = {"color": "#d05030" if solid else "#4f86c0", "linewidth": 2.2 if solid else 0.9}
-        for edge in box_edges(reading.corner, reading.end):
-            place.plot(*edge.T, **style)
-    points = np.array([path.point(reading.time) for reading in found])
-    place.plot(points[:, 0], points[:, 2], points[:, 1], "o-", color=RAY, markersize=4, linewidth=1.6)
-    place.set_xlabel("x", fontsize=11)
-    place.set_ylabel("z", fontsize=11)
-    place.set_zlabel("y", fontsize=11)
-    place.tick_params(labelsize=9)
-    for axis in (place.xaxis, place.yaxis, place.zaxis):
-        axis.set_major_locator(mpl.ticker.MultipleLocator(4))
-    place.set_aspect("equal")
-    place.view_init(elev=18, azim=-68)
-    place.set_title("empty leaves blue, the leaf hit red", fontsize=11)
-    return figure
-
-
 def flat_table() -> str:
     """Give the words of the two-dimensional ray as a table."""
     lines = ["| step | word | is | square | entered at T | level |", "|--:|--:|---|---|---|--:|"]
@@ -495,24 +381,11 @@ def flat_table() -> str:
     return "\n".join(lines) + "\n"
 
 
-def real_table(path: sim.RayPath, names: list[str]) -> str:
-    """Give the words of the three-dimensional ray as a table."""
-    lines = ["| step | word | is | octant's corner | side | entered at T |", "|--:|--:|---|---|--:|--:|"]
-    for number, reading in enumerate(path.readings, 1):
-        what = f"pointer to {reading.word:#x}"
-        if reading.is_leaf:
-            what = f"leaf, {names[reading.word & 0xFF]}" if reading.word & 0xFF else "leaf, empty"
-        corner = ", ".join(map(str, reading.corner))
-        entered = f"{reading.time:,} {'xyz'[reading.axis]}" if reading.axis < 3 else "start"
-        lines.append(f"| {number} | {reading.address:#x} | {what} | {corner} | {1 << reading.level} | {entered} |")
-    return "\n".join(lines) + "\n"
-
-
 def main(folder: Path) -> None:
     """Draw all pictures and write both tables."""
     mpl.use("Agg")
     folder.mkdir(parents=True, exist_ok=True)
-    rom, path, picture = real_ray()
+    rom, path, picture = real_ray.trace()
     pictures = {
         "world": draw_world,
         "tree": draw_tree,
@@ -523,7 +396,7 @@ def main(folder: Path) -> None:
         "tie": draw_tie,
         "rounding": draw_rounding,
         "walk": draw_walk,
-        "real": lambda: draw_real(path, picture),
+        "real": lambda: real_ray.draw(path, picture),
     }
     saving = {
         "dpi": 150,
@@ -538,8 +411,7 @@ def main(folder: Path) -> None:
             figure.savefig(folder / f"{name}.png", **saving)
             plt.close(figure)
     (folder / "walk.md").write_text(flat_table(), encoding="utf-8")
-    names = [material.name for material in rom.materials]
-    (folder / "real.md").write_text(real_table(path, names), encoding="utf-8")
+    (folder / "real.md").write_text(real_ray.table(rom, path), encoding="utf-8")
 
 
 if __name__ == "__main__":

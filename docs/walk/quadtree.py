@@ -63,7 +63,8 @@ def build(rows: list[str]) -> list[int]:
     Returns
     -------
     list of int
-        Word 0 is the root. Blocks of four words follow, breadth first: lower left, lower right, upper left, upper right.
+        Word 0 is the root. Blocks of four words follow, breadth first: lower left, lower right, upper left, upper
+        right.
     """
     cells = [[int(cell) if cell.isdigit() else EMPTY for cell in row] for row in reversed(rows)]
     words = [0]

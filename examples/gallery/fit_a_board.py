@@ -2,8 +2,8 @@
 Fitting a board
 ===============
 
-A PYNQ-Z1 holds 32,769 words of octree memory. The scene below needs more. voxrt makes it fit: it simplifies the parts of the
-surface that pictures show least. It never opens a hole in a wall.
+A PYNQ-Z1 holds 32,769 words of octree memory. The scene below needs more. voxrt makes it fit: it simplifies the parts
+of the surface that pictures show least. It never opens a hole in a wall.
 """
 
 import sys
@@ -23,7 +23,8 @@ print(f"{fit.fit.words_before:,} words before, {len(fitted.rom.octree.words):,} 
 print(f"{fit.fit.percent_changed:.1f} % of the surface changed; picture: {fit.psnr:.1f} dB, SSIM {fit.ssim:.4f}")
 
 # %%
-# A coarser world is the simple way to a smaller memory. With the same number of words, it changes more of the surface.
+# A coarser world is the simple way to a smaller memory. With the same number of words, it changes more of the
+# surface.
 coarse = octree.coarsen(whole.rom.octree, 1)
 equal = octree.fit(whole.rom.octree, len(coarse.words))
 changed = octree.surface_change(whole.rom.octree, coarse).percent

@@ -3,8 +3,8 @@ The path of a ray
 =================
 
 The words that the hardware reads for one pixel, in order. Pointers lead down to a leaf. The ray leaves an empty leaf
-by the plane that it crosses first, and goes down again from the smallest block that contains both sides of that plane.
-:doc:`/how-a-ray-walks` explains each step.
+by the plane that it crosses first, and goes down again from the smallest block that contains both sides of that
+plane. :doc:`/how-a-ray-walks` explains each step.
 """
 
 import sys

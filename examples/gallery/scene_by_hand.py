@@ -2,8 +2,8 @@
 A scene written by hand
 =======================
 
-Boxes of several materials, a house and a dog, without a 3D program. ``examples/playground.toml`` describes the scene, and
-``examples/playground.py`` makes the same scene in Python.
+Boxes of several materials, a house and a dog, without a 3D program. ``examples/playground.toml`` describes the scene,
+and ``examples/playground.py`` makes the same scene in Python.
 """
 
 import sys

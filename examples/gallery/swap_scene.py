@@ -2,8 +2,8 @@
 Another scene on a running board
 ================================
 
-The simulated core is driven in the same way as a board: by its registers, its memory port and its video stream. A scene is
-written between two frames and read back for a check. ``voxrt upload`` does the same over a network.
+The simulated core is driven in the same way as a board: by its registers, its memory port and its video stream. A
+scene is written between two frames and read back for a check. ``voxrt upload`` does the same over a network.
 """
 
 import sys

@@ -2,8 +2,8 @@
 A textured glTF
 ===============
 
-A globe with an image around it, written as glTF by trimesh. Each voxel of the surface takes the colour that the texture has
-there. All these colours are then reduced to a palette of at most 32 (``colours=``).
+A globe with an image around it, written as glTF by trimesh. Each voxel of the surface takes the colour that the
+texture has there. All these colours are then reduced to a palette of at most 32 (``colours=``).
 """
 
 import tempfile

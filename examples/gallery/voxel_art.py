@@ -2,8 +2,8 @@
 MagicaVoxel art
 ===============
 
-A ``.vox`` file is already made of voxels. It becomes an octree memory without a change, in the artist's colours. A NumPy
-array of material numbers becomes one in the same way.
+A ``.vox`` file is already made of voxels. It becomes an octree memory without a change, in the artist's colours. A
+NumPy array of material numbers becomes one in the same way.
 """
 
 import sys
