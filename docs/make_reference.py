@@ -1,7 +1,7 @@
 """Write the pages of the Python reference, docs/reference/, one per package.
 
-``docs/conf.py`` runs it when the manual is built. A page lists what its package exports: the names in its ``__all__``. A
-package or module without ``__all__`` exports the public classes and functions that its modules define. No name is
+``docs/conf.py`` runs it when the manual is built. A page lists what its package exports: the names in its ``__all__``.
+A package or module without ``__all__`` exports the public classes and functions that its modules define. No name is
 listed by hand, so that the reference cannot miss one.
 """
 
