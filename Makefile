@@ -47,32 +47,48 @@ hardware: $(VENV)/.hardware
 docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
-# Without Python, so that the sanitizers see our own code alone.
+# Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-sanitize: $(foreach program,voxelize octree ask_octree,$(SANITIZERS:%=build/sanitize/$(program)-%))
+SANITIZED := voxelize octree mesh_to_ray query_octree
+sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
 comma := ,
-sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*)
+sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -I$(CURDIR)/build/sanitize/include
+HEADERS := $(wildcard voxelize/src/*.h octree/src/*.h sim/src/model/*.h)
+# $(call archive,FOLDER): the library of a folder's sources.
+define archive
+@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
+cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard $(1)/src/*.cpp)))
+$(AR) rcs $@ $(@:.a=)/*.o
+endef
 
-build/sanitize/voxelize-%: tests/voxelize/native/exercise.cpp $(wildcard voxelize/src/*)
-	@mkdir -p $(@D)
-	$(sanitized) -Ivoxelize/src -o $@ $< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
+# Headers are included as <voxrt/FOLDER/...>, as from CMake.
+build/sanitize/include/voxrt:
+	@mkdir -p $@
+	@ln -sfn $(CURDIR)/voxelize/src $@/voxelize
+	@ln -sfn $(CURDIR)/octree/src $@/octree
+	@ln -sfn $(CURDIR)/sim/src/model $@/sim
 
-build/sanitize/octree-%: tests/octree/native/exercise.cpp build/sanitize/liboctree-%.a
+build/sanitize/%/libvoxelize.a: $(wildcard voxelize/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+	$(call archive,voxelize)
+
+build/sanitize/%/liboctree.a: $(wildcard octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+	$(call archive,octree)
+
+build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
+	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+
+build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -Ioctree/src -o $@ $^ -pthread
 
-build/sanitize/ask_octree-%: examples/cpp/ask_octree.cpp sim/src/model/memory.cpp build/sanitize/liboctree-%.a
-	@mkdir -p build/sanitize/include/voxrt
-	@ln -sfn $(CURDIR)/octree/src build/sanitize/include/voxrt/octree
-	@ln -sfn $(CURDIR)/sim/src/model build/sanitize/include/voxrt/sim
-	$(sanitized) -Ibuild/sanitize/include -o $@ $^ -pthread
+build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
 
-build/sanitize/liboctree-%.a: $(wildcard octree/src/*)
-	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-	cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard octree/src/*.cpp)))
-	$(AR) rcs $@ $(@:.a=)/*.o
-.SECONDARY: $(SANITIZERS:%=build/sanitize/liboctree-%.a)
+build/sanitize/%/query_octree: examples/cpp/query_octree.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
+
+.SECONDARY: $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
 	rm -rf $(VENV) build demo

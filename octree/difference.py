@@ -72,8 +72,8 @@ def diff(first: Octree, second: Octree) -> Difference:
         Where the depths differ.
     """
     _refuse_other_depth(first, second)
-    appeared, vanished, recoloured, corners = _native.diff(first.words, second.words, first.depth)
-    return Difference(appeared, vanished, recoloured, as_bounds(corners))
+    found = _native.diff(first.words, second.words, first.depth)
+    return Difference(found.appeared, found.vanished, found.recoloured, as_bounds(found.bounds))
 
 
 def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
@@ -87,11 +87,16 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
         Where the depths differ.
     """
     _refuse_other_depth(first, second)
-    bounds, counts = _native.differing_regions(first.words, second.words, first.depth)
+    found = _native.differing_regions(first.words, second.words, first.depth)
     return tuple(
         Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
-        for (x, y, z, end_x, end_y, end_z), (appeared, vanished, recoloured) in zip(
-            bounds.tolist(), counts.tolist(), strict=True
+        for (x, y, z), (end_x, end_y, end_z), appeared, vanished, recoloured in zip(
+            found.low.tolist(),
+            found.high.tolist(),
+            found.appeared.tolist(),
+            found.vanished.tolist(),
+            found.recoloured.tolist(),
+            strict=True,
         )
     )
 

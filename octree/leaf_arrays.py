@@ -67,8 +67,8 @@ def leaves(
         raise ValueError(f"a chunk holds at least 1 leaf, not {chunk}")
     end = (octree.size,) * 3 if high is None else high
     walk = _native.LeafWalk(octree.words, octree.depth, low, end, solid_only)
-    while len((part := Leaves(*walk.next(chunk))).levels):
-        yield part
+    while len((part := walk.next(chunk)).levels):
+        yield Leaves(corners=part.corners, levels=part.levels, materials=part.materials)
 
 
 def solid_leaves(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> Leaves:

@@ -65,12 +65,9 @@ def solid_bounds(octree: Octree) -> tuple[Corner, Corner] | None:
     return as_bounds(_native.solid_bounds(octree.words, octree.depth))
 
 
-def as_bounds(corners: tuple[list[int], list[int]] | None) -> tuple[Corner, Corner] | None:
-    """Corners as the native code hands them over, as values."""
-    if corners is None:
-        return None
-    (x, y, z), (end_x, end_y, end_z) = corners
-    return (x, y, z), (end_x, end_y, end_z)
+def as_bounds(bounds: _native.Bounds | None) -> tuple[Corner, Corner] | None:
+    """Bounds of the native code as a plain pair."""
+    return None if bounds is None else (bounds.low, bounds.high)
 
 
 def to_dense(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> NDArray[np.uint8]:

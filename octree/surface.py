@@ -42,4 +42,5 @@ def surface_change(first: Octree, second: Octree) -> SurfaceChange:
     """
     if first.depth != second.depth:
         raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")
-    return SurfaceChange(*_native.surface_change(first.words, second.words, first.depth))
+    found = _native.surface_change(first.words, second.words, first.depth)
+    return SurfaceChange(surface=found.surface, changed=found.changed)

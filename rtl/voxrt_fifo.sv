@@ -32,4 +32,13 @@ module voxrt_fifo #(
       read_q  <= '0;
     end
   end
+
+`ifndef SYNTHESIS
+  logic [IndexBits:0] count;
+  assign count = write_q - read_q;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) assert (count <= (IndexBits + 1)'(Depth)) else $error("more words than the FIFO holds");
+  end
+`endif
 endmodule

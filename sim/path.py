@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import SimulatorError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree
-    from voxrt.sim.camera import Camera, Triple
+    from voxrt.octree.camera import Camera, Triple
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,15 +152,15 @@ def follow_ray(octree: Octree, origin: Triple, direction: Triple) -> RayPath:
     if max(map(abs, direction)) >= DIRECTION_LIMIT:
         raise SimulatorError(f"the ray's direction {direction} is not below 2**20; scale it down")
     followed = _model.Memory(octree.words, octree.depth).follow(_int32(origin), _int32(direction))
-    material = followed["material"]
+    material = followed.material
     return RayPath(
         origin=origin,
         direction=direction,
         root=int(octree.words[0]),
-        readings=tuple(Reading(*reading) for reading in followed["readings"]),
+        readings=tuple(Reading(**reading._asdict()) for reading in followed.readings),
         material=material,
-        face=followed["face"],
-        cell=followed["cell"] if material else None,
+        face=followed.face,
+        cell=followed.cell if material else None,
     )
 
 

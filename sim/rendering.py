@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
+from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
-from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
-    from voxrt.sim.camera import Camera
+    from voxrt.octree.camera import Camera, Lighting
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
@@ -55,7 +54,7 @@ def render(
     size: tuple[int, int],
     *,
     engine: Engine,
-    shading: Shading = PLAIN,
+    lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
 ) -> Frame:
@@ -72,8 +71,8 @@ def render(
     engine
         ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact C++ model. Both give the
         same pixels.
-    shading
-        Light, mirrors and flat colour.
+    lighting
+        Point light, mirrors and flat colours.
     threads
         Threads of the model, 0 for one a core. The frame does not depend on it.
     config
@@ -91,10 +90,10 @@ def render(
     if not (1 <= width <= _FRAME_LIMIT and 1 <= height <= _FRAME_LIMIT):
         raise SimulatorError(f"a frame of {width}x{height} pixels is not 1x1 … {_FRAME_LIMIT}x{_FRAME_LIMIT}")
     _check_directions(camera, size)
-    _check_shading(shading)
+    _check_lighting(lighting)
     if engine == "model":
-        return _render_model(rom, camera, size, shading, threads)
-    return _render_rtl(rom, camera, size, shading, config)
+        return _render_model(rom, camera, size, lighting, threads)
+    return _render_rtl(rom, camera, size, lighting, config)
 
 
 def check(
@@ -102,18 +101,18 @@ def check(
     camera: Camera,
     size: tuple[int, int],
     *,
-    shading: Shading = PLAIN,
+    lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
 ) -> EngineCheck:
     """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
-    rtl = render(rom, camera, size, engine="rtl", shading=shading, config=config)
-    model = render(rom, camera, size, engine="model", shading=shading, threads=threads)
+    rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config)
+    model = render(rom, camera, size, engine="model", lighting=lighting, threads=threads)
     wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
     return EngineCheck(rtl=rtl, model=model, wrong=wrong)
 
 
-def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, threads: int) -> Frame:
+def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, threads: int) -> Frame:
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
         palette_of(rom),
@@ -121,12 +120,12 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
         size[0],
         size[1],
         threads,
-        **_shading(rom, shading),
+        **_shading_of(rom, lighting),
     )
     return Frame(
-        colour=pixels["colour"],
-        material=pixels["material"],
-        face=pixels["face"],
+        colour=pixels.colour,
+        material=pixels.material,
+        face=pixels.face,
         cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 
@@ -151,11 +150,11 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
     return _rtl
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, config: str) -> Frame:
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
-    if absent := shading.features - shader_features(config):
+    if absent := lighting.features - shader_features(config):
         raise SimulatorError(
             f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
             "take configuration 'lit' or render with --engine model"
@@ -169,8 +168,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
             f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
         ),
         (
-            shading.light is not None
-            and not all(-tracer.light_limit <= value < tracer.light_limit for value in shading.light.position),
+            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
             f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
         ),
         (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
@@ -181,7 +179,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
             )
     tracer.load(rom.octree.words)
     pixels = tracer.render(
-        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading(rom, shading)
+        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading_of(rom, lighting)
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(
@@ -198,15 +196,14 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
     )
 
 
-def _shading(rom: Rom, shading: Shading) -> dict[str, Any]:
-    light = shading.light
+def _shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
     mirrors = np.zeros(256, dtype=np.uint8)
     mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     return {
-        "flat": shading.flat,
-        "light": None if light is None else np.array(light.position, dtype=np.int32),
-        "ambient": 0 if light is None else light.ambient,
-        "bounces": shading.bounces,
+        "flat": lighting.flat,
+        "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
+        "ambient": lighting.ambient if lighting.on else 0,
+        "bounces": lighting.bounces,
         "mirrors": mirrors,
     }
 
@@ -230,15 +227,15 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
     return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
 
 
-def _check_shading(shading: Shading) -> None:
-    if not 0 <= shading.bounces <= BOUNCE_LIMIT:
-        raise SimulatorError(f"{shading.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
-    if shading.light is None:
+def _check_lighting(lighting: Lighting) -> None:
+    if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
+        raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
+    if not lighting.on:
         return
-    if not 0 <= shading.light.ambient <= 255:
-        raise SimulatorError(f"an ambient brightness of {shading.light.ambient} is not 0 … 255")
-    if max(abs(value) for value in shading.light.position) >= 1 << 31:
-        raise SimulatorError(f"the light at {shading.light.position} is not within signed 32 bits of 1/16 voxel")
+    if not 0 <= lighting.ambient <= 255:
+        raise SimulatorError(f"an ambient brightness of {lighting.ambient} is not 0 … 255")
+    if max(abs(value) for value in lighting.position) >= 1 << 31:
+        raise SimulatorError(f"the light at {lighting.position} is not within signed 32 bits of 1/16 voxel")
 
 
 def palette_of(rom: Rom) -> NDArray[np.uint8]:

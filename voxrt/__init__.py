@@ -18,18 +18,17 @@ from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from voxrt.export import WRITABLE_SUFFIXES, Lighting, convert, read_any, read_rom, rom_info
+    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError
     from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
+    from voxrt.plain_verilog import ToolError
     from voxrt.sim import (
-        Camera,
         Frame,
-        Light,
         NoSuchConfigurationError,
-        Shading,
         SimulatorError,
         check,
         compare,
@@ -56,7 +55,6 @@ __all__ = [
     "Frame",
     "Grid",
     "InteriorFit",
-    "Light",
     "Lighting",
     "LikenessAtDepth",
     "Material",
@@ -69,8 +67,8 @@ __all__ = [
     "RomError",
     "Scene",
     "SceneWarning",
-    "Shading",
     "SimulatorError",
+    "ToolError",
     "ViewerError",
     "ViewpointError",
     "aim_camera",
@@ -94,18 +92,18 @@ __all__ = [
 ]
 
 _HOMES = {
-    "voxrt.export": ("WRITABLE_SUFFIXES", "Lighting", "convert", "read_any", "read_rom", "rom_info"),
+    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
     "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
     "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "diff", "differing_regions"),
+    "voxrt.octree.camera": ("Camera", "Lighting"),
     "voxrt.outputs": ("OutputError",),
     "voxrt.fitting": ("BudgetFit", "InteriorFit"),
     "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.plain_verilog": ("ToolError",),
     "voxrt.sim": (
         "Camera",
         "Frame",
-        "Light",
         "NoSuchConfigurationError",
-        "Shading",
         "SimulatorError",
         "check",
         "compare",

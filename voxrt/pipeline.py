@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from voxrt import export, octree, sim, voxelize
 from voxrt.fitting import BudgetFit, InteriorFit, find_material, fit_budget, fit_interior
+from voxrt.octree.camera import CAMERA_LIGHT
 from voxrt.outputs import OutputError, check_folder, uninterrupted, writing
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
 from voxrt.voxelize import AssetError, SceneWarning
@@ -22,10 +23,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Dialect, Rom
-    from voxrt.sim import Camera, Engine, Frame
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim import Engine, Frame
     from voxrt.voxelize import Grid, ObjectReport, Scene
     from voxrt.voxelize.assets import UpAxis
-    from voxrt.voxelize.colliders import Geometry, Pow2
+    from voxrt.voxelize.box_rounding import Pow2
+    from voxrt.voxelize.object_proxies import Geometry
 
 DEFAULT_DEPTH = 7
 """Levels of the octree when neither they nor the voxels' size are given."""
@@ -66,7 +69,7 @@ class BuildResult:
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
+        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
         ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
@@ -84,8 +87,8 @@ class BuildResult:
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
-    view: export.View | None = None
-    lighting: export.Lighting | None = None
+    view: Camera | None = None
+    lighting: Lighting | None = None
 
     @property
     def solid_voxels(self) -> int:
@@ -208,8 +211,8 @@ def build(
         if depth is None and voxel_size is None:
             depth = DEFAULT_DEPTH
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=voxel_size, geometry=geometry, pow2=pow2)
-    with stage("tint"):
-        scene = voxelize.tint(scene, grid, colours=colours, geometry=geometry)
+    with stage("colour"):
+        scene = voxelize.assign_colours(scene, grid, colours=colours, geometry=geometry)
     with stage("voxelize"):
         voxelization = voxelize.voxelize(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     with stage("octree"):
@@ -290,7 +293,7 @@ def _picture_file(
 def _picture(
     rom: Rom,
     scene: Scene,
-    lighting: export.Lighting | None,
+    lighting: Lighting | None,
     size: tuple[int, int],
     *,
     engine: Engine,
@@ -305,13 +308,12 @@ def _picture(
     return Picture(frame, camera, engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
+def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
     """Return how the scene's author wants it seen, and what of that cannot be."""
     view, lighting, unseen = None, None, []
     if scene.viewpoint is not None:
         try:
-            camera = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
-            view = export.View(camera.position, camera.look, camera.right, camera.up)
+            view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
     try:
@@ -342,7 +344,7 @@ def render(
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
     config: str = "tiny",
-    lighting: export.Lighting | None = None,
+    lighting: Lighting | None = None,
     threads: int = 0,
 ) -> Frame:
     """Render a memory.
@@ -376,7 +378,7 @@ def render(
         camera or aim_camera(rom, size),
         size,
         engine=engine,
-        shading=sim.Shading.of(lighting),
+        lighting=lighting or CAMERA_LIGHT,
         config=config,
         threads=threads,
     )
