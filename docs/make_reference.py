@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FRONT = "voxrt"
 PACKAGES = (
     "voxrt.voxelize",
-    "voxrt.voxelize.authoring.author",
+    "voxrt.voxelize.authoring",
     "voxrt.octree",
     "voxrt.export",
     "voxrt.sim",
