@@ -2,8 +2,8 @@
 A solid cut by booleans
 =======================
 
-Union, difference, intersection and hull of closed solids, in Python; ``scene.toml`` has the same words. What was cut
-away is gone for good: the inside of the shell is empty, and the voxels show it.
+Union, difference, intersection and hull of closed solids, in Python. ``scene.toml`` has the same operations. A ball
+is hollow, and a wedge is cut out of it. The voxels show the hollow inside.
 """
 
 import matplotlib.pyplot as plt

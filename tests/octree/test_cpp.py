@@ -3,13 +3,13 @@
 import re
 import shutil
 import subprocess
-import tomllib
 from pathlib import Path
 
 import pytest
 
+from voxrt import __version__ as VERSION
+
 ROOT = Path(__file__).resolve().parents[2]
-VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 LIBRARIES = ("libvoxrt_voxelize.a", "libvoxrt_octree.a")
 CONSUMER = """
 cmake_minimum_required(VERSION 3.25)
@@ -81,7 +81,7 @@ def test_another_version_is_not_found(installed, tmp_path):
     assert f"version: {VERSION}" in refused.stderr
 
 
-def test_the_package_has_the_version_of_pyproject(installed):
+def test_the_package_has_the_version_of_voxrt(installed):
     text = (installed / "lib" / "cmake" / "voxrt" / "voxrtConfigVersion.cmake").read_text()
     assert re.search(r'set\(PACKAGE_VERSION "(.*)"\)', text)[1] == VERSION
 
