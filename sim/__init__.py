@@ -18,6 +18,7 @@ from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.image import write_png
 from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
+from voxrt.sim.ray_query import RayHits, cast_rays
 from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
@@ -32,6 +33,7 @@ __all__ = [
     "Light",
     "Likeness",
     "NoSuchConfigurationError",
+    "RayHits",
     "RayPath",
     "Reading",
     "RenderCost",
@@ -39,6 +41,7 @@ __all__ = [
     "SimulatorError",
     "View",
     "camera_from_registers",
+    "cast_rays",
     "check",
     "compare",
     "comparison_sheet",

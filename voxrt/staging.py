@@ -12,10 +12,11 @@ from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Lighting, Scene
 from voxrt.board.view import Camera
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob, read_any
 from voxrt.export import Lighting as Wanted
 from voxrt.octree import RomError
-from voxrt.pipeline import PREVIEW_SIZE, build
+from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
 from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES

@@ -11,13 +11,13 @@ from cyclopts import Parameter
 import voxrt
 from voxrt import octree
 from voxrt import view as drawing
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Depth, Pixel, Pixels, Sight, UsageError, png, whole
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
 from voxrt.export.vox import write_vox
 from voxrt.outputs import check_folder, writing
-from voxrt.pipeline import PREVIEW_SIZE
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
 from voxrt.view.octant_files import write_glb, write_octants
 from voxrt.view.octant_page import write_page

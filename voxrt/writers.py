@@ -1,0 +1,6 @@
+"""x"""
+
+WRITABLE_SUFFIXES = ()
+
+
+def convert(): ...
