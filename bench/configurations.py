@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results"
 SCRIPTS = ("bench/rtl.py", "rtl/area.py", "rtl/clock.py")
-# The size at which cycles a pixel are taken; frames a second are counted for both sizes from them.
+# The size at which cycles per pixel are taken; frames per second are counted for both sizes from them.
 SIZE = "640x480"
 FRAMES = ((640, 480), (1920, 1080))
 SCENES = {"published house, depth 10": "house", "Menger sponge, 128 a side": "sponge"}
@@ -51,7 +51,7 @@ def main() -> None:
         for script in SCRIPTS:
             subprocess.run([sys.executable, ROOT / script, "--write"], check=True)
     cycles = {
-        (row["configuration"], row["frame"], row["scene"]): float(row["cycles a pixel"])
+        (row["configuration"], row["frame"], row["scene"]): float(row["cycles per pixel"])
         for row in table("rtl.md")
         if row["section"].startswith(SIZE)
     }
@@ -60,7 +60,7 @@ def main() -> None:
     frames = [f"{scene}, frames/s at {width}x{height}" for width, height in FRAMES for scene in SCENES.values()]
     area_heads = ["lanes", "LUT", "LUT, paired", "FF", "DSP48", "BRAM36"]
     heads = ["configuration", "frame", *area_heads]
-    heads += [f"{scene}, cycles a pixel" for scene in SCENES.values()] + frames
+    heads += [f"{scene}, cycles per pixel" for scene in SCENES.values()] + frames
     lines = [
         f"Cycles a pixel at {SIZE}, the original's at 256x256. Area: yosys `synth_xilinx`, an estimate; the original's",
         f"is from Vivado. Frames a second at {megahertz} MHz: a core of one lane on an ECP5, placed and routed.",

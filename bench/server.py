@@ -38,7 +38,7 @@ async def measure(scene_file: Path, seconds: float) -> None:
             await client.take()
             frames = await count_frames(client, seconds)
             latencies = sorted(await turn(client))
-    print(f"{scene_file.name}, 640x480: {frames / seconds:.1f} frames a second")
+    print(f"{scene_file.name}, 640x480: {frames / seconds:.1f} frames per second")
     middle, slow = statistics.median(latencies), latencies[math.ceil(0.95 * STEPS) - 1]
     print(f"request to frame: {1000 * middle:.1f} ms in the middle, {1000 * slow:.1f} ms for 95 of 100;")
     print(f"the original's 200 ms are {ORIGINAL_LATENCY / middle:.1f} times the middle")

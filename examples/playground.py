@@ -93,4 +93,4 @@ if __name__ == "__main__":
     voxels = voxelize.voxelize(scene, grid).voxels
     rom = octree.Rom(scene.name, octree.build(voxels), scene.materials, grid)
     frame = voxrt.render(rom, size=(640, 480))
-    print(f"{len(scene.objects)} objects, {rom.octree.blocks} blocks, {frame.cost.cycles:,} clocks a frame")
+    print(f"{len(scene.objects)} objects, {rom.octree.blocks} blocks, {frame.cost.cycles:,} clocks per frame")

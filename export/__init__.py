@@ -1,6 +1,6 @@
 """Rom to files and back."""
 
-from voxrt.export.blob import Blob, Lighting, View, blob_bytes, read_blob, write_blob
+from voxrt.export.blob import Blob, blob_bytes, read_blob, write_blob
 from voxrt.export.coe import read_coe, write_coe
 from voxrt.export.conversion import READABLE_SUFFIXES, WRITABLE_SUFFIXES, convert, read_any
 from voxrt.export.info import RomInfo, rom_info
@@ -19,12 +19,10 @@ __all__ = [
     "WORD_SUFFIXES",
     "WRITABLE_SUFFIXES",
     "Blob",
-    "Lighting",
     "Manifest",
     "RomFiles",
     "RomInfo",
     "Source",
-    "View",
     "WordFile",
     "blob_bytes",
     "convert",

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voxrt.octree.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim import _model
-from voxrt.sim.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.rendering import palette_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Rom
-    from voxrt.sim.camera import Camera
+    from voxrt.octree.camera import Camera
     from voxrt.voxelize import Coat, Grid, Scene
 
 

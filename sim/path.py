@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Octree
+from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import SimulatorError
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.sim.camera import Camera, Triple
+    from voxrt.octree.camera import Camera, Triple
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Octree
+from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.frame import FACE_NONE
 from voxrt.voxelize.arguments import instance, real_array, whole, whole_array
 

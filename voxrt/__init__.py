@@ -34,7 +34,6 @@ __all__ = [
     "Frame",
     "Grid",
     "InteriorFit",
-    "Light",
     "Lighting",
     "LikenessAtDepth",
     "Material",
@@ -49,7 +48,6 @@ __all__ = [
     "RomError",
     "Scene",
     "SceneWarning",
-    "Shading",
     "SimulatorError",
     "ViewerError",
     "ViewpointError",
@@ -88,7 +86,6 @@ _HOMES = {
     "voxrt.build_options": ("BuildOptions",),
     "voxrt.build_result": ("BuildResult",),
     "voxrt.export": (
-        "Lighting",
         "read_any",
         "read_rom",
         "rom_info",
@@ -112,6 +109,10 @@ _HOMES = {
         "diff",
         "differing_regions",
     ),
+    "voxrt.octree.camera": (
+        "Camera",
+        "Lighting",
+    ),
     "voxrt.outputs": ("OutputError",),
     "voxrt.pictures": (
         "Picture",
@@ -123,13 +124,10 @@ _HOMES = {
         "voxelize_mesh",
     ),
     "voxrt.sim": (
-        "Camera",
         "Frame",
-        "Light",
         "NoSuchConfigurationError",
         "RayHits",
         "RayPath",
-        "Shading",
         "SimulatorError",
         "cast_rays",
         "check",
@@ -165,22 +163,20 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt import board, export, octree, serve, sim, view, voxelize
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
-    from voxrt.export import Lighting, read_any, read_rom, rom_info
+    from voxrt.export import read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.from_arrays import mesh_scene
     from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError
     from voxrt.pictures import Picture, render, save_picture
     from voxrt.pipeline import build, voxelize_mesh
     from voxrt.sim import (
-        Camera,
         Frame,
-        Light,
         NoSuchConfigurationError,
         RayHits,
         RayPath,
-        Shading,
         SimulatorError,
         cast_rays,
         check,

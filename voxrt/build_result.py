@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from voxrt.export import Lighting, View
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.pictures import Picture
     from voxrt.voxelize import ObjectReport, Scene, SceneWarning
 
@@ -72,7 +72,7 @@ class BuildResult:
     budget: BudgetFit | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
-    view: View | None = None
+    view: Camera | None = None
     lighting: Lighting | None = None
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.sim.camera import THREE_QUARTER
+from voxrt.octree.camera import THREE_QUARTER
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 

@@ -11,6 +11,7 @@ import numpy as np
 from voxrt import sim
 from voxrt.build_options import PREVIEW_SIZE
 from voxrt.octree import Rom
+from voxrt.octree.camera import CAMERA_LIGHT
 from voxrt.outputs import OutputError, check_folder, writing
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from voxrt import export
-    from voxrt.sim import Camera, Engine, Frame
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim import Engine, Frame
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -59,7 +60,7 @@ def render(
     size: tuple[int, int] = PREVIEW_SIZE,
     engine: Engine = "rtl",
     config: str = "tiny",
-    lighting: export.Lighting | None = None,
+    lighting: Lighting | None = None,
     threads: int = 0,
 ) -> Frame:
     """Render a picture of a memory.
@@ -109,7 +110,7 @@ def render(
         camera or aim_camera(rom, size),
         size,
         engine=engine,
-        shading=sim.Shading.of(lighting),
+        lighting=lighting or CAMERA_LIGHT,
         config=config,
         threads=threads,
     )

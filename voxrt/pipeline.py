@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Grid, Voxelization
 
 
@@ -267,7 +268,7 @@ def _picture_file(name: str, output: str | os.PathLike[str] | None, options: Bui
     return file
 
 
-def _picture(rom: Rom, scene: Scene, lighting: export.Lighting | None, options: BuildOptions) -> Picture:
+def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
     if scene.viewpoint is not None and rom.grid is not None:
         camera = authored_camera(scene.viewpoint, rom.grid, options.size)
     else:
@@ -284,13 +285,12 @@ def _picture(rom: Rom, scene: Scene, lighting: export.Lighting | None, options: 
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[export.View | None, export.Lighting | None, tuple[SceneWarning, ...]]:
+def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
     """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
     view, lighting, unseen = None, None, []
     if scene.viewpoint is not None:
         try:
-            camera = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
-            view = export.View(camera.position, camera.look, camera.right, camera.up)
+            view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
     try:

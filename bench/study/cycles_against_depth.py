@@ -27,11 +27,11 @@ for name in ("courtyard.glb", "planet.glb"):
         cycles.append(cost.cycles / cost.rays)
         words.append(len(rom.octree.words))
     slope = np.polyfit(depths, cycles, 1)[0]
-    print(f"{name:14s} " + " ".join(f"{value:6.2f}" for value in cycles) + f"   {slope:.2f} clocks a pixel and level")
+    print(f"{name:14s} " + " ".join(f"{value:6.2f}" for value in cycles) + f"   {slope:.2f} clocks per pixel and level")
     print(f"{'words':14s} " + " ".join(f"{count:6d}" for count in words))
     plt.plot(depths, cycles, "o-", label=name)
 plt.xlabel("depth of the octree")
-plt.ylabel("clocks a pixel, one lane")
+plt.ylabel("clocks per pixel, one lane")
 plt.ylim(bottom=0)
 plt.legend()
 plt.grid(visible=True, alpha=0.3)

@@ -3,7 +3,7 @@ What pipelining gains
 =====================
 
 The report's section 6.3 expects three stages (generate, step, shade) to take (N + 2) t instead of 3 N t: at most three
-times as fast. Our lane is a ring of eight stages with a ray in each: alone, a ray reads a word every eight clocks.
+times as fast. Our lane is a ring of eight stages with a ray in each: alone, a ray reads one word every eight clocks.
 A frame of one pixel shows what a ray takes alone, a whole frame what it takes in company.
 """
 

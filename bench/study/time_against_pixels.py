@@ -60,7 +60,7 @@ for name, slope in {
     print(f"{name:42s}{slope * 1e9:9.1f} ns{'published':>14s}")
     plt.loglog(pixels, slope * pixels, ":", label=f"{name}, published")
 plt.xlabel("pixels")
-plt.ylabel("seconds a frame")
+plt.ylabel("seconds per frame")
 plt.legend(fontsize=7)
 plt.grid(visible=True, which="major", alpha=0.3)
 plt.tight_layout()

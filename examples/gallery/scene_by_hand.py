@@ -28,8 +28,8 @@ print(f"{plain.cost.cycles / plain.cost.rays:.2f} cycles a pixel, {plain.cost.wo
 
 # %%
 # With a light that casts shadows, and the ball a mirror: ``docs/shading.md`` says exactly what is computed.
-shading = sim.Shading(light=sim.Light((16 * 96, 16 * 150, 16 * 190), ambient=48), bounces=4)
-lit = sim.render(built.rom, camera, size, engine="model", shading=shading)
+lighting = sim.Lighting((16 * 96, 16 * 150, 16 * 190), ambient=48, on=True, bounces=4)
+lit = sim.render(built.rom, camera, size, engine="model", lighting=lighting)
 
 picture = np.concatenate([plain.colour, lit.colour], axis=1)
 plt.figure(figsize=(9.6, 3.6))

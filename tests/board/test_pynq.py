@@ -22,9 +22,8 @@ from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import Camera, View
+from voxrt.board.view import Camera, View, frame_world
 from voxrt.board.view_check import check_view
-from voxrt.board.viewpoint import face_world
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
@@ -58,7 +57,7 @@ def test_frames(monkeypatch, core):
         memory.swap(scene, ignore)
         SceneMemory(model).swap(scene, ignore)
         for size in (SIZE, (32, 24), (32, 24)):
-            view = View(face_world(3, size), size, (9, 8, 7))
+            view = View(frame_world(3, size), size, (9, 8, 7))
             frame, expected = device.frame(view), model.frame(view)
             assert (frame.colour == expected.colour).all()
             assert len(np.unique(frame.colour.reshape(-1, 3), axis=0)) > 4
@@ -114,7 +113,7 @@ def test_widths_that_the_vdma_cannot_write(monkeypatch, core):
     install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
     SceneMemory(device).swap(scene_of(1), ignore)
-    view = View(face_world(3, SIZE), SIZE)
+    view = View(frame_world(3, SIZE), SIZE)
     check_view(view, device.identity)
     for columns in (1, 4, 44, 62, 63):
         with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, as PYNQ"):

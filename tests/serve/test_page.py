@@ -127,7 +127,7 @@ def test_page(tmp_path):
         )
         assert browser.until(still)
         assert server.show.stage.view.background == (0x20, 0x40, 0x60)
-        assert server.show.stage.view.features == {"flat"}
+        assert server.show.stage.view.lighting.features == {"flat"}
         assert shown(server, browser)
         assert browser.faults() == []
 
