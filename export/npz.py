@@ -51,15 +51,15 @@ def write_npz(path: Path, rom: Rom, high: tuple[int, int, int] | None = None) ->
     if high is not None:
         kept = (coordinates < high).all(axis=1)
         coordinates, material_ids = coordinates[kept], material_ids[kept]
-    place = {} if rom.grid is None else {"origin": np.array(rom.grid.origin), "voxel_size": rom.grid.voxel_size}
+    arrays = {
+        "coordinates": coordinates.astype(np.uint16),
+        "material_ids": material_ids,
+        "colours": np.array([material.colour for material in rom.materials], np.uint8),
+        "names": np.array([material.name for material in rom.materials]),
+        "depth": np.array(rom.octree.depth),
+    }
+    if rom.grid is not None:
+        arrays |= {"origin": np.array(rom.grid.origin), "voxel_size": np.array(rom.grid.voxel_size)}
     packed = io.BytesIO()
-    np.savez_compressed(
-        packed,
-        coordinates=coordinates.astype(np.uint16),
-        material_ids=material_ids,
-        colours=np.array([material.colour for material in rom.materials], np.uint8),
-        names=np.array([material.name for material in rom.materials]),
-        depth=rom.octree.depth,
-        **place,
-    )
+    np.savez_compressed(packed, allow_pickle=False, **arrays)
     write_atomically(path, packed.getvalue())

@@ -46,7 +46,7 @@ def build(voxels: Voxels, *, threads: int = 0) -> Octree:
     >>> scene = voxelize.load("examples/house.obj")
     >>> grid = voxelize.fit_grid(scene, depth=4)
     >>> build(voxelize.voxelize(scene, grid).voxels)
-    <Octree: depth 4, 553 words>
+    <Octree: depth 4, 721 words>
     """
     voxels = instance("voxels", voxels, Voxels)
     words = _native.build(

@@ -32,6 +32,7 @@ class Octree:
     Examples
     --------
     >>> import numpy as np
+    >>> from voxrt.octree import from_dense
     >>> tree = from_dense(np.ones((4, 4, 3), np.uint8))
     >>> tree
     <Octree: depth 2, 17 words>

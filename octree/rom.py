@@ -33,6 +33,7 @@ class Rom:
     Examples
     --------
     >>> import numpy as np
+    >>> from voxrt.octree import Rom, from_dense
     >>> from voxrt.voxelize import EMPTY, Material
     >>> tree = from_dense(np.ones((4, 4, 3), np.uint8))
     >>> Rom("slab", tree, (EMPTY, Material("oak", (160, 110, 60))))

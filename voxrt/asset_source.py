@@ -91,11 +91,11 @@ def load_asset(asset: Asset, options: BuildOptions) -> Scene:
 
 
 def as_text(name: str) -> str:
-    """Return a name as text that can name files: what is no text, or a backslash, becomes ``_``.
+    r"""Return a name as text that can name files: what is no text, or a backslash, becomes ``_``.
 
     Examples
     --------
-    >>> as_text("back\\\\slash")
+    >>> as_text("back\\slash")
     'back_slash'
     """
     text = os.fsencode(name).decode("utf-8", "replace")

@@ -6,10 +6,13 @@ its help from here, so this module imports no heavy library.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from os import PathLike
-from typing import Literal, TypeAlias, TypedDict, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
 
 Fill: TypeAlias = Literal["solid", "surface"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
@@ -155,52 +158,57 @@ class BuildKeywords(TypedDict, total=False):
 
 
 def _checked(given: BuildOptions) -> dict[str, object]:
-    """Return the options by name, converted exactly; TypeError or ValueError where that is not possible."""
+    """Return the options by name, converted exactly; TypeError or ValueError if that is not possible."""
     from voxrt.octree import BOARDS, MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
     from voxrt.voxelize.arguments import choice, flag, real, text, whole  # noqa: PLC0415
 
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
-    found: dict[str, object] = {
-        name: choice(name, getattr(given, name), get_args(allowed))
-        for name, allowed in (
-            ("fill", Fill), ("geometry", Geometry), ("pow2", Pow2), ("dialect", Dialect), ("engine", Engine)
-        )
-    }  # fmt: skip
-    found |= {name: flag(name, getattr(given, name)) for name in ("allow_outside", "strict")}
-    found["colours"] = whole("colours", given.colours, 1, 254)
-    found["threads"] = whole("threads", given.threads, 0, _MOST_THREADS)
-    if given.depth is not None:
-        found["depth"] = whole("depth", given.depth, 1, MAX_DEPTH)
-    for name in ("voxel_size", "unit"):
-        if getattr(given, name) is not None:
-            found[name] = real(name, getattr(given, name), above=0)
-    if given.time is not None:
-        found["time"] = real("time", given.time)
-    if given.up is not None:
-        found["up"] = choice("up", given.up, get_args(UpAxis))
-    if given.animation is not None:
-        found["animation"] = text("animation", given.animation)
-    if isinstance(given.variants, str):
-        raise TypeError(f"variants must be a sequence of strings, not the string {given.variants!r}")
-    found["variants"] = tuple(text(f"variants[{row}]", one) for row, one in enumerate(given.variants))
-    if not isinstance(given.interior, str):
-        found["interior"] = whole("interior", given.interior, 1, 255)
-    if isinstance(given.budget, str):
-        found["budget"] = choice("budget", given.budget, tuple(BOARDS))
-    elif given.budget is not None:
-        found["budget"] = whole("budget", given.budget, 1, 1 << 31)
-    if not isinstance(given.preview, str | PathLike):
-        found["preview"] = flag("preview", given.preview)
-    width, height = _pair("size", given.size)
-    found["size"] = (whole("size[0]", width, 1, _WIDEST), whole("size[1]", height, 1, _WIDEST))
-    return found
+
+    def budget(name: str, value: object) -> int | str:
+        return choice(name, value, tuple(BOARDS)) if isinstance(value, str) else whole(name, value, 1, 1 << 31)
+
+    checks: dict[str, Callable[[str, Any], object]] = {
+        "depth": lambda name, value: whole(name, value, 1, MAX_DEPTH),
+        "voxel_size": lambda name, value: real(name, value, above=0),
+        "fill": lambda name, value: choice(name, value, get_args(Fill)),
+        "interior": lambda name, value: value if isinstance(value, str) else whole(name, value, 1, 255),
+        "geometry": lambda name, value: choice(name, value, get_args(Geometry)),
+        "pow2": lambda name, value: choice(name, value, get_args(Pow2)),
+        "up": lambda name, value: choice(name, value, get_args(UpAxis)),
+        "unit": lambda name, value: real(name, value, above=0),
+        "time": real,
+        "animation": text,
+        "variants": _texts,
+        "allow_outside": flag,
+        "colours": lambda name, value: whole(name, value, 1, 254),
+        "budget": budget,
+        "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
+        "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
+        "size": _pixels,
+        "engine": lambda name, value: choice(name, value, get_args(Engine)),
+        "strict": flag,
+        "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
+    }
+    optional = {option.name for option in fields(BuildOptions) if option.default is None}
+    values = {name: getattr(given, name) for name in checks}
+    return {
+        name: None if value is None and name in optional else checks[name](name, value)
+        for name, value in values.items()
+    }
 
 
-def _pair(name: str, value: object) -> tuple[object, object]:
-    """Return the two parts of a value."""
-    try:
-        first, second = value  # type: ignore[misc]
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a width and a height in pixels, not {value!r}") from None
-    return first, second
+def _texts(name: str, value: object) -> tuple[str, ...]:
+    from voxrt.voxelize.arguments import shown, text  # noqa: PLC0415
+
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} must be a sequence of strings, not {shown(value)}")
+    return tuple(text(f"{name}[{row}]", one) for row, one in enumerate(value))
+
+
+def _pixels(name: str, value: object) -> tuple[int, int]:
+    from voxrt.voxelize.arguments import shown, whole  # noqa: PLC0415
+
+    if not isinstance(value, Iterable) or len(parts := list(value)) != 2:
+        raise ValueError(f"{name} must be a width and a height in pixels, not {shown(value)}")
+    return whole(f"{name}[0]", parts[0], 1, _WIDEST), whole(f"{name}[1]", parts[1], 1, _WIDEST)

@@ -55,9 +55,9 @@ class BuildResult:
     >>> import voxrt
     >>> built = voxrt.build("examples/house.obj", depth=4)
     >>> built
-    <BuildResult 'house': depth 4, 553 words, 1,015 solid voxels, 5 materials>
+    <BuildResult 'house': depth 4, 721 words, 2,504 solid voxels, 5 materials>
     >>> built.coordinates.shape
-    (1015, 3)
+    (2504, 3)
     >>> built.to_dense().shape
     (16, 16, 16)
     """

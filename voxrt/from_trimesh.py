@@ -93,14 +93,15 @@ def _placed(
     value: trimesh.Trimesh | trimesh.Scene, name: str, notes: Notes
 ) -> list[tuple[str, str, trimesh.Trimesh, NDArray[np.float64]]]:
     """Return the instances: the geometry's key, the node's name, the geometry, where it stands (shape (4, 4))."""
-    module = sys.modules["trimesh"]
-    if isinstance(value, module.Trimesh):
+    mesh_type = sys.modules["trimesh"].Trimesh
+    if isinstance(value, mesh_type):
         return [("", name, value, np.eye(4))]
+    scene: Any = value
     placed = []
-    for node in value.graph.nodes_geometry:
-        transform, key = value.graph[node]
-        geometry = value.geometry[key]
-        if not isinstance(geometry, module.Trimesh):
+    for node in scene.graph.nodes_geometry:
+        transform, key = scene.graph[node]
+        geometry = scene.geometry[key]
+        if not isinstance(geometry, mesh_type):
             notes.add("no-triangles", "geometry of trimesh other than triangle meshes was left out")
             continue
         placed.append((str(key), str(node), geometry, real_array("transform", transform, (4, 4)).astype(np.float64)))

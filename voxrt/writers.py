@@ -1,4 +1,4 @@
-"""The one table of the files that a memory is written to: of ``voxrt convert``, ``voxrt view -o`` and the Python API."""
+"""The files that a memory is written to: one table for ``voxrt convert``, ``voxrt view -o`` and the Python API."""
 
 from __future__ import annotations
 
