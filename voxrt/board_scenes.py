@@ -11,9 +11,10 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
-from voxrt.pipeline import PREVIEW_SIZE, build
+from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
 from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES

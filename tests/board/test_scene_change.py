@@ -97,7 +97,7 @@ def open_device(request, monkeypatch):
         CORES = ("tiny",)
 
         @staticmethod
-        def PixelGenerator(_config):  # noqa: N802 - the class of the native module
+        def Core(_config):  # noqa: N802 - the class of the native module
             return core._core
 
     monkeypatch.setattr("voxrt.board.simulated.core.import_verilated", lambda _advice: Module)
