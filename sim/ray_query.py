@@ -101,7 +101,7 @@ def cast_rays(octree: Octree, origins: ArrayLike, directions: ArrayLike, *, thre
         some = slice(first, min(first + _CHUNK, count))
         places, steps = _places(starts[some], first), _steps(ways[some], first)
         traced = memory.trace(places, steps, threads)
-        material[some], face[some], voxel[some] = traced["material"], traced["face"], traced["cell"]
+        material[some], face[some], voxel[some] = traced.material, traced.face, traced.cell
         parameter[some] = _parameters(places, ways[some], material[some], face[some], voxel[some])
         distance[some] = parameter[some] * np.linalg.norm(ways[some], axis=1)
     return RayHits(material != 0, material, face, voxel, parameter, distance)

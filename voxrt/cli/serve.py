@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import signal
+from functools import partial
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -81,9 +82,7 @@ def serve(
     if token is None and not is_loopback(host):
         token = secrets.token_urlsafe(16)
     first = _read_first(scenes[0], depth) if scenes else None
-    library = SceneLibrary(
-        AssetReader(depth), {path.stem: (lambda path=path: _read_listed(path, depth)) for path in scenes}
-    )
+    library = SceneLibrary(AssetReader(depth), {path.stem: partial(_read_listed, path, depth) for path in scenes})
     options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
