@@ -1,4 +1,4 @@
-"""Benchmark of the demo: seconds a stage, clocks of the hardware, hardware simulated against its model.
+"""Benchmark of the demo: seconds per stage, clocks of the hardware, hardware simulated against its model.
 
 Usage: ``python bench/demo.py [--depth N] [--size WxH] [--write]``. ``--write`` puts the table into
 ``bench/results/demo.md`` as well. Each time is the least of three.
@@ -39,9 +39,9 @@ def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
         *rows,
         ("model against simulated hardware", f"{rtl.seconds / model.seconds:.0f} times as fast"),
         ("cycles", f"{rtl.cycles:,}"),
-        ("cycles a pixel", f"{rtl.cycles / rtl.rays:.3f}"),
-        ("words a ray", f"{rtl.words_read / rtl.rays:.3f}"),
-        ("words a clock", f"{rtl.words_read / rtl.cycles:.4f}"),
+        ("cycles per pixel", f"{rtl.cycles / rtl.rays:.3f}"),
+        ("words per ray", f"{rtl.words_read / rtl.rays:.3f}"),
+        ("words per clock", f"{rtl.words_read / rtl.cycles:.4f}"),
         ("clocks simulated a second", f"{rtl.cycles / rtl.seconds:,.0f}"),
         ("pixels that differ", f"{voxrt.check(rom, voxrt.aim_camera(rom, size), size).wrong_pixels}"),
     ]

@@ -1,4 +1,4 @@
-"""Benchmark of the exact model: pixels a second a core, against the report's C++ algorithm and the simulated hardware.
+"""Benchmark of the exact model: pixels per second and core, beside the report's C++ algorithm and the hardware.
 
 Usage: ``python bench/model.py [MEMORY.mem ...] [--size N] [--clock MHZ] [--write]``. Without memories it takes the
 demo scene at two depths. ``original.cpp``, the report's algorithm, is compiled with ``c++ -O2`` and run beside it,
@@ -90,11 +90,11 @@ def measure(subject: Subject, published: Original, bare: Original, size: int, cl
         return [*rows, ("hardware, tiny", str(error))]
     hardware = cost.cycles / (clock * 1e6)
     rows.append((f"hardware, tiny, at {clock:g} MHz", nanoseconds(hardware, pixels, original)))
-    return [*rows, ("hardware, cycles a pixel", f"{cost.cycles / pixels:.2f}")]
+    return [*rows, ("hardware, cycles per pixel", f"{cost.cycles / pixels:.2f}")]
 
 
 def nanoseconds(seconds: float, pixels: int, original: float | None = None) -> str:
-    """Say a time a pixel, and how many times as fast that is."""
+    """Say a time per pixel, and how many times as fast that is."""
     text = f"{seconds / pixels * 1e9:.1f} ns a pixel"
     return text if original is None else f"{text}, {original / seconds:.0f} times as fast"
 

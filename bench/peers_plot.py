@@ -49,7 +49,7 @@ def plot(runs: Sequence[Run], file: Path) -> None:
         axes.set_title(title)
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
-        axes.set_xlabel("voxels a side")
+        axes.set_xlabel("voxels per side")
         axes.grid(alpha=0.3)
     times.legend(fontsize=7)
     words.legend(fontsize=7)

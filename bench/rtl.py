@@ -1,4 +1,4 @@
-"""Benchmark of the ray tracer's configurations: cycles a pixel against the bound, words a clock, speed simulated.
+"""Benchmark of the ray tracer's configurations: cycles per pixel against the bound, words per clock, speed simulated.
 
 Usage: ``python bench/rtl.py [--size WxH ...] [--memories DIR] [--rounds N] [--write]``. ``--write`` puts the tables
 into ``bench/results/rtl.md`` as well. ``--memories`` is a folder with the published ``house.mem``, which is left out
@@ -8,7 +8,6 @@ without. The speed is the median of the rounds, by the processor's time; all els
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
 from statistics import median
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rtl_scenes import scenes
 
+from voxrt.rtl.configurations import read_configurations
 from voxrt.sim._rtl import CONFIGS, FEATURES, Tracer
 
 if TYPE_CHECKING:
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results" / "rtl.md"
-LANES = {name: it["Lanes"] for name, it in json.loads((ROOT / "rtl" / "configurations.json").read_text()).items()}
+LANES = {name: it.parameters["Lanes"] for name, it in read_configurations().items()}
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 MIRRORS = np.ones(256, np.uint8)
 NOTES = (
-    "Bound: max(1, words a pixel / lanes). With light and with mirrors the words are those of all rays of a pixel: the",
-    "camera's, the shadow's and the reflected. A lane looks for the place that a shadow ray leaves from in turns that",
-    "read no word, so that frames with light stay above the bound.",
+    "Bound: max(1, words per pixel / lanes). With light and with mirrors the words are those of all rays of a pixel:",
+    "camera ray, shadow ray and reflected rays. A lane refines the hit point of a shadow ray in turns that read no",
+    "word, so frames with light stay above the bound.",
 )
 
 
@@ -77,8 +77,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    heads = ["scene", "configuration", "frame", "lanes", "words a pixel", "cycles a pixel", "bound", "of the bound"]
-    heads += ["words a clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
+    heads = ["scene", "configuration", "frame", "lanes", "words per pixel", "cycles per pixel", "bound", "of the bound"]
+    heads += ["words per clock and lane", "million clocks/s simulated", "million pixels/s simulated"]
     lines = [*NOTES, ""]
     for size in options.size:
         width, height = (int(side) for side in size.split("x"))

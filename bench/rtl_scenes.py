@@ -54,7 +54,7 @@ def sphere_and_boxes(depth: int) -> NDArray[np.uint8]:
 
 
 def menger(depth: int) -> NDArray[np.uint8]:
-    """Make a Menger sponge of four steps, 81 voxels a side."""
+    """Make a Menger sponge of four steps, 81 voxels per side."""
     x, y, z = np.meshgrid(*[np.arange(81)] * 3, indexing="ij")
     solid = np.ones((81,) * 3, bool)
     for power in (1, 3, 9, 27):

@@ -54,7 +54,7 @@ class Way:
 
 @dataclass(frozen=True)
 class Run:
-    """Frames rendered at the same time: seconds a frame, by the clock and by all processors, and what was made."""
+    """Frames rendered at the same time: seconds per frame, by the clock and by all processors, and what was made."""
 
     wall: float
     processor: float
@@ -161,7 +161,7 @@ def main() -> None:
         Way(f"{options.threads} frames at once, a thread each", shipped, options.threads),
     ]
     heads = ["configuration", "simulated by", "million pixels/s, median", "fastest round", "beside one thread, median"]
-    heads += ["of the fastest rounds", "processor time a frame beside one thread, median"]
+    heads += ["of the fastest rounds", "processor time per frame beside one thread, median"]
     before = os.getloadavg()[0]
     rows = compare(ways, scene, (width, height), options.rounds)
     after = os.getloadavg()[0]

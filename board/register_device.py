@@ -30,7 +30,6 @@ _ERRORS = {
     "bad_pointer": "a bad pointer",
     "step_limit": "an octree deeper than its depth",
 }
-_FEATURES = {"flat": "flat", "light": "shadows", "mirrors": "mirrors"}  # field of the register: name in a View
 _MIRROR = 1 << 24
 _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
@@ -129,7 +128,7 @@ class RegisterDevice:
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
             size=video.size,
-            features=frozenset(_FEATURES[name] for name, built_in in self._fields("features").items() if built_in),
+            features=frozenset(name for name, built_in in self._fields("features").items() if built_in),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
         )
@@ -176,13 +175,13 @@ class RegisterDevice:
         self._write_fields("size", width=columns, height=rows)
         for name in ("position", "look", "right", "up"):
             self._write_triple(name, getattr(view.camera, name))
-        self._write_triple("light", view.light)
+        self._write_triple("light", view.lighting.position)
         self._write_fields(
             "shading",
-            flat="flat" in view.features,
-            light="shadows" in view.features,
-            ambient=view.ambient,
-            bounces=view.bounces if "mirrors" in view.features else 0,
+            flat=view.lighting.flat,
+            light=view.lighting.on,
+            ambient=view.lighting.ambient,
+            bounces=view.lighting.bounces,
         )
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)

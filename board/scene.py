@@ -13,22 +13,12 @@ from .errors import Refused
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .view import Camera, Triple
+    from .view import Camera, Lighting, Triple
 
 MAX_DEPTH = 16
 
 EMPTY_LEAF = 0xFFFFFF00
 """The word of empty space, report dialect."""
-
-
-@dataclass(frozen=True, slots=True)
-class Lighting:
-    """How a scene wants to be lit at first, as :class:`~.view.View` has it: light, ambient, bounces, features."""
-
-    position: Triple
-    ambient: int
-    bounces: int
-    features: frozenset[str]
 
 
 @dataclass(frozen=True, eq=False, slots=True)

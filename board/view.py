@@ -1,36 +1,17 @@
-"""The view of a frame: camera, size, background, light and features."""
+"""The view of a frame: camera, size, background, lighting."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-Triple = tuple[int, int, int]
+from ..octree.camera import CAMERA_LIGHT, FEATURES, Camera, Lighting, Triple, frame_world, refit
 
-FEATURES = ("flat", "shadows", "mirrors")
-"""Optional features of a device, in the order in which users see them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Camera:
-    """The ray generator's registers: direction = look + right * (column - W // 2) + up * (H // 2 - row).
-
-    Attributes
-    ----------
-    position
-        Signed, 1/16 voxel, grid frame.
-    look, right, up
-        Signed 16 bit each, grid axes, any common scale.
-    """
-
-    position: Triple
-    look: Triple
-    right: Triple
-    up: Triple
+__all__ = ["FEATURES", "Camera", "Lighting", "Triple", "View", "frame_world", "refit"]
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """All that decides the pixels of a frame besides the scene.
+    """A frame that a device is asked for.
 
     Attributes
     ----------
@@ -40,20 +21,11 @@ class View:
         Columns and rows.
     background
         sRGB of pixels that hit nothing, 0 ... 255 each.
-    light
-        Where the point light of the shadows stands, 1/16 voxel.
-    ambient
-        0 ... 255, in 1/256: the brightness that no shadow goes below.
-    features
-        Which of :data:`FEATURES` are on.
-    bounces
-        How many mirrors a ray may meet, 0 ... 15.
+    lighting
+        Light, mirrors, flat colours.
     """
 
     camera: Camera
     size: tuple[int, int]
     background: Triple = (0, 0, 0)
-    light: Triple = (0, 0, 0)
-    ambient: int = 32
-    features: frozenset[str] = frozenset()
-    bounces: int = 4
+    lighting: Lighting = CAMERA_LIGHT

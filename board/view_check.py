@@ -33,10 +33,10 @@ def check_view(view: View, identity: Identity) -> None:
         raise Refused(
             f"{columns} columns are no multiple of {identity.width_step}, which {identity.name} needs; change the size"
         )
-    missing = view.features - identity.features
+    missing = view.lighting.features - identity.features
     if missing:
         raise Refused(f"{identity.name} has no {', '.join(sorted(missing))}; switch it off")
-    for name, position in (("camera", view.camera.position), ("light", view.light)):
+    for name, position in (("camera", view.camera.position), ("light", view.lighting.position)):
         if not all(-identity.position_limit <= value < identity.position_limit for value in position):
             limit = identity.position_limit // 16
             raise Refused(f"the {name} is more than {limit} voxels from the corner of the world; move it closer")

@@ -10,7 +10,7 @@ dog.usda
 planet.glb
     Curved solids: a banded ball, a tilted ring, moons.
 toadstool.vox
-    Voxel art in MagicaVoxel's format, 16 voxels a side.
+    Voxel art in MagicaVoxel's format, 16 voxels per side.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Rom to files and back."""
 
-from voxrt.export.blob import Blob, Lighting, View, blob_bytes, read_blob, write_blob
+from voxrt.export.blob import Blob, blob_bytes, read_blob, write_blob
 from voxrt.export.coe import read_coe, write_coe
 from voxrt.export.conversion import READABLE_SUFFIXES, WRITABLE_SUFFIXES, convert, read_any
 from voxrt.export.info import RomInfo, rom_info
@@ -8,6 +8,7 @@ from voxrt.export.listing import read_listing
 from voxrt.export.manifest import Manifest, Source, read_manifest, write_manifest
 from voxrt.export.mem import read_mem, write_mem
 from voxrt.export.mif import read_mif, write_mif
+from voxrt.export.npz import write_npz
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import read_raw, write_raw
 from voxrt.export.rom_files import WORD_SUFFIXES, RomFiles, read_rom, write_rom
@@ -19,12 +20,10 @@ __all__ = [
     "WORD_SUFFIXES",
     "WRITABLE_SUFFIXES",
     "Blob",
-    "Lighting",
     "Manifest",
     "RomFiles",
     "RomInfo",
     "Source",
-    "View",
     "WordFile",
     "blob_bytes",
     "convert",
@@ -45,6 +44,7 @@ __all__ = [
     "write_manifest",
     "write_mem",
     "write_mif",
+    "write_npz",
     "write_raw",
     "write_rom",
     "write_vox",

@@ -17,6 +17,7 @@ import numpy as np
 from voxrt.export.atomic import write_atomically
 from voxrt.export.word_file import read_bytes
 from voxrt.octree import Rom, RomError, census, decode
+from voxrt.octree.camera import BOUNCE_LIMIT, Camera, Lighting
 from voxrt.voxelize import Grid, Material
 
 if TYPE_CHECKING:
@@ -35,41 +36,6 @@ _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
 _MIRROR, _AUTHORED = 1, 2
 _LIGHT_ON, _FLAT = 1, 2
 
-Triple = tuple[int, int, int]
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """The camera to start with: what its registers take, position in 1/16 voxel, grid frame."""
-
-    position: Triple
-    look: Triple
-    right: Triple
-    up: Triple
-
-
-@dataclass(frozen=True, slots=True)
-class Lighting:
-    """How to start shading.
-
-    Attributes
-    ----------
-    position
-        The light, 1/16 voxel, grid frame.
-    ambient
-        0 … 255.
-    on, flat
-        Whether that light shines, instead of one in the camera; whether colours are shown unshaded.
-    bounces
-        How often a ray may be reflected, 0 … 15.
-    """
-
-    position: Triple = (0, 0, 0)
-    ambient: int = 0
-    on: bool = False
-    flat: bool = False
-    bounces: int = 0
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Blob:
@@ -79,7 +45,7 @@ class Blob:
     """
 
     rom: Rom
-    view: View | None = None
+    view: Camera | None = None
     lighting: Lighting | None = None
 
 
@@ -138,7 +104,7 @@ def read_blob(path: Path) -> Blob:
         raise _damaged(path, "section MATL", f"ends at material {len(materials) - 1} and {highest} is in use")
     return Blob(
         Rom(title, octree, materials, _grid(path, depth, place) if known else None),
-        None if view is None else View(view[:3], view[3:6], view[6:9], view[9:]),
+        None if view is None else Camera(view[:3], view[3:6], view[6:9], view[9:]),
         None if light is None else _lighting(light),
     )
 
@@ -204,4 +170,4 @@ def _grid(path: Path, depth: int, place: list[float]) -> Grid:
 
 def _lighting(fields: tuple[int, ...]) -> Lighting:
     x, y, z, ambient, flags, bounces, _ = fields
-    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, 15))
+    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, BOUNCE_LIMIT))

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.export.atomic import write_atomically
-from voxrt.export.blob import Lighting, View  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.octree import Dialect, RomError, census
+from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     warnings: tuple[SceneWarning, ...]
     seconds: dict[str, float]
     source: Source | None
-    view: View | None = None
+    view: Camera | None = None
     lighting: Lighting | None = None
 
     @property
@@ -128,7 +128,7 @@ def make_manifest(
     warnings: tuple[SceneWarning, ...] = (),
     seconds: Mapping[str, float] | None = None,
     source: Source | None = None,
-    view: View | None = None,
+    view: Camera | None = None,
     lighting: Lighting | None = None,
 ) -> Manifest:
     """Describe `rom` and the bytes `mem` of its ``.mem`` file."""

@@ -28,9 +28,9 @@ from voxrt.voxelize import SceneWarning
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from voxrt.export.blob import Lighting, View
     from voxrt.export.manifest import Manifest
     from voxrt.export.word_file import WordFile
+    from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport
 
 
@@ -59,7 +59,7 @@ def write_rom(
     warnings: tuple[SceneWarning, ...] = (),
     seconds: Mapping[str, float] | None = None,
     source: Source | None = None,
-    view: View | None = None,
+    view: Camera | None = None,
     lighting: Lighting | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``; an interruption leaves the old pair or the new.

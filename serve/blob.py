@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..board.errors import Refused
-from ..board.scene import Lighting, Scene
-from ..board.view import Camera
+from ..board.scene import Scene
+from ..board.view import Camera, Lighting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,5 +95,4 @@ def _camera(section: bytes) -> Camera:
 
 def _lighting(section: bytes) -> Lighting:
     x, y, z, ambient, flags, bounces, _ = _LIGHT.unpack(section)
-    features_on = {"shadows": flags & _LIGHT_ON, "flat": flags & _FLAT, "mirrors": bounces}
-    return Lighting((x, y, z), ambient, min(bounces, 15), frozenset(name for name, on in features_on.items() if on))
+    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, 15))

@@ -13,9 +13,8 @@ import numpy as np
 from ..board.errors import DeviceError
 from ..board.scene import EMPTY_LEAF, Scene
 from ..board.scene_memory import SceneMemory
-from ..board.view import View
+from ..board.view import View, frame_world, refit
 from ..board.view_check import check_view
-from ..board.viewpoint import face_world, refit
 from .packets import FramePacket
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ class Renderer:
         self.scene = EMPTY_SCENE
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
-        self.view = self.initial_view = View(face_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
+        self.view = self.initial_view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
@@ -79,9 +78,7 @@ class Renderer:
         Refused
             The device cannot render the new view; the present one stays.
         """
-        fields = ("camera", "size", "background", "light", "ambient", "features", "bounces")
-        changed = {name: value for name in fields if (value := getattr(change, name)) is not None}
-        view = replace(self.view, **changed)
+        view = change.applied_to(self.view)
         check_view(view, self.device.identity)
         self.view = view
         if change.nonstop is not None:
@@ -163,18 +160,22 @@ class Renderer:
 
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
-        camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else face_world(scene.depth, size)
+        camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
         view = replace(self.view, camera=camera, background=scene.background)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1
-            return replace(view, light=(min(side, farthest), min(2 * side, farthest), min(side, farthest)))
+            place = min(side, farthest), min(2 * side, farthest), min(side, farthest)
+            return replace(view, lighting=replace(view.lighting, position=place))
+        built_in = self.device.identity.features
         return replace(
             view,
-            light=lighting.position,
-            ambient=lighting.ambient,
-            bounces=lighting.bounces,
-            features=lighting.features & self.device.identity.features,
+            lighting=replace(
+                lighting,
+                on=lighting.on and "light" in built_in,
+                flat=lighting.flat and "flat" in built_in,
+                bounces=lighting.bounces if "mirrors" in built_in else 0,
+            ),
         )
 
 

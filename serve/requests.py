@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..board.errors import Refused
-from ..board.view import FEATURES, Camera, Triple
+from ..board.view import FEATURES, Camera, Lighting, Triple, View
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
 _NAME = 200
+_BOUNCES = 4  # of mirrors that are turned on without a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,24 @@ class ChangeView:
     features: frozenset[str] | None = None
     bounces: int | None = None
     nonstop: bool | None = None
+
+    def applied_to(self, view: View) -> View:
+        """Make the view that is asked for."""
+        fields = ("camera", "size", "background")
+        changed = {name: value for name in fields if (value := getattr(self, name)) is not None}
+        return replace(view, lighting=self._lighting(view.lighting), **changed)
+
+    def _lighting(self, lighting: Lighting) -> Lighting:
+        if self.light is not None:
+            lighting = replace(lighting, position=self.light)
+        if self.ambient is not None:
+            lighting = replace(lighting, ambient=self.ambient)
+        if self.bounces is not None:
+            lighting = replace(lighting, bounces=self.bounces)
+        if self.features is not None:
+            bounces = (lighting.bounces or _BOUNCES) if "mirrors" in self.features else 0
+            lighting = replace(lighting, on="light" in self.features, flat="flat" in self.features, bounces=bounces)
+        return lighting
 
 
 @dataclass(frozen=True, slots=True)

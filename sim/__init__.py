@@ -4,22 +4,22 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.sim.camera import (
+from voxrt.octree.camera import (
     Camera,
+    Lighting,
     camera_from_registers,
     frame_points,
-    frame_scene,
     look_at,
-    outline,
     pixel_directions,
 )
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
+from voxrt.sim.framing import frame_scene, outline
 from voxrt.sim.image import write_png
 from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
+from voxrt.sim.ray_query import RayHits, cast_rays
 from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
-from voxrt.sim.shading import Light, Shading
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 __all__ = [
@@ -29,16 +29,17 @@ __all__ = [
     "Engine",
     "EngineCheck",
     "Frame",
-    "Light",
+    "Lighting",
     "Likeness",
     "NoSuchConfigurationError",
+    "RayHits",
     "RayPath",
     "Reading",
     "RenderCost",
-    "Shading",
     "SimulatorError",
     "View",
     "camera_from_registers",
+    "cast_rays",
     "check",
     "compare",
     "comparison_sheet",

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
+from voxrt.octree import Rom
+from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
-from voxrt.sim.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
-from voxrt.sim.shading import BOUNCE_LIMIT, PLAIN, Shading
 from voxrt.sim.verilated import import_verilated
+from voxrt.voxelize.arguments import choice, instance, text, whole, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.octree import Rom
-    from voxrt.sim.camera import Camera
+    from voxrt.octree.camera import Camera, Lighting
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
@@ -29,7 +29,7 @@ _RTL_FRAME_LIMIT = (1 << 12) - 1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class EngineCheck:
-    """The same view from both engines.
+    """The same view from both engines, as :func:`check` returns it.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class EngineCheck:
 
     @property
     def wrong_pixels(self) -> int:
-        """How many pixels differ."""
+        """The number of pixels that differ."""
         return int(np.count_nonzero(self.wrong))
 
 
@@ -55,7 +55,7 @@ def render(
     size: tuple[int, int],
     *,
     engine: Engine,
-    shading: Shading = PLAIN,
+    lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
 ) -> Frame:
@@ -64,37 +64,55 @@ def render(
     Parameters
     ----------
     rom
-        The memory and its materials; the colour of entry 0 is the background.
+        The memory and its materials. The colour of entry 0 is the background.
     camera
-        Where from.
+        The camera.
     size
-        Columns and rows.
+        Columns and rows, 1 … 16384 each.
     engine
-        ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact C++ model. Both give the
-        same pixels.
-    shading
-        Light, mirrors and flat colour.
+        ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
+        give the same pixels.
+    lighting
+        Point light, mirrors and flat colours.
     threads
-        Threads of the model, 0 for one a core. The frame does not depend on it.
+        Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
-        The configuration of the ray tracer that ``"rtl"`` runs.
+        The configuration of the ray tracer for ``"rtl"``.
+
+    Returns
+    -------
+    Frame
+        The pixels and what they cost.
 
     Raises
     ------
+    TypeError, ValueError
+        An argument of the wrong type or out of range.
     NoSuchConfigurationError
-        The ray tracer has no configuration of that name here.
+        The installation has no ray tracer of that configuration.
     SimulatorError
-        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading; a
-        size, a direction or the light is out of range.
+        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading. A
+        direction or the light is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.sim import frame_scene
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> frame = render(rom, frame_scene(rom, (32, 32)), (32, 32), engine="model")
+    >>> frame.colour.shape, frame.cost.rays, bool(frame.material.any())
+    ((32, 32, 3), 1024, True)
     """
-    width, height = size
-    if not (1 <= width <= _FRAME_LIMIT and 1 <= height <= _FRAME_LIMIT):
-        raise SimulatorError(f"a frame of {width}x{height} pixels is not 1x1 … {_FRAME_LIMIT}x{_FRAME_LIMIT}")
-    _check_directions(camera, size)
-    _check_shading(shading)
+    instance("rom", rom, Rom)
+    choice("engine", engine, get_args(Engine))
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
+    _check_directions(camera, (width, height))
+    _check_lighting(lighting)
     if engine == "model":
-        return _render_model(rom, camera, size, shading, threads)
-    return _render_rtl(rom, camera, size, shading, config)
+        return _render_model(rom, camera, (width, height), lighting, whole("threads", threads, 0, 1024))
+    return _render_rtl(rom, camera, (width, height), lighting, text("config", config))
 
 
 def check(
@@ -102,18 +120,43 @@ def check(
     camera: Camera,
     size: tuple[int, int],
     *,
-    shading: Shading = PLAIN,
+    lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
 ) -> EngineCheck:
-    """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
-    rtl = render(rom, camera, size, engine="rtl", shading=shading, config=config)
-    model = render(rom, camera, size, engine="model", shading=shading, threads=threads)
+    """Render with both engines and compare every pixel.
+
+    Parameters
+    ----------
+    rom, camera, size, lighting, threads, config
+        As for :func:`render`.
+
+    Returns
+    -------
+    EngineCheck
+        Both frames, and the pixels that differ.
+
+    Raises
+    ------
+    TypeError, ValueError, NoSuchConfigurationError, SimulatorError
+        As :func:`render` does.
+
+    Examples
+    --------
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.sim import frame_scene
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
+    0
+    """
+    rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config)
+    model = render(rom, camera, size, engine="model", lighting=lighting, threads=threads)
     wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
     return EngineCheck(rtl=rtl, model=model, wrong=wrong)
 
 
-def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, threads: int) -> Frame:
+def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, threads: int) -> Frame:
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
         palette_of(rom),
@@ -121,25 +164,40 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shad
         size[0],
         size[1],
         threads,
-        **_shading(rom, shading),
+        **_shading_of(rom, lighting),
     )
     return Frame(
-        colour=pixels["colour"],
-        material=pixels["material"],
-        face=pixels["face"],
+        colour=pixels.colour,
+        material=pixels.material,
+        face=pixels.face,
         cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 
 
 def shader_features(config: str) -> frozenset[str]:
-    """Give what a configuration of the ray tracer has built in: of ``"flat"``, ``"light"`` and ``"mirrors"``.
+    """Return the shading features that a configuration of the ray tracer has built in.
+
+    Parameters
+    ----------
+    config
+        The configuration's name.
+
+    Returns
+    -------
+    frozenset[str]
+        Some of ``"flat"``, ``"light"`` and ``"mirrors"``.
 
     Raises
     ------
     NoSuchConfigurationError
-        The ray tracer has no configuration of that name here.
+        The installation has no ray tracer of that configuration.
     SimulatorError
         The ray tracer is not in this installation.
+
+    Examples
+    --------
+    >>> sorted(shader_features("lit"))
+    ['flat', 'light', 'mirrors']
     """
     return frozenset(_ray_tracer(config).FEATURES[config])
 
@@ -151,11 +209,11 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
     return _rtl
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shading, config: str) -> Frame:
+def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
-    if absent := shading.features - shader_features(config):
+    if absent := lighting.features - shader_features(config):
         raise SimulatorError(
             f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
             "take configuration 'lit' or render with --engine model"
@@ -169,8 +227,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
             f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
         ),
         (
-            shading.light is not None
-            and not all(-tracer.light_limit <= value < tracer.light_limit for value in shading.light.position),
+            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
             f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
         ),
         (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
@@ -181,7 +238,7 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
             )
     tracer.load(rom.octree.words)
     pixels = tracer.render(
-        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading(rom, shading)
+        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading_of(rom, lighting)
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(
@@ -198,15 +255,14 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], shading: Shadin
     )
 
 
-def _shading(rom: Rom, shading: Shading) -> dict[str, Any]:
-    light = shading.light
+def _shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
     mirrors = np.zeros(256, dtype=np.uint8)
     mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     return {
-        "flat": shading.flat,
-        "light": None if light is None else np.array(light.position, dtype=np.int32),
-        "ambient": 0 if light is None else light.ambient,
-        "bounces": shading.bounces,
+        "flat": lighting.flat,
+        "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
+        "ambient": lighting.ambient if lighting.on else 0,
+        "bounces": lighting.bounces,
         "mirrors": mirrors,
     }
 
@@ -230,19 +286,28 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
     return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
 
 
-def _check_shading(shading: Shading) -> None:
-    if not 0 <= shading.bounces <= BOUNCE_LIMIT:
-        raise SimulatorError(f"{shading.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
-    if shading.light is None:
+def _check_lighting(lighting: Lighting) -> None:
+    if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
+        raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
+    if not lighting.on:
         return
-    if not 0 <= shading.light.ambient <= 255:
-        raise SimulatorError(f"an ambient brightness of {shading.light.ambient} is not 0 … 255")
-    if max(abs(value) for value in shading.light.position) >= 1 << 31:
-        raise SimulatorError(f"the light at {shading.light.position} is not within signed 32 bits of 1/16 voxel")
+    if not 0 <= lighting.ambient <= 255:
+        raise SimulatorError(f"an ambient brightness of {lighting.ambient} is not 0 … 255")
+    if max(abs(value) for value in lighting.position) >= 1 << 31:
+        raise SimulatorError(f"the light at {lighting.position} is not within signed 32 bits of 1/16 voxel")
 
 
 def palette_of(rom: Rom) -> NDArray[np.uint8]:
-    """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
+    """Return the colours that the engines take: uint8, shape (256, 3), sRGB, a row per material id.
+
+    Examples
+    --------
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> palette_of(rom)[1].tolist()
+    [255, 0, 0]
+    """
     palette = np.zeros((256, 3), dtype=np.uint8)
     for number, material in enumerate(rom.materials):
         palette[number] = material.colour

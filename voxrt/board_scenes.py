@@ -10,12 +10,11 @@ import numpy as np
 
 from voxrt import voxelize
 from voxrt.board.errors import Refused
-from voxrt.board.scene import Lighting, Scene
-from voxrt.board.view import Camera
+from voxrt.board.scene import Scene
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob, read_any
-from voxrt.export import Lighting as Wanted
 from voxrt.octree import RomError
-from voxrt.pipeline import PREVIEW_SIZE, build
+from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
 from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.scene_memory import Progress
 
-_STAGES = ("load", "fit", "tint", "voxelize", "octree")
+_STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
 
 def board_scene(blob: Blob) -> Scene:
@@ -41,17 +40,9 @@ def board_scene(blob: Blob) -> Scene:
         rom.octree.words,
         colours,
         mirrors,
-        Camera(camera.position, camera.look, camera.right, camera.up),
-        _lighting(blob.lighting),
+        camera,
+        blob.lighting,
     )
-
-
-def _lighting(wanted: Wanted | None) -> Lighting | None:
-    if wanted is None:
-        return None
-    features_on = {"shadows": wanted.on, "flat": wanted.flat, "mirrors": wanted.bounces}
-    features = frozenset(name for name, on in features_on.items() if on)
-    return Lighting(wanted.position, wanted.ambient, wanted.bounces, features)
 
 
 def load_scene(path: Path, depth: int | None = None, progress: Progress | None = None) -> Scene:

@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.export import Lighting
-from voxrt.sim import Camera, Light, frame_scene, look_at, outline
-from voxrt.sim.camera import THREE_QUARTER, eye_that_sees, focal_length
+from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
+from voxrt.sim import frame_scene, outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from voxrt.octree import Rom
-    from voxrt.sim.camera import Triple
+    from voxrt.octree.camera import Triple
     from voxrt.voxelize import Grid, Scene, Viewpoint
 
     Vector = NDArray[np.float64]
@@ -127,7 +126,7 @@ def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
     if np.abs(place).max() >= 2**31:
         raise ViewpointError("the scene's light stands too far away; move it nearer")
     x, y, z = place.astype(np.int64).tolist()
-    return Lighting((x, y, z), Light((x, y, z)).ambient, on=True, bounces=bounces)
+    return Lighting((x, y, z), on=True, bounces=bounces)
 
 
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:

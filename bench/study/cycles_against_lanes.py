@@ -2,9 +2,9 @@
 Cycles against lanes
 ====================
 
-The report's figure 38: clocks a frame against ray processors, simulated. Theirs fell as 1/n plus an offset, since the
-pixel buffer polled the processors in turn. Ours has a bound: each lane reads one octree word a clock, and one pixel a
-clock leaves the shader.
+Figure 38 of the report shows clock cycles per frame against ray processors, simulated: 1/n plus a constant, because
+their pixel buffer asked one processor after another. Our design has a clear bound: each lane reads one octree word
+per cycle, and one pixel per cycle leaves the shader.
 """
 
 import sys
@@ -23,7 +23,7 @@ size = (192, 192)
 configurations = ["tiny", "duo", "quad", "octo", "z1"]
 lanes = np.array([LANES[name] for name in configurations])
 plt.figure(figsize=(7, 4.5))
-print(f"{'cycles a pixel':24s}" + "".join(f"{count:>8d}" for count in lanes) + "  lanes")
+print(f"{'cycles per pixel':24s}" + "".join(f"{count:>8d}" for count in lanes) + "  lanes")
 for scene in scenes(Path(), size):
     rom = octree.Rom(scene.name, octree.Octree(scene.depth, scene.words), ())
     camera = sim.Camera(*(tuple(map(int, row)) for row in scene.camera))
@@ -31,12 +31,12 @@ for scene in scenes(Path(), size):
     cycles = np.array([cost.cycles / cost.rays for cost in costs])
     words = costs[0].words_read / costs[0].rays
     print(f"{scene.name:24s}" + "".join(f"{value:8.2f}" for value in cycles))
-    (line,) = plt.loglog(lanes, cycles, "o-", label=f"{scene.name}: {words:.1f} words a ray")
+    (line,) = plt.loglog(lanes, cycles, "o-", label=f"{scene.name}: {words:.1f} words per ray")
     plt.loglog(lanes, np.maximum(1, words / lanes), ":", color=line.get_color())
 plt.loglog((1, 2), (338, 169.6), "ks-", label="the original on its house, simulated")
 plt.xticks(lanes, map(str, lanes))
 plt.xlabel("lanes")
-plt.ylabel("clocks a pixel; dotted: the bound")
+plt.ylabel("cycles per pixel; dotted: the bound")
 plt.legend(fontsize=8)
 plt.grid(visible=True, which="major", alpha=0.3)
 plt.tight_layout()

@@ -31,7 +31,7 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
     module = import_verilated("use --device model")
     if config not in module.CORES:
         raise NoSuchConfigurationError(config, module.CORES)
-    core = module.PixelGenerator(config)
+    core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
     return RegisterDevice(f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause)
 

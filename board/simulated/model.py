@@ -9,6 +9,7 @@ import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError
 from voxrt.board.scene import EMPTY_LEAF
+from voxrt.board.view import FEATURES
 from voxrt.sim import _model
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class ModelDevice:
             depth=16,
             size=(_FRAME_LIMIT, _FRAME_LIMIT),
             position_limit=1 << 31,
-            features=frozenset({"flat", "shadows", "mirrors"}),
+            features=frozenset(FEATURES),
         )
         self._memory = _Memory(capacity)
         self._view: View | None = None
@@ -150,17 +151,17 @@ class ModelDevice:
                 camera,
                 *view.size,
                 self._threads,
-                flat="flat" in view.features,
-                light=np.array(view.light, dtype=np.int32) if "shadows" in view.features else None,
-                ambient=view.ambient,
-                bounces=view.bounces if "mirrors" in view.features else 0,
+                flat=view.lighting.flat,
+                light=np.array(view.lighting.position, dtype=np.int32) if view.lighting.on else None,
+                ambient=view.lighting.ambient,
+                bounces=view.lighting.bounces,
                 mirrors=self._memory.mirrors,
             )
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
         self._view = view
         counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
-        return Frame(pixels["colour"], counters)
+        return Frame(pixels.colour, counters)
 
     def close(self) -> None:
         """Do nothing: the model holds no resources."""

@@ -2,8 +2,8 @@
 Another scene on a running board
 ================================
 
-The simulated core, driven as a board is: through its registers, its memory port and its video stream. Scenes are
-written between two frames and read back; ``voxrt upload`` does the same over a network.
+The simulated core is driven in the same way as a board: by its registers, its memory port and its video stream. A
+scene is written between two frames and read back for a check. ``voxrt upload`` does the same over a network.
 """
 
 import sys
@@ -26,9 +26,9 @@ print(f"{identity.name}: {identity.capacity:,} words, {identity.depth} levels")
 
 
 # %%
-# Two scenes, one after the other, in one memory.
+# Two scenes, one after the other.
 def report(stage: str, done: int, total: int) -> None:
-    """Say when a stage is through."""
+    """Print when a stage is finished."""
     if done == total:
         print(f"  {stage}: {total:,}")
 
@@ -43,7 +43,7 @@ for name in ("house.obj", "dog.usda"):
     print(f"{rom.name}: {cost.cycles / cost.rays:.2f} clocks a pixel, {cost.words_read / cost.rays:.2f} words")
 
 # %%
-# What the registers say of the last frame.
+# The registers after the last frame.
 for register, value in device.registers().items():
     print(f"{register:14s} {value}")
 

@@ -1,6 +1,6 @@
 // The connection to the frame server: it reconnects by itself, numbers the requests and dispatches what arrives.
 
-export const PROTOCOL = 1;
+export const PROTOCOL = 2;
 const HEADER = 56;
 const RETRY = { first: 500, longest: 5000 }; // milliseconds
 

@@ -5,10 +5,10 @@ import { axes, faceWorld, fieldOfView, focal, lookAlong } from "./camera.js";
 export const $ = (id) => document.getElementById(id);
 
 export const PRESETS = [
-  ["Corner", [-0.62, -0.55, -1]], ["Front", [0, 0, -1]], ["Back", [0, 0, 1]], ["Left", [1, 0, 0]], ["Right", [-1, 0, 0]],
+  ["Corner", [-0.62, -0.68, -1]], ["Front", [0, 0, -1]], ["Back", [0, 0, 1]], ["Left", [1, 0, 0]], ["Right", [-1, 0, 0]],
   ["Top", [0, -1, 0]], ["Bottom", [0, 1, 0]],
 ];
-const FEATURES = { flat: "Flat colours", shadows: "Shadows", mirrors: "Mirrors" };
+const FEATURES = { flat: "Flat colours", light: "Shadows", mirrors: "Mirrors" };
 const SIZES = [[320, 240], [512, 512], [640, 480], [800, 600], [1280, 720], [1920, 1080]];
 const SAVED = "voxrt.views";
 
@@ -91,7 +91,7 @@ export class Panel {
       toggle.dataset.feature = name;
       pressed(toggle, false);
     }
-    $("light").hidden = !device.features.includes("shadows");
+    $("light").hidden = !device.features.includes("light");
     $("bounces-row").hidden = !device.features.includes("mirrors");
     this.maxSize = device.size;
     this.widthStep = device.width_step;

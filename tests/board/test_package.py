@@ -42,8 +42,9 @@ NEWER_MODULES = {"tomllib", "wsgiref.types"}
 def wheel(tmp_path_factory):
     pytest.importorskip("setuptools", "77", reason="building the wheel needs setuptools: pip install 'setuptools>=77'")
     folder = tmp_path_factory.mktemp("board")
-    for room in ("board", "serve"):  # a copy, because setuptools writes beside the sources
-        shutil.copytree(ROOT / room, folder / room, ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
+    for source in PACKAGES.values():  # a copy, because setuptools writes beside the sources
+        ignored = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
+        shutil.copytree(source, folder / source.relative_to(ROOT), ignore=ignored)
     command = [sys.executable, "-m", "pip", "wheel", "--no-build-isolation", "--no-deps", "--no-index", "--quiet"]
     built = subprocess.run(
         [*command, "-w", folder / "wheels", folder / "board"], capture_output=True, text=True, check=False
@@ -57,7 +58,9 @@ def test_contents(wheel):
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
     modules = {name for name in names if name.endswith(".py")}
-    assert modules == {f"voxrt_board/{path.parent.name}/{path.name}" for path in SOURCES}
+    assert modules == {
+        f"{name.replace('.', '/')}/{path.name}" for name, folder in PACKAGES.items() for path in folder.glob("*.py")
+    }
     page = {f"voxrt_board/serve/page/{path.name}" for path in (ROOT / "serve" / "page").iterdir()}
     assert {name for name in names if "/page/" in name} == page
 

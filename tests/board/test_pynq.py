@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import runpy
 from dataclasses import replace
@@ -22,9 +21,9 @@ from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import Camera, View
+from voxrt.board.view import Camera, View, frame_world
 from voxrt.board.view_check import check_view
-from voxrt.board.viewpoint import face_world
+from voxrt.rtl.configurations import read_configurations
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
@@ -58,7 +57,7 @@ def test_frames(monkeypatch, core):
         memory.load(scene, ignore)
         SceneMemory(model).load(scene, ignore)
         for size in (SIZE, (32, 24), (32, 24)):
-            view = View(face_world(3, size), size, (9, 8, 7))
+            view = View(frame_world(3, size), size, (9, 8, 7))
             frame, expected = device.frame(view), model.frame(view)
             assert (frame.colour == expected.colour).all()
             assert len(np.unique(frame.colour.reshape(-1, 3), axis=0)) > 4
@@ -112,7 +111,7 @@ def test_widths_that_the_vdma_cannot_write(monkeypatch, core):
     install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
     SceneMemory(device).load(scene_of(1), ignore)
-    view = View(face_world(3, SIZE), SIZE)
+    view = View(frame_world(3, SIZE), SIZE)
     check_view(view, device.identity)
     for columns in (1, 4, 44, 62, 63):
         with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, which PYNQ"):
@@ -137,8 +136,7 @@ def test_the_block_design_has_these_names():
     for name, base in BASE.items():
         assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
     mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
-    blocks = json.loads((RTL / "configurations.json").read_text())["z1"]["BlockBits"]
-    assert mapped >= 4 * (1 + (8 << blocks))
+    assert mapped >= 4 * read_configurations()["z1"].words
 
 
 def test_the_map_is_the_generated_one():

@@ -17,8 +17,7 @@ from voxrt.board.scene import EMPTY_LEAF, Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import View
-from voxrt.board.viewpoint import face_world
+from voxrt.board.view import View, frame_world
 
 SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
@@ -71,7 +70,7 @@ OLD, NEW = scene_of(1, 3, 6000), scene_of(2, 4, 6000)
 
 
 def view_of(scene, size=SIZE):
-    return View(face_world(scene.depth, size), size, scene.background)
+    return View(frame_world(scene.depth, size), size, scene.background)
 
 
 def expected(scene, view):
@@ -98,7 +97,7 @@ def open_device(request, monkeypatch):
         CORES = ("tiny",)
 
         @staticmethod
-        def PixelGenerator(_config):  # noqa: N802 - the class of the native module
+        def Core(_config):  # noqa: N802 - the class of the native module
             return core._core
 
     monkeypatch.setattr("voxrt.board.simulated.core.import_verilated", lambda _advice: Module)

@@ -6,8 +6,7 @@ import pytest
 import voxrt
 from voxrt import export
 from voxrt.board_scenes import load_scene
-from voxrt.export import Lighting
-from voxrt.sim import Light, Shading
+from voxrt.sim import Lighting
 from voxrt.sim import render as render_frame
 
 YARD = """
@@ -42,7 +41,7 @@ def test_the_preview_has_the_light(yard, tmp_path):
     origin, voxel = np.array(lit.rom.grid.origin), lit.rom.grid.voxel_size
     place = tuple(int(x) for x in np.rint((np.array([4, 6, 1]) - origin) / voxel * 16))
     assert lit.lighting == Lighting(place, 32, on=True)
-    expected = render_frame(lit.rom, lit.preview.camera, SIZE, engine="model", shading=Shading(light=Light(place)))
+    expected = render_frame(lit.rom, lit.preview.camera, SIZE, engine="model", lighting=Lighting(place, on=True))
     assert np.array_equal(lit.preview.frame.colour, expected.colour)
     yard.write_text(YARD.replace("[light]\nposition = [4, 6, 1]\n", ""))
     plain = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE, engine="model")
@@ -56,7 +55,7 @@ def test_the_preview_has_the_mirrors(yard, tmp_path):
     )
     built = voxrt.build(yard, tmp_path, depth=5, preview=True, size=SIZE)
     assert built.lighting == Lighting(bounces=4)
-    expected = render_frame(built.rom, built.preview.camera, SIZE, engine="model", shading=Shading(bounces=4))
+    expected = render_frame(built.rom, built.preview.camera, SIZE, engine="model", lighting=Lighting(bounces=4))
     assert np.array_equal(built.preview.frame.colour, expected.colour)
     plain = render_frame(built.rom, built.preview.camera, SIZE, engine="model")
     assert (plain.colour != expected.colour).any()
@@ -74,7 +73,7 @@ def test_camera_and_light_stand_in_manifest_blob_and_board(yard, tmp_path):
         scene = load_scene(path, depth=5 if path == yard else None)
         assert scene.camera.position == built.view.position
         assert scene.lighting.position == built.lighting.position
-        assert scene.lighting.features == {"shadows"}
+        assert scene.lighting.features == {"light"}
 
 
 def test_what_cannot_be_seen_is_counted(yard, tmp_path):

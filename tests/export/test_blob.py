@@ -13,6 +13,7 @@ from oracles.random_worlds import dense_cubes
 
 from voxrt import export, octree
 from voxrt.octree import Rom, RomError
+from voxrt.octree.camera import Camera, Lighting
 from voxrt.voxelize import EMPTY, Grid, Material
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -21,8 +22,8 @@ MATERIALS = (
     Material("red", (255, 0, 1)),
     Material("mirror \N{SNOWMAN}", (1, 2, 3), mirror=True, authored=False),
 )
-VIEW = export.View((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, -32768, 0))
-LIGHTING = export.Lighting((5, -6, 7), ambient=9, on=True, flat=False, bounces=3)
+VIEW = Camera((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, -32768, 0))
+LIGHTING = Lighting((5, -6, 7), ambient=9, on=True, flat=False, bounces=3)
 
 
 def blob(view=VIEW, lighting=LIGHTING, grid=Grid(2, (1.5, -2.0, 0.1), 0.25)):  # noqa: B008 - frozen

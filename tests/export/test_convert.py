@@ -9,6 +9,7 @@ from oracles.random_worlds import dense_cubes
 
 from voxrt import export, octree
 from voxrt.octree import Rom, RomError
+from voxrt.octree.camera import Camera, Lighting
 from voxrt.voxelize import EMPTY, Grid, Material
 
 MATERIALS = (
@@ -25,8 +26,8 @@ def rom(name="scene"):
 
 
 def blob():
-    view = export.View((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, -32768, 0))
-    return export.Blob(rom(), view, export.Lighting((5, -6, 7), ambient=9, on=True, flat=False, bounces=3))
+    view = Camera((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, -32768, 0))
+    return export.Blob(rom(), view, Lighting((5, -6, 7), ambient=9, on=True, flat=False, bounces=3))
 
 
 @pytest.mark.parametrize("path", list(itertools.product(export.WRITABLE_SUFFIXES, repeat=2)), ids="".join)

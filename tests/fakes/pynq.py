@@ -80,9 +80,9 @@ class Core:
     """The verilated core, with faults that tests can set."""
 
     def __init__(self, config="tiny"):
-        from voxrt.sim._rtl import PixelGenerator
+        from voxrt.sim._rtl import Core
 
-        self._core = PixelGenerator(config)
+        self._core = Core(config)
         self.hangs = False  # its clock stops
         self.vdma_errors = 0
         self.identity = None  # that of other hardware

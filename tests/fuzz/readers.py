@@ -19,6 +19,7 @@ from oracles.rich_gltf import rich
 
 from voxrt import export, octree, voxelize
 from voxrt.board.errors import Refused
+from voxrt.octree.camera import Camera, Lighting
 from voxrt.serve.blob import read_blob as read_blob_on_the_board
 
 if TYPE_CHECKING:
@@ -178,8 +179,8 @@ def _blob_seed() -> bytes:
     cube = np.zeros((4, 4, 4), int)
     cube[1, 2, 3] = 1
     rom = octree.Rom("a", octree.from_dense(cube), export.default_materials(1), voxelize.Grid(2, (0.0, 0.0, 0.0), 1.0))
-    view = export.View((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, 1, 0))
-    return export.blob_bytes(export.Blob(rom, view, export.Lighting((5, -6, 7), 9, on=True, flat=False, bounces=3)))
+    view = Camera((-1, 2, 3), (0, 0, 90), (1, 0, 0), (0, 1, 0))
+    return export.blob_bytes(export.Blob(rom, view, Lighting((5, -6, 7), 9, on=True, flat=False, bounces=3)))
 
 
 def _vox_seed() -> bytes:

@@ -8,7 +8,7 @@ from oracles.octree import reference_words, unshared_words
 from oracles.random_worlds import dense_cubes
 
 from voxrt import octree, sim
-from voxrt.sim import Camera, Shading
+from voxrt.sim import Camera, Lighting
 from voxrt.voxelize import EMPTY, Material
 
 
@@ -168,8 +168,10 @@ def test_pictures_are_those_of_the_whole(seed):
     trees = [share_hidden(kept), fill_hidden(kept, 7)]
     roms = [octree.Rom("world", tree, materials) for tree in (kept, *trees)]
     for camera in cameras(cube, rng, 20):
-        shading = Shading(bounces=int(rng.integers(0, 4)))
-        first, *others = (sim.render(rom, camera, (33, 25), shading=shading, engine="model", threads=1) for rom in roms)
+        lighting = Lighting(bounces=int(rng.integers(0, 4)))
+        first, *others = (
+            sim.render(rom, camera, (33, 25), lighting=lighting, engine="model", threads=1) for rom in roms
+        )
         for other in others:
             np.testing.assert_array_equal(other.colour, first.colour)
             np.testing.assert_array_equal(other.material, first.material)

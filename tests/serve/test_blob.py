@@ -10,8 +10,7 @@ import pytest
 from fakes.device import scene
 
 from voxrt.board.errors import Refused
-from voxrt.board.scene import Lighting
-from voxrt.board.view import Camera
+from voxrt.board.view import Camera, Lighting
 from voxrt.serve.blob import read_blob
 from voxrt.serve.scene_files import MemoryReader
 
@@ -45,7 +44,7 @@ def test_blob():
     assert read.colours[1].tolist() == [200, 100, 50]
     assert np.flatnonzero(read.mirrors).tolist() == [1]
     assert read.camera == Camera((-16, 32, 48), (0, 0, -90), (1, 0, 0), (0, 1, 0))
-    assert read.lighting == Lighting((1, -2, 3), 40, 2, frozenset({"shadows", "mirrors"}))
+    assert read.lighting == Lighting((1, -2, 3), 40, on=True, bounces=2)
     bare = read_blob(encode({name: SECTIONS[name] for name in (b"NAME", b"WRLD", b"MATL", b"WORD")}))
     assert (bare.camera, bare.lighting) == (None, None)
 
@@ -100,10 +99,10 @@ def test_blobs_of_the_exporter():
 
     materials = (Material("empty", (9, 8, 7)), Material("glass", (1, 2, 3), mirror=True))
     rom = Rom("house", Octree(3, MADE.words), materials)
-    view = blobs.View((-160, 5, 7), (1, 2, -90), (3, 0, 0), (0, 4, 0))
-    read = read_blob(blobs.blob_bytes(blobs.Blob(rom, view, blobs.Lighting((5, 6, 7), 30, on=True, bounces=3))))
+    view = Camera((-160, 5, 7), (1, 2, -90), (3, 0, 0), (0, 4, 0))
+    read = read_blob(blobs.blob_bytes(blobs.Blob(rom, view, Lighting((5, 6, 7), 30, on=True, bounces=3))))
     assert (read.name, read.depth, read.background) == ("house", 3, (9, 8, 7))
     assert (read.words == MADE.words).all()
     assert np.flatnonzero(read.mirrors).tolist() == [1]
     assert read.camera == Camera(view.position, view.look, view.right, view.up)
-    assert read.lighting == Lighting((5, 6, 7), 30, 3, frozenset({"shadows", "mirrors"}))
+    assert read.lighting == Lighting((5, 6, 7), 30, on=True, bounces=3)

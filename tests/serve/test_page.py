@@ -128,7 +128,7 @@ def test_page(tmp_path):
         )
         assert browser.until(idle)
         assert server.session.renderer.view.background == (0x20, 0x40, 0x60)
-        assert server.session.renderer.view.features == {"flat"}
+        assert server.session.renderer.view.lighting.features == {"flat"}
         assert shown(server, browser)
         assert browser.faults() == []
 

@@ -50,7 +50,7 @@ def test_requests():
         (json.dumps({"type": "view", "camera": {**CAMERA, "look": [0, 0, 32768]}}), "camera.look 32768"),
         (json.dumps({"type": "view", "camera": {**CAMERA, "look": [0, 0, 0.5]}}), "camera.look 0.5"),
         ('{"type": "view", "size": [0, 1]}', "size 0"),
-        ('{"type": "view", "features": ["fog"]}', "features is not a list of flat, shadows, mirrors"),
+        ('{"type": "view", "features": ["fog"]}', "features is not a list of flat, light, mirrors"),
         ('{"type": "view", "nonstop": 1}', "nonstop 1 is not true or false"),
         ('{"type": "upload", "files": []}', "files is not a list of 1 to 64 files"),
         ('{"type": "upload", "files": [{"name": "a", "size": 1}]}', "a file of an upload is not"),

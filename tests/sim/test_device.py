@@ -16,12 +16,11 @@ from voxrt.board.errors import DeviceError
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import View
-from voxrt.board.viewpoint import refit
+from voxrt.board.view import View, refit
 from voxrt.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
-from voxrt.sim import Camera, Light, NoSuchConfigurationError, Shading, SimulatorError, render
+from voxrt.sim import Camera, Lighting, NoSuchConfigurationError, SimulatorError, render
 from voxrt.voxelize import Material
 
 SIZE = (48, 32)
@@ -79,21 +78,20 @@ def test_features_and_background(opened):
         device = opened()
     except SimulatorError as error:
         pytest.skip(str(error))
-    assert device.identity.features == {"flat", "shadows", "mirrors"}
+    assert device.identity.features == {"flat", "light", "mirrors"}
     SceneMemory(device).load(scene, ignore)
     size = (80, 60)
     seen = refit(scene.camera, (640, 480), size)
-    camera = Camera(seen.position, seen.look, seen.right, seen.up)
     pictures = set()
-    for features, shading in (
-        ((), Shading()),
-        (("flat",), Shading(flat=True)),
-        (("shadows",), Shading(light=Light((400, 900, -100), 20))),
-        (("mirrors", "shadows"), Shading(light=Light((400, 900, -100), 20), bounces=3)),
+    for lighting in (
+        Lighting(),
+        Lighting(flat=True),
+        Lighting((400, 900, -100), 20, on=True),
+        Lighting((400, 900, -100), 20, on=True, bounces=3),
     ):
-        view = View(seen, size, (1, 2, 3), (400, 900, -100), 20, frozenset(features), 3)
+        view = View(seen, size, (1, 2, 3), lighting)
         picture = device.frame(view).colour
-        assert (picture == render(rom, camera, size, engine="model", shading=shading).colour).all()
+        assert (picture == render(rom, seen, size, engine="model", lighting=lighting).colour).all()
         pictures.add(picture.tobytes())
     assert len(pictures) == 4
 

@@ -15,8 +15,7 @@ from voxrt.octree import Octree, Rom
 from voxrt.sim import (
     FACE_NONE,
     Camera,
-    Light,
-    Shading,
+    Lighting,
     SimulatorError,
     check,
     frame_scene,
@@ -97,29 +96,30 @@ def test_a_shaded_rom_is_lit_and_reflects():
     camera = frame_scene(rom, (64, 48))
     plain = render(rom, camera, (64, 48), engine="model")
     floor = plain.material == 1
-    flat = render(rom, camera, (64, 48), engine="model", shading=Shading(flat=True))
+    flat = render(rom, camera, (64, 48), engine="model", lighting=Lighting(flat=True))
     np.testing.assert_array_equal(np.unique(flat.colour[floor], axis=0), [[200, 200, 200]])
-    light = Light((16 * 30, 16 * 40, 16 * 5), ambient=64)
-    lit = render(rom, camera, (64, 48), engine="model", shading=Shading(light=light))
+    lit = render(
+        rom, camera, (64, 48), engine="model", lighting=Lighting((16 * 30, 16 * 40, 16 * 5), ambient=64, on=True)
+    )
     dark = np.all(lit.colour == 50, axis=2) & floor  # the box's shadow on the floor
     assert 0.02 < dark.sum() / floor.sum() < 0.5
-    mirrored = render(rom, camera, (64, 48), engine="model", shading=Shading(bounces=1))
+    mirrored = render(rom, camera, (64, 48), engine="model", lighting=Lighting(bounces=1))
     assert np.any(mirrored.material[floor] == 2)
     assert np.any(mirrored.material[floor] == 0)
     np.testing.assert_array_equal(mirrored.colour[plain.material == 2], plain.colour[plain.material == 2])
 
 
 @pytest.mark.parametrize(
-    ("shading", "message"),
+    ("lighting", "message"),
     [
-        (Shading(bounces=16), "16 reflections are not 0 … 15"),
-        (Shading(light=Light((0, 0, 0), ambient=256)), "ambient brightness of 256 is not 0 … 255"),
-        (Shading(light=Light((0, 1 << 31, 0))), "the light at .* is not within signed 32 bits"),
+        (Lighting(bounces=16), "16 reflections are not 0 … 15"),
+        (Lighting((0, 0, 0), ambient=256, on=True), "ambient brightness of 256 is not 0 … 255"),
+        (Lighting((0, 1 << 31, 0), on=True), "the light at .* is not within signed 32 bits"),
     ],
 )
-def test_shading_out_of_range_is_refused(rom, shading, message):
+def test_lighting_out_of_range_is_refused(rom, lighting, message):
     with pytest.raises(SimulatorError, match=message):
-        render(rom, ALONG_Z, (4, 4), engine="model", shading=shading)
+        render(rom, ALONG_Z, (4, 4), engine="model", lighting=lighting)
 
 
 def test_directions_that_overflow_are_refused(rom):
@@ -185,24 +185,24 @@ def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path):
 @needs_rtl
 def test_the_ray_tracer_shades_as_the_model(rom):
     camera = frame_scene(rom, (40, 30))
-    shading = Shading(light=Light((300, 900, -70), ambient=20), bounces=3)
-    found = check(rom, camera, (40, 30), shading=shading, config="lit4")
+    lighting = Lighting((300, 900, -70), ambient=20, on=True, bounces=3)
+    found = check(rom, camera, (40, 30), lighting=lighting, config="lit4")
     assert found.wrong_pixels == 0
     assert not np.array_equal(found.rtl.colour, render(rom, camera, (40, 30), engine="model").colour)
 
 
 @needs_rtl
 @pytest.mark.parametrize(
-    ("shading", "absent"),
+    ("lighting", "absent"),
     [
-        (Shading(flat=True), "flat"),
-        (Shading(light=Light((0, 0, 0))), "light"),
-        (Shading(bounces=2, flat=True), "flat and mirrors"),
+        (Lighting(flat=True), "flat"),
+        (Lighting((0, 0, 0), on=True), "light"),
+        (Lighting(bounces=2, flat=True), "flat and mirrors"),
     ],
 )
-def test_a_configuration_without_the_feature_says_so(rom, shading, absent):
+def test_a_configuration_without_the_feature_says_so(rom, lighting, absent):
     with pytest.raises(SimulatorError, match=f"'tiny' is built without {absent}; .*'lit'.*--engine model"):
-        render(rom, ALONG_Z, (4, 4), engine="rtl", shading=shading)
+        render(rom, ALONG_Z, (4, 4), engine="rtl", lighting=lighting)
 
 
 @needs_rtl
@@ -214,6 +214,6 @@ def test_a_light_too_far_for_the_ray_tracer_is_refused(rom):
                 frame_scene(rom, (40, 30)),
                 (40, 30),
                 engine="rtl",
-                shading=Shading(light=Light((light,) * 3)),
+                lighting=Lighting((light,) * 3, on=True),
                 config="lit4",
             )

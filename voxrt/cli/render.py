@@ -83,15 +83,16 @@ def render(
     memory = blob.rom
     camera = aim(memory, blob.view, size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, flat=flat)
-    shading = voxrt.Shading.of(lighting)
     if config is None:
         config = "tiny" if lighting is None else "lit"
-    elif engine == "rtl" and lighting == blob.lighting and shading.features - voxrt.shader_features(config):
+    elif (
+        engine == "rtl" and lighting and lighting == blob.lighting and lighting.features - voxrt.shader_features(config)
+    ):
         warn((voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),))
         lighting = None
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, shading=voxrt.Shading.of(lighting), config=config)
+        checked = voxrt.check(memory, camera, size, lighting=lighting or voxrt.Lighting(), config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
         frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
@@ -115,7 +116,7 @@ def _lighting(
     """Give the memory's lighting with what the command line says in its place; None where nothing is wanted."""
     lighting = authored or voxrt.Lighting()
     if light is not None:
-        lighting = replace(lighting, position=light, on=True, ambient=32)
+        lighting = replace(lighting, position=light, on=True, ambient=voxrt.Lighting().ambient)
     if ambient is not None:
         lighting = replace(lighting, ambient=ambient)
     if bounces is not None:

@@ -14,7 +14,6 @@ from voxrt.voxelize.assets import SUFFIXES
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.export import View
     from voxrt.octree import Rom
 
 
@@ -23,7 +22,7 @@ class Source:
     """A memory and where it came from: the camera that its file names, and the scene it was built from, if any."""
 
     rom: Rom
-    view: View | None = None
+    view: voxrt.Camera | None = None
     scene: voxrt.Scene | None = None
 
     def camera(self, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
@@ -44,8 +43,8 @@ def read_source(path: Path, depth: int | None) -> Source:
     return Source(blob.rom, view=blob.view)
 
 
-def aim(rom: Rom, view: View | None, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
+def aim(rom: Rom, view: voxrt.Camera | None, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
     """Give the camera that a memory's file names, unless another is asked for."""
     if view is not None and sight == Sight():
-        return voxrt.Camera(view.position, view.look, view.right, view.up)
+        return view
     return voxrt.aim_camera(rom, size, position=sight.position, look=sight.look, right=sight.right, up=sight.up)
