@@ -14,11 +14,10 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = tomllib.loads((ROOT / "board" / "pyproject.toml").read_text(encoding="utf-8"))
-SOURCES = [
-    path
-    for folder in SETTINGS["tool"]["setuptools"]["package-dir"].values()
-    for path in (ROOT / "board" / folder).glob("*.py")
-]
+PACKAGES = {
+    name: (ROOT / "board" / folder).resolve() for name, folder in SETTINGS["tool"]["setuptools"]["package-dir"].items()
+}
+SOURCES = [path for folder in PACKAGES.values() for path in sorted(folder.glob("*.py"))]
 
 NEWER_THAN_3_10 = {
     "asyncio": {"TaskGroup", "Runner", "timeout", "timeout_at", "Barrier"},
