@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -98,8 +99,8 @@ main()
 
 
 def test_version():
-    main = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert SETTINGS["project"]["version"] == main["project"]["version"]
+    main = (ROOT / "voxrt" / "__init__.py").read_text(encoding="utf-8")
+    assert SETTINGS["project"]["version"] == re.search(r'^__version__ = "(.+)"$', main, re.MULTILINE)[1]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}/{path.name}")
