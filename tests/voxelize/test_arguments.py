@@ -269,7 +269,7 @@ def test_whole_arrays_hold_equal_values_or_are_refused(values, dtype):
         assert found.dtype == dtype
         assert found.tolist() == values
     else:
-        with pytest.raises((TypeError, ValueError), match="^x"):
+        with pytest.raises((TypeError, ValueError), match=r"^x"):
             arguments.whole_array("x", values, ("N",), dtype, low=0, high=200)
 
 
