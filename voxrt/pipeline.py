@@ -67,8 +67,8 @@ class BuildResult:
     budget
         What fitting the budget took, None when there was none.
     seconds
-        Wall seconds a stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``, ``"interior"``,
-        ``"budget"``, ``"write"``, ``"preview"``.
+        Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
+        ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Of what some of these stages consist, in order: ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting

@@ -160,7 +160,7 @@ def test_missing_coordinates_and_images_leave_the_factor_and_are_counted(tmp_pat
     writer = textured()
     writer.json["textures"][0] = {"extensions": {"KHR_texture_basisu": {"source": 0}}}
     scene = load(writer.save(tmp_path / "a.glb"))
-    assert "textures[0] is a KTX2 image alone" in scene.warnings[0].message
+    assert "textures[0] has only a KTX2 image" in scene.warnings[0].message
 
 
 @pytest.mark.parametrize(
