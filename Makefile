@@ -7,13 +7,13 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint hardware docs bench sanitize clean
+.PHONY: help demo test lint lint-workflows hardware docs bench sanitize clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
-	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
+	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
@@ -27,12 +27,26 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
 
-lint: $(VENV)/.installed $(VENV)/.tools
+lint: $(VENV)/.installed $(VENV)/.tools lint-workflows
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
 	$(BIN)/python rtl/lint.py
+
+# The workflows, forms and texts of .github. actionlint checks the shell scripts in them by shellcheck.
+WORKFLOW_FILES := .github .pre-commit-config.yaml .yamllint
+lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
+	$(BIN)/yamllint --strict $(WORKFLOW_FILES)
+	$(BIN)/codespell $(WORKFLOW_FILES) SECURITY.md
+	$(BIN)/shellcheck .ci/run .github/*.sh
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.dependabot .github/dependabot.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms \
+	  $(filter-out %/config.yml,$(wildcard .github/ISSUE_TEMPLATE/*.yml))
+	@if test -x $(BIN)/actionlint; then echo $(BIN)/actionlint && PATH="$(abspath $(BIN)):$$PATH" actionlint; \
+	  else echo "actionlint is left out: it is built by Go, which is not here"; fi
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
@@ -103,6 +117,13 @@ $(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group dev
+	@touch $@
+
+# No Python package brings actionlint itself: Go's module proxy has it.
+$(VENV)/.actionlint: $(VENV)/.ready Makefile
+	@if command -v go >/dev/null; then echo "building actionlint"; \
+	  GOBIN=$(abspath $(BIN)) GOFLAGS=-modcacherw go install github.com/rhysd/actionlint/cmd/actionlint@v1.7.12 || \
+	  echo "actionlint cannot be built by the Go that is here"; fi
 	@touch $@
 
 $(VENV)/.hardware $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml

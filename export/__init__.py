@@ -8,6 +8,7 @@ from voxrt.export.listing import read_listing
 from voxrt.export.manifest import Manifest, Source, read_manifest, write_manifest
 from voxrt.export.mem import read_mem, write_mem
 from voxrt.export.mif import read_mif, write_mif
+from voxrt.export.npz import write_npz
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import read_raw, write_raw
 from voxrt.export.rom_files import WORD_SUFFIXES, RomFiles, read_rom, write_rom
@@ -43,6 +44,7 @@ __all__ = [
     "write_manifest",
     "write_mem",
     "write_mif",
+    "write_npz",
     "write_raw",
     "write_rom",
     "write_vox",

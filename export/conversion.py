@@ -1,4 +1,4 @@
-"""Any file that holds a ROM to any other."""
+"""Files of memories by their suffix: which are read, and which are written without loss."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ LISTING_SUFFIX = ".txt"
 VOX_SUFFIX = ".vox"
 
 READABLE_SUFFIXES = (*WORD_SUFFIXES, BLOB_SUFFIX, LISTING_SUFFIX, VOX_SUFFIX)
+"""The files that :func:`read_any` reads."""
+
 WRITABLE_SUFFIXES = (*WORD_SUFFIXES, BLOB_SUFFIX)
+"""The files that :func:`convert` writes."""
 
 
 def read_any(
@@ -32,26 +35,38 @@ def read_any(
     dialect: str | None = None,
     colours: Mapping[str, tuple[int, int, int]] | None = None,
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
-    """Read a ROM from a file of words (with its manifest or without), a blob, a node listing or a MagicaVoxel scene.
+    """Read a memory: a file of words (with its manifest or without), a blob, a node listing or a MagicaVoxel scene.
 
     Parameters
     ----------
     path
-        Its suffix, one of :data:`READABLE_SUFFIXES`, says what it is.
-    depth, dialect
-        What a file of words without manifest, or a listing, does not say.
+        The file. Its suffix, one of :data:`READABLE_SUFFIXES`, says what it is.
+    depth
+        Levels of the octree, if the file does not say: a file of words without a manifest, or a listing.
+    dialect
+        How the words encode materials, if the file does not say.
     colours
-        sRGB by material name, for a listing.
+        sRGB colours by material name, for a listing.
 
     Returns
     -------
-    tuple[Blob, tuple[SceneWarning, ...]]
-        What the file holds, and what was assumed of it.
+    blob
+        What the file holds.
+    warnings
+        What the file does not say and was assumed.
 
     Raises
     ------
     RomError, AssetError
-        Where the file is malformed, or of no kind that is read.
+        The file is malformed, or its suffix is another.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> files = voxrt.build("examples/house.obj", "out", depth=4).outputs
+    >>> blob, warnings = read_any(files["mem"])
+    >>> blob.rom, warnings
+    (<Rom 'house': depth 4, 721 words, 5 materials>, ())
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -68,16 +83,40 @@ def read_any(
 
 
 def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple[Path, ...]:
-    """Write `blob` under the name and in the format of `target`, and return the files written.
+    """Write a memory as a file that is read back without loss: words with a manifest, or a blob.
+
+    :func:`voxrt.convert` writes the forms of other programs too.
 
     Parameters
     ----------
     blob
         What :func:`read_any` read.
     target
-        The file; its suffix is one of :data:`WRITABLE_SUFFIXES`. A file of words gets a manifest beside it.
+        The file. Its suffix, one of :data:`WRITABLE_SUFFIXES`, says what it is. A file of words gets a manifest beside
+        it.
     dialect
-        How a file of words marks its leaves; a blob is always ``report``.
+        How a file of words encodes materials. A blob is always ``"report"``.
+
+    Returns
+    -------
+    tuple[Path, ...]
+        The files written, the memory first.
+
+    Raises
+    ------
+    RomError
+        The suffix is another.
+    DoesNotFitError
+        The dialect cannot name a material in use.
+    OSError
+        A file cannot be written.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> [file.name for file in convert(Blob(rom), "house.mif")]
+    ['house.mif', 'house.json']
     """
     target = Path(target)
     suffix = target.suffix.lower()

@@ -15,13 +15,15 @@ from voxrt.octree.leaf_arrays import Leaves, leaves
 from voxrt.octree.octant import Octant, octant_at
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.owners import Owners
-from voxrt.octree.query import count_in_box, material_at, solid_bounds, to_dense
+from voxrt.octree.query import count_in_box, material_at, solid_bounds
 from voxrt.octree.rom import Rom
 from voxrt.octree.statistics import Census, census
 from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.octree.vdb import from_vdb
+from voxrt.octree.voxel_arrays import ARRAY_LIMIT, to_dense, to_points
 
 __all__ = [
+    "ARRAY_LIMIT",
     "BOARDS",
     "DIALECTS",
     "MAX_DEPTH",
@@ -60,4 +62,5 @@ __all__ = [
     "solid_bounds",
     "surface_change",
     "to_dense",
+    "to_points",
 ]

@@ -24,6 +24,7 @@ from voxrt.octree.difference import diff
 from voxrt.octree.octree import Octree
 from voxrt.octree.surface import SurfaceChange, surface_change
 from voxrt.voxelize import DoesNotFitError
+from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     _SightCosts = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]
 
 BOARDS = {"pynq-z1": 1 + 8 * 4096}
-"""Words that the octree memory of a board's design holds: its configuration's 2**BlockBits blocks, and the root."""
+"""Words of the octree memory of each board's design: 2**BlockBits blocks of 8, and the root."""
 
 _LEVELS_KEPT = 3
 """However small the budget, octants of more than 1/8 of the world's side are never filled up."""
@@ -57,22 +58,24 @@ _BACKGROUND = 0.1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Fit:
-    """An octree that fits, and what that took.
+    """An octree that fits a memory, and what changed, as :func:`fit` returns it.
 
     Attributes
     ----------
     octree
-        The memory, blocks shared.
+        The memory; equal blocks are shared.
     words_before
         Words of the memory that was given.
     words_shared
-        Words once equal blocks are shared and nothing is given up.
+        Words of that memory with equal blocks shared and nothing given up.
     surface
-        Surface voxels of the original: solid, one of the six neighbours empty.
+        Surface voxels of the original: solid, with one of the six neighbours empty.
     changed
-        Of those, no longer on the surface, or of another material.
-    appeared, recoloured
-        Voxels that became solid; voxels of another material, hidden ones included.
+        Those of them that are no longer on the surface, or of another material.
+    appeared
+        Voxels that became solid.
+    recoloured
+        Voxels of another material, hidden ones included.
     """
 
     octree: Octree
@@ -90,17 +93,49 @@ class Fit:
 
 
 def share(octree: Octree) -> Octree:
-    """Store equal blocks once, breadth-first: the canonical memory of the same voxels."""
+    """Store equal blocks once, breadth-first: the canonical memory of the same voxels.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import Octree
+    >>> words = np.array([1, 9, *[0xFFFFFF01] * 6, 17, *[0xFFFFFF00] * 7, 0xFFFFFF02, *[0xFFFFFF00] * 7, 0xFFFFFF02])
+    >>> share(Octree(2, words.astype(np.uint32)))
+    <Octree: depth 2, 17 words>
+    """
+    instance("octree", octree, Octree)
     return Octree(octree.depth, _native.coarsen(octree.words, octree.depth, 0))
 
 
 def coarsen(octree: Octree, level: int) -> Octree:
-    """Make every octant of side 2**level uniform, in a world of unchanged depth: the plain way to a smaller memory.
+    """Make every octant of 2**level voxels per side uniform, in a world of unchanged depth.
 
-    An octant is empty where all of it was, else solid, of the material that most of its solid voxels had.
+    Parameters
+    ----------
+    octree
+        The memory.
+    level
+        0 … depth.
+
+    Returns
+    -------
+    Octree
+        An octant is empty if all of it was empty. Else it is solid, of the material that most of its solid voxels had.
+
+    Raises
+    ------
+    TypeError, ValueError
+        The level is none of these.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> coarse = coarsen(from_points([[1, 2, 3]], [7], depth=2), 1)
+    >>> coarse.blocks
+    1
     """
-    if not 0 <= level <= octree.depth:
-        raise ValueError(f"level must be 0 ... {octree.depth}, not {level}")
+    instance("octree", octree, Octree)
+    level = whole("level", level, 0, octree.depth)
     return Octree(octree.depth, _native.coarsen(octree.words, octree.depth, level))
 
 
@@ -111,31 +146,48 @@ def fit(
     colours: NDArray[np.uint8] | None = None,
     choose: Callable[[Sequence[Fit]], Fit] | None = None,
 ) -> Fit:
-    """Make `octree` fit a memory of `words` words, changing as little of what is seen of it as it can.
+    """Make an octree fit a memory of `words` words, with as little visible change as possible.
 
     Parameters
     ----------
     octree
         The memory, canonical or not.
     words
-        What the result may take.
+        Largest size of the result.
     colours
-        uint8, shape (M, 3), sRGB by material id, entry 0 the background: the nearer two colours, the rather one stands
-        for the other. Without them all materials are equally far apart.
+        Integers 0 … 255, shape (M, 3), sRGB by material id; entry 0 is the background. Materials of similar colours
+        replace each other first. None makes all materials equally different.
     choose
-        Takes one of the candidates, the plain coarser world first. Without it, the one with the fewest voxels that
-        changed on the surface or appeared.
+        Chooses one of the candidates; the first is the plain coarser world. None takes the candidate with the fewest
+        voxels that appeared or changed on the surface.
 
     Returns
     -------
     Fit
-        No voxel that was solid is empty in it.
+        Every voxel that was solid is solid in it.
 
     Raises
     ------
+    TypeError, ValueError
+        The size or the colours are none of these.
     DoesNotFitError
-        Where even a world of 8 octants a side takes more: names the smallest size that can.
+        Even a world of 8 octants per side takes more words. The message names the smallest possible size.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import from_dense
+    >>> tree = from_dense(np.random.default_rng(1).random((32, 32, 32)) < 0.1)
+    Traceback (most recent call last):
+        ...
+    TypeError: materials must be an array of integers, not of booleans
+    >>> tree = from_dense((np.random.default_rng(1).random((32, 32, 32)) < 0.1).astype(np.uint8))
+    >>> fitted = fit(tree, 2000)
+    >>> len(fitted.octree.words) <= 2000 < fitted.words_shared
+    True
     """
+    instance("octree", octree, Octree)
+    words = whole("words", words, 1, 1 << 32)
     shared = share(octree)
     if len(shared.words) <= words:
         return _measure(octree, shared, shared)
@@ -186,9 +238,9 @@ def _sight_costs(colours: NDArray[np.uint8] | None) -> _SightCosts:
     """
     table = np.full((256, 3), 150.0)
     if colours is not None:
-        given = np.asarray(colours, dtype=np.float64)
-        if given.ndim != 2 or given.shape[1] != 3 or len(given) > 256:
-            raise ValueError(f"colours must have the shape (M, 3), M at most 256, not {given.shape}")
+        given = whole_array("colours", colours, ("M", 3), np.int64, low=0, high=255)
+        if len(given) > 256:
+            raise ValueError(f"colours must have shape (M, 3), M at most 256, not {given.shape}")
         table[: len(given)] = given
     turns = [(a, b) for a in _FACES for b in _FACES if a != b]
     unit = 256 / np.mean([3 * (150 * (a - b)) ** 2 for a, b in turns])

@@ -7,34 +7,48 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
+from voxrt.octree.morton import morton
 from voxrt.octree.octree import MAX_DEPTH, Octree
-from voxrt.voxelize import DoesNotFitError
+from voxrt.voxelize import DoesNotFitError, Voxels
+from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from voxrt.voxelize import Voxels
+    from numpy.typing import ArrayLike
 
 
 def build(voxels: Voxels, *, threads: int = 0) -> Octree:
     """Build the octree of sparse voxels, bottom-up.
 
-    Masks collapse by bit operations, equal blocks meet in a flat hash table, and the words come out breadth-first by
-    first visit. Cost grows with the bricks and octants, never with the volume; equal voxels give equal bytes, however
-    they are cut into bricks and octants and on however many threads.
+    Masks collapse by bit operations. Equal blocks meet in a flat hash table. The words come out breadth-first by first
+    visit. The cost grows with the bricks and octants, never with the volume. Equal voxels give equal bytes, however
+    they are cut into bricks and octants, on any number of threads.
 
     Parameters
     ----------
     voxels
         What the voxelizer made.
     threads
-        How many threads to use; 0 for as many as the machine has.
+        Threads to use; 0 takes one per core.
+
+    Returns
+    -------
+    Octree
+        Equal blocks are stored once.
 
     Raises
     ------
     ValueError
-        Where the arrays break the contract of :class:`~voxrt.voxelize.Voxels`.
+        The arrays break the contract of :class:`~voxrt.voxelize.Voxels`.
+
+    Examples
+    --------
+    >>> from voxrt import voxelize
+    >>> scene = voxelize.load("examples/house.obj")
+    >>> grid = voxelize.fit_grid(scene, depth=4)
+    >>> build(voxelize.voxelize(scene, grid).voxels)
+    <Octree: depth 4, 721 words>
     """
+    voxels = instance("voxels", voxels, Voxels)
     words = _native.build(
         voxels.depth,
         np.ascontiguousarray(voxels.brick_codes),
@@ -45,45 +59,53 @@ def build(voxels: Voxels, *, threads: int = 0) -> Octree:
         np.ascontiguousarray(voxels.octant_codes),
         np.ascontiguousarray(voxels.octant_levels),
         np.ascontiguousarray(voxels.octant_materials),
-        threads,
+        whole("threads", threads, 0, 1024),
     )
     return Octree(voxels.depth, words)
 
 
-def from_dense(materials: NDArray[np.integer]) -> Octree:
+def from_dense(materials: ArrayLike) -> Octree:
     """Build the octree of a dense array.
 
     Parameters
     ----------
     materials
-        Any integer type, shape (X, Y, Z), indexed [x, y, z]: material ids 0 (empty) … 255. The world is the smallest
-        cube of a power of two that holds the array (at least 2 voxels a side), empty beyond it.
+        Integers, shape (X, Y, Z), indexed [x, y, z]: material ids 0 (empty) … 255. The world is the smallest cube with
+        a power of two voxels per side (at least 2) that holds the array. It is empty beyond the array.
+
+    Returns
+    -------
+    Octree
+        Equal blocks are stored once.
 
     Raises
     ------
-    ValueError
-        Where the array is not three-dimensional, not of integers, empty, or holds an id outside 0 … 255.
+    TypeError, ValueError
+        The array is not three-dimensional, not of integers, empty, or holds an id outside 0 … 255.
     DoesNotFitError
-        Where a side is longer than 2**16.
+        A side is longer than 2**16.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> world = np.zeros((8, 8, 8), np.uint8)
+    >>> world[:, 0] = 1
+    >>> from_dense(world)
+    <Octree: depth 3, 25 words>
     """
-    if materials.ndim != 3 or not np.issubdtype(materials.dtype, np.integer):
-        raise ValueError(
-            f"materials must be integers of shape (X, Y, Z), not {materials.dtype} of shape {materials.shape}"
-        )
-    if materials.size == 0:
-        raise ValueError(f"materials must hold a voxel, and its shape is {materials.shape}")
-    lowest, highest = int(materials.min()), int(materials.max())
-    if lowest < 0 or highest > 255:
-        raise ValueError(f"materials must be 0 ... 255, and the array holds {lowest} ... {highest}")
-    depth = max(1, (max(materials.shape) - 1).bit_length())
-    if depth > MAX_DEPTH:
+    given = np.asarray(materials)
+    if given.ndim == 3 and max(given.shape) > 1 << MAX_DEPTH:
         raise DoesNotFitError(
-            f"{max(materials.shape)} voxels a side do not fit depth {MAX_DEPTH}; cut the array in parts"
+            f"{max(given.shape)} voxels per side do not fit depth {MAX_DEPTH}; cut the array into parts"
         )
-    return Octree(depth, _native.build_dense(np.ascontiguousarray(materials, dtype=np.uint8), depth))
+    cells = whole_array("materials", given, ("X", "Y", "Z"), np.uint8, low=0, high=255)
+    if cells.size == 0:
+        raise ValueError(f"materials must hold a voxel, and its shape is {cells.shape}")
+    depth = max(1, (max(cells.shape) - 1).bit_length())
+    return Octree(depth, _native.build_dense(np.ascontiguousarray(cells), depth))
 
 
-def from_points(points: NDArray[np.integer], materials: NDArray[np.integer], depth: int) -> Octree:
+def from_points(points: ArrayLike, materials: ArrayLike, depth: int) -> Octree:
     """Build the octree of solid voxels given one by one.
 
     Parameters
@@ -95,31 +117,26 @@ def from_points(points: NDArray[np.integer], materials: NDArray[np.integer], dep
     depth
         Levels of the world, 1 … 16.
 
+    Returns
+    -------
+    Octree
+        Equal blocks are stored once.
+
     Raises
     ------
-    ValueError
-        Where a shape, a coordinate or a material is none of these.
+    TypeError, ValueError
+        A shape, a coordinate, a material or the depth is none of these.
+
+    Examples
+    --------
+    >>> tree = from_points([[0, 0, 0], [3, 3, 3]], [1, 2], depth=2)
+    >>> tree
+    <Octree: depth 2, 25 words>
     """
-    if points.ndim != 2 or points.shape[1] != 3 or materials.shape != points.shape[:1]:
-        raise ValueError(f"points and materials must be (N, 3) and (N,), not {points.shape} and {materials.shape}")
-    if len(points) and (points.min() < 0 or int(points.max()) >> depth):
-        raise ValueError(f"points must lie in 0 ... {(1 << depth) - 1}, not {points.min()} ... {points.max()}")
-    if len(points) and (materials.min() < 1 or materials.max() > 255):
-        raise ValueError(f"materials must be 1 ... 255, not {materials.min()} ... {materials.max()}")
-    codes = np.zeros(len(points), dtype=np.uint64)
-    for axis in range(3):
-        codes |= _every_third_bit(points[:, axis].astype(np.uint64)) << np.uint64(axis)
-    codes, first = np.unique(codes, return_index=True)
-    return Octree(depth, _native.build_points(codes, materials[first].astype(np.uint8), depth))
-
-
-def _every_third_bit(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Bit k of each value (16 bits) at bit 3k."""
-    for shift, mask in (
-        (16, 0x00FF0000FF0000FF),
-        (8, 0xF00F00F00F00F00F),
-        (4, 0x30C30C30C30C30C3),
-        (2, 0x9249249249249249),
-    ):
-        values = (values | values << np.uint64(shift)) & np.uint64(mask)
-    return values
+    depth = whole("depth", depth, 1, MAX_DEPTH)
+    places = whole_array("points", points, ("N", 3), np.int64, low=0, high=(1 << depth) - 1)
+    ids = whole_array("materials", materials, ("N",), np.uint8, low=1, high=255)
+    if len(ids) != len(places):
+        raise ValueError(f"points and materials must be (N, 3) and (N,), not {places.shape} and {ids.shape}")
+    codes, first = np.unique(morton(places).astype(np.uint64), return_index=True)
+    return Octree(depth, _native.build_points(codes, ids[first], depth))

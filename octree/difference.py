@@ -6,16 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.octree import _native
+from voxrt.octree.octree import Octree
 from voxrt.octree.query import as_bounds
+from voxrt.voxelize.arguments import instance
 
 if TYPE_CHECKING:
-    from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """Voxels that differ, counted exactly.
+    """Voxels that differ, counted exactly, as :func:`diff` returns them.
 
     Attributes
     ----------
@@ -26,7 +27,7 @@ class Difference:
     recoloured
         Solid in both, of different materials.
     bounds
-        The smallest box (lowest voxel, one behind the highest) that holds them all; None where nothing differs.
+        The smallest box that holds them all: its lowest voxel, and one behind its highest. None if nothing differs.
     """
 
     appeared: int
@@ -42,12 +43,12 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Voxels that differ and hang together by faces, edges or corners.
+    """Voxels that differ and are connected by faces, edges or corners, as :func:`differing_regions` returns them.
 
     Attributes
     ----------
     bounds
-        The smallest box (lowest voxel, one behind the highest) that holds them.
+        The smallest box that holds them: its lowest voxel, and one behind its highest.
     appeared, vanished, recoloured
         As in :class:`Difference`.
     """
@@ -59,17 +60,24 @@ class Region:
 
     @property
     def voxels(self) -> int:
-        """How many they are."""
+        """Their number."""
         return self.appeared + self.vanished + self.recoloured
 
 
 def diff(first: Octree, second: Octree) -> Difference:
-    """Compare the voxels of two octrees of one depth, not their words.
+    """Compare the voxels of two octrees of one depth. How their words are arranged does not matter.
 
     Raises
     ------
-    ValueError
-        Where the depths differ.
+    TypeError, ValueError
+        One is no octree, or the depths differ.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> before = from_points([[1, 2, 3]], [7], depth=2)
+    >>> diff(before, from_points([[1, 2, 3], [0, 0, 0]], [6, 1], depth=2))
+    Difference(appeared=1, vanished=0, recoloured=1, bounds=((0, 0, 0), (2, 3, 4)))
     """
     _refuse_other_depth(first, second)
     found = _native.diff(first.words, second.words, first.depth)
@@ -77,14 +85,26 @@ def diff(first: Octree, second: Octree) -> Difference:
 
 
 def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
-    """Tell where two octrees of one depth differ: the pieces, those with most voxels first, then by lowest voxel.
+    """Find the regions in which two octrees of one depth differ.
 
-    Cost grows with the octants that differ; more than 2**21 of them are given as one region.
+    The cost grows with the octants that differ. More than 2**21 of them make one region.
+
+    Returns
+    -------
+    tuple[Region, ...]
+        Those with most voxels first, then by their lowest voxel.
 
     Raises
     ------
-    ValueError
-        Where the depths differ.
+    TypeError, ValueError
+        One is no octree, or the depths differ.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> before = from_points([[1, 2, 3]], [7], depth=3)
+    >>> [region.bounds for region in differing_regions(before, from_points([[7, 7, 7]], [7], depth=3))]
+    [((1, 2, 3), (2, 3, 4)), ((7, 7, 7), (8, 8, 8))]
     """
     _refuse_other_depth(first, second)
     found = _native.differing_regions(first.words, second.words, first.depth)
@@ -102,5 +122,6 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
 
 
 def _refuse_other_depth(first: Octree, second: Octree) -> None:
-    if first.depth != second.depth:
+    instance("first", first, Octree)
+    if first.depth != instance("second", second, Octree).depth:
         raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")

@@ -1,4 +1,4 @@
-"""The leaves, a chunk at a time: sharing can make them far more than memory holds."""
+"""The leaves, one chunk at a time: because blocks are shared, there can be far more than memory holds."""
 
 from __future__ import annotations
 
@@ -8,24 +8,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
+from voxrt.octree.octree import Octree
+from voxrt.octree.query import as_box
 from voxrt.voxelize import DoesNotFitError
+from voxrt.voxelize.arguments import flag, instance, whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 
 
 LEAF_LIMIT = 1 << 24
-"""The most solid leaves that are taken at once."""
+"""The most solid leaves that :func:`solid_leaves` returns."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Leaves:
-    """Some leaves, in Morton order.
+    """Some leaves, in Morton order, as :func:`leaves` returns them.
 
     Attributes
     ----------
@@ -57,27 +59,55 @@ def leaves(
     octree
         The memory.
     low, high
-        Voxels from `low` up to and without `high` (default: the world's end).
+        Integers (x, y, z): the lowest voxel, and one behind the highest (default: the world's end).
     solid_only
-        Leaves empty space out.
+        Skip empty leaves.
     chunk
         The most leaves at a time, at least 1.
+
+    Yields
+    ------
+    Leaves
+        The next chunk.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument of the wrong type or out of range.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> (part,) = leaves(from_points([[1, 2, 3]], [7], depth=2), solid_only=True)
+    >>> part.corners.tolist(), part.levels.tolist(), part.materials.tolist()
+    ([[1, 2, 3]], [0], [7])
     """
-    if chunk < 1:
-        raise ValueError(f"a chunk holds at least 1 leaf, not {chunk}")
-    end = (octree.size,) * 3 if high is None else high
-    walk = _native.LeafWalk(octree.words, octree.depth, low, end, solid_only)
+    instance("octree", octree, Octree)
+    start, end = as_box(low, (octree.size,) * 3 if high is None else high)
+    walk = _native.LeafWalk(octree.words, octree.depth, start, end, flag("solid_only", solid_only))
+    return _chunks(walk, whole("chunk", chunk, 1, 1 << 31))
+
+
+def _chunks(walk: _native.LeafWalk, chunk: int) -> Iterator[Leaves]:
     while len((part := walk.next(chunk)).levels):
         yield Leaves(corners=part.corners, levels=part.levels, materials=part.materials)
 
 
 def solid_leaves(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> Leaves:
-    """Take all solid leaves that overlap a box at once, as :func:`leaves` gives them.
+    """Return all solid leaves that overlap a box at once, as :func:`leaves` yields them.
 
     Raises
     ------
+    TypeError, ValueError
+        A corner is not three integers, or `high` lies below `low`.
     DoesNotFitError
         More than :data:`LEAF_LIMIT`.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> solid_leaves(from_points([[1, 2, 3], [0, 0, 0]], [7, 7], depth=2)).corners.tolist()
+    [[0, 0, 0], [1, 2, 3]]
     """
     chunks, count = [Leaves(np.zeros((0, 3), np.int32), np.zeros(0, np.uint8), np.zeros(0, np.uint8))], 0
     for chunk in leaves(octree, low, high, solid_only=True):

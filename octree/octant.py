@@ -1,4 +1,4 @@
-"""One octant, as the hardware finds it: from the root, a word a level."""
+"""One octant, found as the hardware finds it: from the root, one word per level."""
 
 from __future__ import annotations
 
@@ -7,28 +7,31 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree.octree import Octree
+from voxrt.octree.query import as_corner
+from voxrt.voxelize.arguments import instance
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree.leaf_arrays import Leaves
-    from voxrt.octree.octree import Octree
     from voxrt.octree.query import Corner
 
 
 @dataclass(frozen=True, slots=True)
 class Octant:
-    """A leaf and the word that makes it one.
+    """A leaf and its word, as :func:`octant_at` returns them.
 
     Attributes
     ----------
     address
-        Of its word.
+        Address of the word.
     word
-        Report dialect.
+        The word, report dialect.
     level
-        log2 of its side in voxels.
+        log2 of the side in voxels.
     corner
-        Its lowest voxel (x, y, z).
+        The lowest voxel (x, y, z).
     """
 
     address: int
@@ -57,15 +60,22 @@ def octant_at(octree: Octree, voxel: Corner) -> Octant:
     octree
         The memory.
     voxel
-        Coordinates (x, y, z), grid frame.
+        Integers (x, y, z), grid frame.
 
     Raises
     ------
-    ValueError
-        Where the voxel lies outside the world.
+    TypeError, ValueError
+        The voxel is not three integers, or lies outside the world.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> octant_at(from_points([[1, 2, 3]], [7], depth=2), (0, 0, 0))
+    Octant(address=1, word=4294967040, level=1, corner=(0, 0, 0))
     """
-    x, y, z = voxel
-    if min(voxel) < 0 or max(voxel) >= octree.size:
+    instance("octree", octree, Octree)
+    x, y, z = as_corner("voxel", voxel)
+    if min(x, y, z) < 0 or max(x, y, z) >= octree.size:
         raise ValueError(f"voxel {x},{y},{z} lies outside the world of {octree.size} voxels a side")
     address, level = 0, octree.depth
     word = int(octree.words[0])
@@ -77,7 +87,15 @@ def octant_at(octree: Octree, voxel: Corner) -> Octant:
 
 
 def addresses(octree: Octree, some: Leaves) -> NDArray[np.uint32]:
-    """Find the addresses of the words of some of an octree's leaves, shape (N,)."""
+    """Find the addresses of the words of some leaves of an octree: uint32, shape (N,).
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points, leaves
+    >>> tree = from_points([[1, 2, 3]], [7], depth=2)
+    >>> [addresses(tree, part).tolist() for part in leaves(tree, solid_only=True)]
+    [[14]]
+    """
     found = np.zeros(len(some.levels), np.uint32)
     for level in reversed(range(octree.depth)):
         below = some.levels <= level

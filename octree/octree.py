@@ -15,30 +15,43 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAX_DEPTH = 16
-"""The most levels below the root: 65 536 voxels a side."""
+"""The most levels below the root: 65,536 voxels per side."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Octree:
-    """A valid octree memory.
+    """A valid octree memory. :func:`build`, :func:`from_dense`, :func:`from_points` and :func:`decode` make one.
 
     Attributes
     ----------
     depth
-        Levels below the root, 1 … 16: the world is 2**depth voxels a side.
+        Levels below the root, 1 … 16: the world has 2**depth voxels per side.
     words
         uint32, shape (1 + 8 * blocks,), read-only, report dialect.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import from_dense
+    >>> tree = from_dense(np.ones((4, 4, 3), np.uint8))
+    >>> tree
+    <Octree: depth 2, 17 words>
+    >>> tree.size, tree.blocks
+    (4, 2)
     """
 
     depth: int
     words: NDArray[np.uint32]
 
+    def __repr__(self) -> str:
+        return f"<Octree: depth {self.depth}, {len(self.words):,} words>"
+
     @property
     def size(self) -> int:
-        """Voxels a side."""
+        """Voxels per side."""
         return 1 << self.depth
 
     @property
     def blocks(self) -> int:
-        """How many blocks of 8 words the memory holds."""
+        """Blocks of 8 words in the memory."""
         return (len(self.words) - 1) // 8

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.voxelize import DoesNotFitError
+from voxrt.octree.octree import Octree
+from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.octree.octree import Octree
-
 Corner: TypeAlias = tuple[int, int, int]
 
-_REGION_LIMIT = 1 << 33
+_FARTHEST = 1 << 30
+"""Corners of boxes lie within this on each side of zero."""
 
 
 def material_at(octree: Octree, points: ArrayLike) -> NDArray[np.uint8]:
@@ -33,12 +33,26 @@ def material_at(octree: Octree, points: ArrayLike) -> NDArray[np.uint8]:
     -------
     NDArray[np.uint8]
         Shape (...): material ids.
+
+    Raises
+    ------
+    TypeError, ValueError
+        The points are not integers, or of another shape.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> tree = from_points([[1, 2, 3]], [7], depth=2)
+    >>> material_at(tree, [[1, 2, 3], [0, 0, 0], [-1, 9, 0]])
+    array([7, 0, 0], dtype=uint8)
     """
+    instance("octree", octree, Octree)
     voxels = np.asarray(points)
-    if voxels.shape[-1:] != (3,) or not np.issubdtype(voxels.dtype, np.integer):
-        raise ValueError(f"points must be integers of shape (..., 3), not {voxels.dtype} of shape {voxels.shape}")
-    rows = np.ascontiguousarray(voxels, dtype=np.int64).reshape(-1, 3)
-    return _native.materials_at(octree.words, octree.depth, rows).reshape(voxels.shape[:-1])
+    if voxels.shape[-1:] != (3,):
+        raise ValueError(f"points must have shape (..., 3), not {voxels.shape}")
+    rows = whole_array("points", voxels.reshape(-1, 3), ("N", 3), np.int64, low=-(1 << 62), high=1 << 62)
+    found = _native.materials_at(octree.words, octree.depth, np.ascontiguousarray(rows))
+    return found.reshape(voxels.shape[:-1])
 
 
 def count_in_box(octree: Octree, low: Corner, high: Corner) -> dict[int, int]:
@@ -49,19 +63,44 @@ def count_in_box(octree: Octree, low: Corner, high: Corner) -> dict[int, int]:
     octree
         The memory.
     low, high
-        Voxels from `low` up to and without `high`; what lies outside the world is not counted.
+        Integers (x, y, z): the lowest voxel, and one behind the highest. What lies outside the world is not counted.
 
     Returns
     -------
     dict[int, int]
         Voxels by material id, ascending, 0 (empty) included where it occurs.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A corner is not three integers, or `high` lies below `low`.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> count_in_box(from_points([[1, 2, 3]], [7], depth=2), (0, 0, 0), (4, 4, 4))
+    {0: 63, 7: 1}
     """
-    counts = _native.count_in_box(octree.words, octree.depth, low, high)
+    instance("octree", octree, Octree)
+    counts = _native.count_in_box(octree.words, octree.depth, *as_box(low, high))
     return {int(material): int(counts[material]) for material in np.flatnonzero(counts)}
 
 
 def solid_bounds(octree: Octree) -> tuple[Corner, Corner] | None:
-    """Find the smallest box (lowest voxel, one behind the highest) of all solid voxels; None where all is empty."""
+    """Find the smallest box of all solid voxels: its lowest voxel, and one behind its highest.
+
+    Returns
+    -------
+    tuple[Corner, Corner] or None
+        None if all is empty.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> solid_bounds(from_points([[1, 2, 3], [3, 2, 1]], [7, 7], depth=2))
+    ((1, 2, 1), (4, 3, 4))
+    """
+    instance("octree", octree, Octree)
     return as_bounds(_native.solid_bounds(octree.words, octree.depth))
 
 
@@ -70,37 +109,15 @@ def as_bounds(bounds: _native.Bounds | None) -> tuple[Corner, Corner] | None:
     return None if bounds is None else (bounds.low, bounds.high)
 
 
-def to_dense(octree: Octree, low: Corner = (0, 0, 0), high: Corner | None = None) -> NDArray[np.uint8]:
-    """Write a region out voxel by voxel.
+def as_box(low: object, high: object) -> tuple[Corner, Corner]:
+    """Check the corners of a box; TypeError or ValueError where they are none."""
+    start, end = as_corner("low", low), as_corner("high", high)
+    if any(above < below for below, above in zip(start, end, strict=True)):
+        raise ValueError(f"the box ends at {end}, below its start {start}")
+    return start, end
 
-    Parameters
-    ----------
-    octree
-        The memory.
-    low, high
-        Voxels from `low` up to and without `high` (default: the world's end); outside the world is empty.
 
-    Returns
-    -------
-    NDArray[np.uint8]
-        Shape high - low, indexed [x, y, z]: material ids.
-
-    Raises
-    ------
-    ValueError
-        Where `high` lies below `low`.
-    DoesNotFitError
-        Where the region has more than 2**33 voxels.
-    """
-    end = (octree.size,) * 3 if high is None else high
-    shape = tuple(above - below for below, above in zip(low, end, strict=True))
-    if min(shape) < 0:
-        raise ValueError(f"the region ends at {end}, below its start {low}")
-    volume = shape[0] * shape[1] * shape[2]
-    if volume > _REGION_LIMIT:
-        raise DoesNotFitError(
-            f"the region has {volume} voxels and an array at most {_REGION_LIMIT}; ask for less of it"
-        )
-    region = np.empty(shape, dtype=np.uint8)
-    _native.fill_region(octree.words, octree.depth, low, region)
-    return region
+def as_corner(name: str, value: object) -> Corner:
+    """Check three integers; TypeError or ValueError where they are none."""
+    x, y, z = whole_array(name, value, (3,), np.int64, low=-_FARTHEST, high=_FARTHEST).tolist()
+    return x, y, z

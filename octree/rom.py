@@ -3,30 +3,70 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from voxrt.octree.octree import Octree
-    from voxrt.voxelize import Grid, Material
+from voxrt.octree.octree import Octree
+from voxrt.octree.statistics import census
+from voxrt.voxelize import Grid, Material
+from voxrt.voxelize.arguments import instance, text
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Rom:
     """An octree memory with its materials and its place in the scene.
 
     Attributes
     ----------
     name
-        The name its files get.
+        The name of its files.
     octree
         The memory.
     materials
-        Indexed by material id; entry 0 is empty space and carries the background's colour. Covers every id in use.
+        The materials by id. Entry 0 is empty space; its colour is the background. Every id in use has an entry.
     grid
-        Where the memory's voxels stand in the scene; None for a memory that does not say.
+        Where the voxels stand in the scene; None if that is not known.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of another type, more than 256 materials, or fewer than the memory uses.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import Rom, from_dense
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> tree = from_dense(np.ones((4, 4, 3), np.uint8))
+    >>> Rom("slab", tree, (EMPTY, Material("oak", (160, 110, 60))))
+    <Rom 'slab': depth 2, 17 words, 1 material>
     """
 
     name: str
     octree: Octree
     materials: tuple[Material, ...]
     grid: Grid | None = None
+
+    def __repr__(self) -> str:
+        count = len(self.materials) - 1
+        return (
+            f"<Rom {self.name!r}: depth {self.octree.depth}, {len(self.octree.words):,} words, "
+            f"{count} {'material' if count == 1 else 'materials'}>"
+        )
+
+    def __post_init__(self) -> None:
+        text("name", self.name)
+        instance("octree", self.octree, Octree)
+        if self.grid is not None and instance("grid", self.grid, Grid).depth != self.octree.depth:
+            raise ValueError(f"grid has depth {self.grid.depth} and the octree depth {self.octree.depth}")
+        if isinstance(self.materials, Material):
+            raise TypeError("materials must be a sequence of Material, not one Material")
+        materials = tuple(instance(f"materials[{row}]", one, Material) for row, one in enumerate(self.materials))
+        object.__setattr__(self, "materials", materials)
+        if not 1 <= len(materials) <= 256:
+            raise ValueError(f"materials must have 1 to 256 entries, entry 0 for empty space, not {len(materials)}")
+        if _highest_word(self.octree) >= len(materials) and (used := max(census(self.octree).voxels)) >= len(materials):
+            raise ValueError(f"materials end at id {len(materials) - 1}, and the octree uses {used}")
+
+
+def _highest_word(octree: Octree) -> int:
+    """Return the highest material id of all words, those that no pointer leads to included."""
+    return int((octree.words[octree.words >> 31 == 1] & 0xFF).max(initial=0))

@@ -1,4 +1,4 @@
-"""How much of what: leaves and voxels by level and material, shared blocks counted wherever they stand."""
+"""Leaves and voxels by level and material. A shared block counts once for each place where it stands."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
+from voxrt.octree.octree import Octree
+from voxrt.voxelize.arguments import instance
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.octree.octree import Octree
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Census:
-    """Exact counts.
+    """Exact counts of leaves, as :func:`census` returns them.
 
     Attributes
     ----------
@@ -41,5 +41,14 @@ class Census:
 
 
 def census(octree: Octree) -> Census:
-    """Count the leaves of `octree` in time that grows with its words, not with its world."""
+    """Count the leaves of an octree. The cost grows with its words, not with its world.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> counts = census(from_points([[1, 2, 3]], [7], depth=2))
+    >>> counts.voxels, counts.solid_voxels, counts.leaves[0, 7].item()
+    ({0: 63, 7: 1}, 1, 1)
+    """
+    instance("octree", octree, Octree)
     return Census(_native.leaf_counts(octree.words, octree.depth))

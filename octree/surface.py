@@ -1,26 +1,26 @@
-"""How much of the visible surface two octrees share."""
+"""Changes of the surface between two octrees."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from voxrt.octree import _native
-
-if TYPE_CHECKING:
-    from voxrt.octree.octree import Octree
+from voxrt.octree.octree import Octree
+from voxrt.voxelize.arguments import instance
 
 
 @dataclass(frozen=True, slots=True)
 class SurfaceChange:
-    """Voxels on a surface: solid, one of the six neighbours empty or outside the world.
+    """Surface voxels and how many of them changed, as :func:`surface_change` returns them.
+
+    A surface voxel is solid, and one of its six neighbours is empty or outside the world.
 
     Attributes
     ----------
     surface
-        On the surface of the first octree.
+        Surface voxels of the first octree.
     changed
-        Of those, not on the surface of the second, or of another material there.
+        Those of them that are not on the surface of the second, or of another material there.
     """
 
     surface: int
@@ -33,14 +33,22 @@ class SurfaceChange:
 
 
 def surface_change(first: Octree, second: Octree) -> SurfaceChange:
-    """Compare the surfaces of two octrees of one depth, voxel by voxel; cost grows with the surface.
+    """Compare the surfaces of two octrees of one depth, voxel by voxel. The cost grows with the surface.
 
     Raises
     ------
-    ValueError
-        Where the depths differ.
+    TypeError, ValueError
+        One is no octree, or the depths differ.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> before = from_points([[1, 2, 3], [0, 0, 0]], [7, 7], depth=2)
+    >>> surface_change(before, from_points([[1, 2, 3]], [7], depth=2)).percent
+    50.0
     """
-    if first.depth != second.depth:
+    instance("first", first, Octree)
+    if first.depth != instance("second", second, Octree).depth:
         raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")
     found = _native.surface_change(first.words, second.words, first.depth)
     return SurfaceChange(surface=found.surface, changed=found.changed)

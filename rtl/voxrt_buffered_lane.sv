@@ -264,15 +264,21 @@ module voxrt_buffered_lane
   );
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   always_ff @(posedge clk_i) begin
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert (!issue_i || credit_q) else $error("a ray is issued without a credit");
       assert (credits_q <= CountBits'(Credits)) else $error("more credits than places");
     end
   end
   if (!Light) begin : gen_check_queue
     always_ff @(posedge clk_i) begin
-      if (rst_ni) assert (!ray_valid_i || gen_queue.u_rays.ready_o) else $error("the queue of rays overflows");
+      if (rst_ni && reset_seen_q) begin
+        assert (!ray_valid_i || gen_queue.u_rays.ready_o) else $error("the queue of rays overflows");
+      end
     end
   end
 `endif

@@ -33,13 +33,17 @@ module voxrt_free_list #(
   end
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   logic [2**RowBits-1:0] allocated_q;
 
   always_ff @(posedge clk_i) begin
     if (allocate_i) allocated_q[row_o] <= 1'b1;
     if (free_i) allocated_q[row_i] <= 1'b0;
     if (!rst_ni) allocated_q <= '0;
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert (!allocate_i || !allocated_q[row_o]) else $error("a row is allocated twice");
       assert (!free_i || allocated_q[row_i]) else $error("a row is freed that is free");
     end

@@ -81,8 +81,12 @@ module voxrt_light
     );
 
 `ifndef SYNTHESIS
+    // Before the first reset, nothing holds.
+    logic reset_seen_q = 1'b0;
+    always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
     always_ff @(posedge clk_i) begin
-      if (rst_ni) begin
+      if (rst_ni && reset_seen_q) begin
         assert (!hit_point_valid_i[i] || hit_point_ready_o[i] || issued_i[i]) else $error("a hit point without credit");
         assert (!hit_point_valid_i[i] || ready) else $error("the queue of hit points overflows");
         assert (credits_q <= CountBits'(QueueDepth)) else $error("more credits than places");

@@ -154,8 +154,12 @@ module voxrt_pixel_buffer #(
   end
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   always_ff @(posedge clk_i) begin
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert (!allocate_i || ready_o) else $error("an entry is allocated that is not free");
       assert (!complete || fifo_ready) else $error("the FIFO of pixels overflows");
     end

@@ -97,7 +97,7 @@ module voxrt_pixel_packer
   assign m_axis_tlast  = last_q;
 
 `ifndef SYNTHESIS
-  logic        stalled_q;
+  logic        stalled_q = 1'b0;
   logic [37:0] offer_q;
 
   always_ff @(posedge clk_i) begin

@@ -39,11 +39,15 @@ module voxrt_ray_queue #(
   end
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   for (genvar i = 0; i < 2; i++) begin : gen_check
     logic [IndexBits:0] count;
     assign count = write_q[i] - read_q[i];
     always_ff @(posedge clk_i) begin
-      if (rst_ni) assert (count <= (IndexBits + 1)'(Depth)) else $error("a queue of rays overflows");
+      if (rst_ni && reset_seen_q) assert (count <= (IndexBits + 1)'(Depth)) else $error("a queue of rays overflows");
     end
   end
 `endif

@@ -85,8 +85,12 @@ module voxrt_rays
   );
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   always_ff @(posedge clk_i) begin
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert ($onehot(next_lane_q)) else $error("next_lane_q is not one-hot");
       assert ((issue_o & ~credit_i) == '0) else $error("a ray for a lane without credit");
       assert (!valid_o || $onehot(lane_o)) else $error("a ray for no lane or many");

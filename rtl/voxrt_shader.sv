@@ -228,8 +228,12 @@ module voxrt_shader
   assign leaves = pixel_valid_o && pixel_ready_i;
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   always_ff @(posedge clk_i) begin
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert (!valid_q[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
       assert (credits_q <= CountBits'(FifoDepth)) else $error("more credits than places");
     end

@@ -243,8 +243,12 @@ module voxrt_slot_scheduler
   end
 
 `ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
   always_ff @(posedge clk_i) begin
-    if (rst_ni) begin
+    if (rst_ni && reset_seen_q) begin
       assert (!(step_i.done && step_i.continues)) else $error("a ray is done and continues");
       assert (!(issues && bypasses)) else $error("a ray is issued and bypasses");
       assert (!(issues && keeps)) else $error("a slot has two rays");

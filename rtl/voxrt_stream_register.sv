@@ -28,7 +28,7 @@ module voxrt_stream_register #(
   end
 
 `ifndef SYNTHESIS
-  logic             stalled_q;
+  logic             stalled_q = 1'b0;
   logic [Width-1:0] offer_q;
 
   always_ff @(posedge clk_i) begin

@@ -18,6 +18,7 @@ from voxrt.sim.framing import frame_scene, outline
 from voxrt.sim.image import write_png
 from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
+from voxrt.sim.ray_query import RayHits, cast_rays
 from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
@@ -31,12 +32,14 @@ __all__ = [
     "Lighting",
     "Likeness",
     "NoSuchConfigurationError",
+    "RayHits",
     "RayPath",
     "Reading",
     "RenderCost",
     "SimulatorError",
     "View",
     "camera_from_registers",
+    "cast_rays",
     "check",
     "compare",
     "comparison_sheet",

@@ -1,7 +1,7 @@
 """What voxels make of a scene: the traced picture held against one of the source meshes from the same camera.
 
-The meshes are ray-cast by Open3D (Intel Embree), an optional dependency: ``pip install 'voxrt[compare]'``. Both sides
-shoot the same rays, in voxels, and are shaded by the same rule, so that what differs is the geometry alone.
+The meshes are ray-cast by Open3D (Intel Embree), an optional dependency: ``pip install 'voxrt-build[compare]'``. Both
+sides shoot the same rays, in voxels, and are shaded by the same rule, so that what differs is the geometry alone.
 """
 
 from __future__ import annotations
@@ -241,7 +241,7 @@ def _open3d() -> Any:  # noqa: ANN401 - Open3D has no types
         import open3d  # noqa: PLC0415 - 900 MB that few need
     except ModuleNotFoundError as error:
         raise SimulatorError(
-            "comparing with the source meshes needs Open3D, which is not installed; pip install 'voxrt[compare]'"
+            "comparing with the source meshes needs Open3D, which is not installed; pip install 'voxrt-build[compare]'"
         ) from error
     except ImportError as error:
         raise SimulatorError(f"Open3D cannot be loaded: {error}; on Debian: apt install libegl1 libgl1") from error

@@ -1,4 +1,4 @@
-"""The way of one ray through the octree: each word that it reads, in order."""
+"""The path of one ray through the octree: each word that it reads, in order."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree import Octree
 from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
 from voxrt.sim.errors import SimulatorError
+from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.octree import Octree
     from voxrt.octree.camera import Camera, Triple
 
 
@@ -35,11 +36,11 @@ class Reading:
     corner
         The octant's lowest voxel (x, y, z), grid frame.
     axis
-        Axis of the plane that the ray crossed last (0 x, 1 y, 2 z), or :data:`~voxrt.sim.FACE_NONE` where it has
-        crossed none since it left the camera.
+        Axis of the plane that the ray crossed last (0 x, 1 y, 2 z), or :data:`~voxrt.sim.FACE_NONE` if it has crossed
+        none since it left the camera.
     time
-        The integer T of that crossing: distance along the axis in 1/16 voxel times the product of the other two
-        components of the direction, a zero component counting as 1. 0 where no plane was crossed.
+        The integer T of that crossing: the distance along the axis, in 1/16 voxel, times the product of the other two
+        components of the direction. A zero component counts as 1. 0 if no plane was crossed.
     """
 
     address: int
@@ -62,9 +63,9 @@ class Reading:
         return x + side, y + side, z + side
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class RayPath:
-    """A ray and all that it read.
+    """A ray and all that it read, as :func:`follow_ray` and :func:`follow_pixel` return it.
 
     Attributes
     ----------
@@ -73,13 +74,22 @@ class RayPath:
     direction
         Raw units of the camera's registers.
     root
-        Word 0, which is kept between rays and not read by each.
+        Word 0. It is kept between rays, so no ray reads it.
     readings
         The words read, in order.
     material, face
-        What was hit, as in :class:`~voxrt.sim.Frame`.
+        The material hit and the face crossed, as in :class:`~voxrt.sim.Frame`.
     cell
-        The voxel hit, None at a miss.
+        The voxel hit; None for a miss.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> path = follow_ray(from_points([[5, 2, 2]], [7], depth=3), (0, 40, 40), (1, 0, 0))
+    >>> path
+    <RayPath: 4 words read, hits material 7 at voxel (5, 2, 2)>
+    >>> path.point(path.readings[-1].time)
+    (5.0, 2.5, 2.5)
     """
 
     origin: Triple
@@ -90,8 +100,12 @@ class RayPath:
     face: int
     cell: Triple | None
 
+    def __repr__(self) -> str:
+        end = f"hits material {self.material} at voxel {self.cell}" if self.cell else "leaves the world"
+        return f"<RayPath: {len(self.readings)} words read, {end}>"
+
     def point(self, time: int) -> tuple[float, float, float]:
-        """Give the point of the ray (voxels, grid frame) at the T of a crossing."""
+        """Return the point of the ray (voxels, grid frame) at the T of a crossing."""
         scale = prod(abs(component) or 1 for component in self.direction)
         x, y, z = (
             float((start + Fraction(time * component, scale)) / POSITION_UNITS)
@@ -108,18 +122,35 @@ def follow_pixel(octree: Octree, camera: Camera, size: tuple[int, int], pixel: t
     octree
         The memory.
     camera
-        Where from.
+        The camera.
     size
         Columns and rows of the frame.
     pixel
         Column and row, from the frame's upper left.
 
+    Returns
+    -------
+    RayPath
+        The words that the ray reads, and what it hits.
+
     Raises
     ------
+    TypeError, ValueError
+        The size or the pixel is not two integers.
     SimulatorError
         The pixel lies outside the frame, or the camera's directions are too large.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> from voxrt.sim import look_at
+    >>> tree = from_points([[5, 2, 2]], [7], depth=3)
+    >>> camera = look_at((5.5, 2.5, 20), (5.5, 2.5, 2.5), size=(9, 9))
+    >>> follow_pixel(tree, camera, (9, 9), (4, 4)).cell
+    (5, 2, 2)
     """
-    (column, row), (width, height) = pixel, size
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
+    column, row = whole_array("pixel", pixel, (2,), np.int64, low=0, high=1 << 14).tolist()
     if not (0 <= column < width and 0 <= row < height):
         raise SimulatorError(
             f"pixel {column},{row} lies outside the frame of {width}x{height}; columns go to {width - 1}, rows to "
@@ -132,7 +163,7 @@ def follow_pixel(octree: Octree, camera: Camera, size: tuple[int, int], pixel: t
     return follow_ray(octree, camera.position, (x, y, z))
 
 
-def follow_ray(octree: Octree, origin: Triple, direction: Triple) -> RayPath:
+def follow_ray(octree: Octree, origin: ArrayLike, direction: ArrayLike) -> RayPath:
     """Follow a ray through an octree, exactly as the hardware traces it.
 
     Parameters
@@ -140,28 +171,52 @@ def follow_ray(octree: Octree, origin: Triple, direction: Triple) -> RayPath:
     octree
         The memory.
     origin
-        1/16 voxel, grid frame, signed 32 bit.
+        Three integers, 1/16 voxel, grid frame, signed 32 bit.
     direction
-        Components below 2**20.
+        Three integers below 2**20, not all zero.
+
+    Returns
+    -------
+    RayPath
+        The words that the ray reads, and what it hits.
 
     Raises
     ------
+    TypeError, ValueError
+        The origin or the direction is not three integers, or the direction is zero.
     SimulatorError
         A component of the direction is too large.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> tree = from_points([[5, 2, 2]], [7], depth=3)
+    >>> [(hex(step.word), step.level) for step in follow_ray(tree, (80, 40, 40), (0, 0, 1)).readings]
+    [('0x9', 2), ('0x11', 1), ('0xffffff00', 0), ('0xffffff07', 0)]
     """
-    if max(map(abs, direction)) >= DIRECTION_LIMIT:
-        raise SimulatorError(f"the ray's direction {direction} is not below 2**20; scale it down")
-    followed = _model.Memory(octree.words, octree.depth).follow(_int32(origin), _int32(direction))
+    instance("octree", octree, Octree)
+    start = _registers("origin", origin)
+    way = _registers("direction", direction)
+    if not any(way):
+        raise ValueError("direction must not be zero")
+    if max(map(abs, way)) >= DIRECTION_LIMIT:
+        raise SimulatorError(f"the ray's direction {way} is not below 2**20; scale it down")
+    followed = _model.Memory(octree.words, octree.depth).follow(_int32(start), _int32(way))
     material = followed.material
     return RayPath(
-        origin=origin,
-        direction=direction,
+        origin=start,
+        direction=way,
         root=int(octree.words[0]),
         readings=tuple(Reading(**reading._asdict()) for reading in followed.readings),
         material=material,
         face=followed.face,
         cell=followed.cell if material else None,
     )
+
+
+def _registers(name: str, value: ArrayLike) -> Triple:
+    x, y, z = whole_array(name, value, (3,), np.int64, low=-(1 << 31), high=(1 << 31) - 1).tolist()
+    return x, y, z
 
 
 def _int32(triple: Triple) -> NDArray[np.int32]:

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
+from voxrt.octree import Rom
 from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.verilated import import_verilated
+from voxrt.voxelize.arguments import choice, instance, text, whole, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
 
 Engine: TypeAlias = Literal["rtl", "model"]
@@ -28,7 +29,7 @@ _RTL_FRAME_LIMIT = (1 << 12) - 1
 
 @dataclass(frozen=True, eq=False, slots=True)
 class EngineCheck:
-    """The same view from both engines.
+    """The same view from both engines, as :func:`check` returns it.
 
     Attributes
     ----------
@@ -44,7 +45,7 @@ class EngineCheck:
 
     @property
     def wrong_pixels(self) -> int:
-        """How many pixels differ."""
+        """The number of pixels that differ."""
         return int(np.count_nonzero(self.wrong))
 
 
@@ -63,37 +64,55 @@ def render(
     Parameters
     ----------
     rom
-        The memory and its materials; the colour of entry 0 is the background.
+        The memory and its materials. The colour of entry 0 is the background.
     camera
-        Where from.
+        The camera.
     size
-        Columns and rows.
+        Columns and rows, 1 … 16384 each.
     engine
-        ``"rtl"``: the verilated ray tracer, which counts its clocks; ``"model"``: the exact C++ model. Both give the
-        same pixels.
+        ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
+        give the same pixels.
     lighting
         Point light, mirrors and flat colours.
     threads
-        Threads of the model, 0 for one a core. The frame does not depend on it.
+        Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
-        The configuration of the ray tracer that ``"rtl"`` runs.
+        The configuration of the ray tracer for ``"rtl"``.
+
+    Returns
+    -------
+    Frame
+        The pixels and what they cost.
 
     Raises
     ------
+    TypeError, ValueError
+        An argument of the wrong type or out of range.
     NoSuchConfigurationError
-        The ray tracer has no configuration of that name here.
+        The installation has no ray tracer of that configuration.
     SimulatorError
-        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading; a
-        size, a direction or the light is out of range.
+        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading. A
+        direction or the light is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.sim import frame_scene
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> frame = render(rom, frame_scene(rom, (32, 32)), (32, 32), engine="model")
+    >>> frame.colour.shape, frame.cost.rays, bool(frame.material.any())
+    ((32, 32, 3), 1024, True)
     """
-    width, height = size
-    if not (1 <= width <= _FRAME_LIMIT and 1 <= height <= _FRAME_LIMIT):
-        raise SimulatorError(f"a frame of {width}x{height} pixels is not 1x1 … {_FRAME_LIMIT}x{_FRAME_LIMIT}")
-    _check_directions(camera, size)
+    instance("rom", rom, Rom)
+    choice("engine", engine, get_args(Engine))
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
+    _check_directions(camera, (width, height))
     _check_lighting(lighting)
     if engine == "model":
-        return _render_model(rom, camera, size, lighting, threads)
-    return _render_rtl(rom, camera, size, lighting, config)
+        return _render_model(rom, camera, (width, height), lighting, whole("threads", threads, 0, 1024))
+    return _render_rtl(rom, camera, (width, height), lighting, text("config", config))
 
 
 def check(
@@ -105,7 +124,32 @@ def check(
     threads: int = 0,
     config: str = "tiny",
 ) -> EngineCheck:
-    """Render with both engines and compare every pixel. Takes and raises what :func:`render` does."""
+    """Render with both engines and compare every pixel.
+
+    Parameters
+    ----------
+    rom, camera, size, lighting, threads, config
+        As for :func:`render`.
+
+    Returns
+    -------
+    EngineCheck
+        Both frames, and the pixels that differ.
+
+    Raises
+    ------
+    TypeError, ValueError, NoSuchConfigurationError, SimulatorError
+        As :func:`render` does.
+
+    Examples
+    --------
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.sim import frame_scene
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
+    0
+    """
     rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config)
     model = render(rom, camera, size, engine="model", lighting=lighting, threads=threads)
     wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
@@ -131,14 +175,29 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lig
 
 
 def shader_features(config: str) -> frozenset[str]:
-    """Give what a configuration of the ray tracer has built in: of ``"flat"``, ``"light"`` and ``"mirrors"``.
+    """Return the shading features that a configuration of the ray tracer has built in.
+
+    Parameters
+    ----------
+    config
+        The configuration's name.
+
+    Returns
+    -------
+    frozenset[str]
+        Some of ``"flat"``, ``"light"`` and ``"mirrors"``.
 
     Raises
     ------
     NoSuchConfigurationError
-        The ray tracer has no configuration of that name here.
+        The installation has no ray tracer of that configuration.
     SimulatorError
         The ray tracer is not in this installation.
+
+    Examples
+    --------
+    >>> sorted(shader_features("lit"))
+    ['flat', 'light', 'mirrors']
     """
     return frozenset(_ray_tracer(config).FEATURES[config])
 
@@ -239,7 +298,16 @@ def _check_lighting(lighting: Lighting) -> None:
 
 
 def palette_of(rom: Rom) -> NDArray[np.uint8]:
-    """Give the colours that the engines take: uint8, shape (256, 3), row by material id."""
+    """Return the colours that the engines take: uint8, shape (256, 3), sRGB, a row per material id.
+
+    Examples
+    --------
+    >>> from voxrt.octree import Rom, from_points
+    >>> from voxrt.voxelize import EMPTY, Material
+    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
+    >>> palette_of(rom)[1].tolist()
+    [255, 0, 0]
+    """
     palette = np.zeros((256, 3), dtype=np.uint8)
     for number, material in enumerate(rom.materials):
         palette[number] = material.colour

@@ -11,12 +11,29 @@ import numpy as np
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.conversion import read_any
-from voxrt.view.cells import octants, open_sides
+from voxrt.view.cells import octants
 
 if TYPE_CHECKING:
     import pyvista
+    from numpy.typing import NDArray
 
     from voxrt.octree import Rom
+    from voxrt.view.octant_mesh import OctantMesh
+
+_PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 4), ("colour", "u1", 3)])
+_PLY_HEADER = """ply
+format binary_little_endian 1.0
+element vertex {points}
+property double x
+property double y
+property double z
+element face {faces}
+property list uchar int vertex_indices
+property uchar red
+property uchar green
+property uchar blue
+end_header
+"""
 
 
 def read_octants(path: str, **_options: object) -> pyvista.UnstructuredGrid:
@@ -48,17 +65,17 @@ def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
         whole.replace(path)
 
 
-def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
-    """Write octants as a binary glTF file: a mesh a material, of the sides that can be seen.
+def write_glb(path: Path, rom: Rom, mesh: OctantMesh) -> None:
+    """Write octants as a binary glTF file: one mesh per material, of the sides that can be seen.
 
     Parameters
     ----------
     path
         The file.
     rom
-        The memory. Where it says how it stands in the scene the file is in the scene's metres, else in voxels.
-    grid
-        Some of its octants, by :func:`voxrt.view.octants`.
+        The memory. The file is in the scene's metres if the memory knows its place in the scene, else in voxels.
+    mesh
+        Some of its octants.
 
     Raises
     ------
@@ -68,10 +85,9 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
     trimesh: Any = import_module("trimesh")  # slow to import
 
     scene = trimesh.Scene()
-    origin, size = ((0.0, 0.0, 0.0), 1.0) if rom.grid is None else (rom.grid.origin, rom.grid.voxel_size)
-    points = np.asarray(grid.points, np.float64).reshape(-1, 3) * size + origin
-    quads, cells = open_sides(grid)
-    materials = np.asarray(grid.cell_data["material"])[cells]
+    points = _placed(rom, mesh)
+    quads, cells = mesh.sides()
+    materials = mesh.materials[cells]
     for number in np.unique(materials):
         used, corners = np.unique(quads[materials == number], return_inverse=True)
         corners = corners.reshape(-1, 4)
@@ -82,10 +98,10 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
             metallicFactor=1.0 if material.mirror else 0.0,
             roughnessFactor=0.0 if material.mirror else 1.0,
         )
-        mesh = trimesh.Trimesh(
+        part = trimesh.Trimesh(
             points[used], triangles, process=False, visual=trimesh.visual.TextureVisuals(material=look)
         )
-        scene.add_geometry(mesh, node_name=material.name, geom_name=material.name)
+        scene.add_geometry(part, node_name=material.name, geom_name=material.name)
 
     colours = {material.name: [*_linear(material.colour), 1.0] for material in rom.materials}
 
@@ -96,8 +112,42 @@ def write_glb(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
     write_atomically(path, scene.export(file_type="glb", tree_postprocessor=paint))
 
 
+def write_ply(path: Path, rom: Rom, mesh: OctantMesh) -> None:
+    """Write octants as a binary PLY file: the sides that can be seen, each with the colour of its material.
+
+    Parameters
+    ----------
+    path
+        The file.
+    rom
+        The memory. The file is in the scene's metres if the memory knows its place in the scene, else in voxels.
+    mesh
+        Some of its octants.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    quads, cells = mesh.sides()
+    faces = np.zeros(len(quads), _PLY_FACE)
+    faces["count"], faces["corners"] = 4, quads
+    faces["colour"] = np.array([material.colour for material in rom.materials], np.uint8)[mesh.materials[cells]]
+    points = _placed(rom, mesh).astype("<f8")
+    write_atomically(
+        path, _PLY_HEADER.format(points=len(points), faces=len(faces)).encode() + points.tobytes() + faces.tobytes()
+    )
+
+
+def _placed(rom: Rom, mesh: OctantMesh) -> NDArray[np.float64]:
+    """Return the corners of octants in the scene's metres, or in voxels if the memory has no place in a scene."""
+    origin, size = ((0.0, 0.0, 0.0), 1.0) if rom.grid is None else (rom.grid.origin, rom.grid.voxel_size)
+    placed: NDArray[np.float64] = mesh.points.astype(np.float64) * size + origin
+    return placed
+
+
 def _linear(colour: tuple[int, int, int]) -> list[float]:
-    """Give an sRGB colour as glTF wants it, linear (IEC 61966-2-1)."""
+    """Return an sRGB colour as glTF stores it, linear (IEC 61966-2-1)."""
     share = np.array(colour) / 255
     linear: list[float] = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4).tolist()
     return linear

@@ -14,15 +14,14 @@ import numpy as np
 from voxrt.export.atomic import write_atomically
 
 if TYPE_CHECKING:
-    import pyvista
-
     from voxrt.octree import Rom
+    from voxrt.view.octant_mesh import OctantMesh
 
 _PAGE = Path(__file__).with_suffix(".html")
 
 
-def write_page(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
-    """Write octants as a self-contained page; a click on an octant shows its address, word, level, bounds, material.
+def write_page(path: Path, rom: Rom, mesh: OctantMesh) -> None:
+    """Write octants as a page that needs no other file. A click shows an octant's address, word, level and material.
 
     Parameters
     ----------
@@ -30,30 +29,29 @@ def write_page(path: Path, rom: Rom, grid: pyvista.UnstructuredGrid) -> None:
         The file.
     rom
         The memory and its materials.
-    grid
-        Some of its octants, by :func:`voxrt.view.octants`.
+    mesh
+        Some of its octants.
 
     Raises
     ------
     OSError
         The file cannot be written.
     """
-    corners = np.asarray(grid.cells, np.int64).reshape(-1, 9)
-    points = np.asarray(grid.points).reshape(-1, 3)
+    points = mesh.points
     packed = b"".join(
         np.ascontiguousarray(values, kind).tobytes()
         for values, kind in (
-            (grid.cell_data["address"], "<u4"),
-            (points[corners[:, 1]], "<u2"),
-            (points[corners[:, 8]] - 1, "<u2"),
-            (grid.cell_data["material"], "u1"),
-            (grid.cell_data["level"], "u1"),
+            (mesh.addresses, "<u4"),
+            (points[mesh.corners[:, 0]], "<u2"),
+            (points[mesh.corners[:, 7]] - 1, "<u2"),
+            (mesh.materials, "u1"),
+            (mesh.levels, "u1"),
         )
     )
     scene = {
-        "title": f"{rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden",
+        "title": f"{rom.name}: {len(mesh.levels):,} octants shown, {mesh.hidden:,} hidden",
         "depth": rom.octree.depth,
-        "count": grid.n_cells,
+        "count": len(mesh.levels),
         "materials": [{"name": material.name, "colour": material.colour} for material in rom.materials],
         "octants": base64.b64encode(zlib.compress(packed, 9)).decode(),
     }

@@ -11,6 +11,7 @@ from voxrt.octree.budget import coarsen
 from voxrt.octree.leaf_arrays import Leaves, solid_leaves
 from voxrt.octree.octant import octant_at
 from voxrt.view.cells import octant_cells
+from voxrt.view.octant_mesh import octant_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from voxrt.octree.owners import Owners
     from voxrt.octree.query import Corner
     from voxrt.octree.rom import Rom
+    from voxrt.view.octant_mesh import OctantMesh
 
 Aspect: TypeAlias = Literal["material", "level", "owner"]
 Plane: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -64,15 +66,25 @@ class Pane:
         return replace(self, rom=replace(self.rom, octree=coarsen(tree, min(level, tree.depth)))) if level else self
 
     def grid(self, solid: Leaves | None = None, plane: Plane | None = None) -> pyvista.UnstructuredGrid:
-        """Give the octants that can be seen as cells: those of `solid` whose middle a plane leaves."""
+        """Return the octants that can be seen as cells: those of `solid` whose centre the plane keeps."""
+        return octant_cells(self.rom, self._kept(solid, plane), self._box(), owners=self.owners)
+
+    def mesh(self) -> OctantMesh:
+        """Return the octants that can be seen as corners and sides."""
+        return octant_mesh(self.rom, self.solid(), self._box(), owners=self.owners)
+
+    def _kept(self, solid: Leaves | None, plane: Plane | None) -> Leaves:
         some = self.solid() if solid is None else solid
-        if plane is not None:
-            normal, point = np.array(plane)
-            middles = some.corners + np.exp2(some.levels.astype(np.float64) - 1)[:, None]
-            kept = (middles - point) @ normal <= 0
-            some = Leaves(some.corners[kept], some.levels[kept], some.materials[kept])
-        end = (self.rom.octree.size,) * 3 if self.high is None else self.high
-        return octant_cells(self.rom, some, ((0, 0, 0), end) if self.cut else None, owners=self.owners)
+        if plane is None:
+            return some
+        normal, point = np.array(plane)
+        centres = some.corners + np.exp2(some.levels.astype(np.float64) - 1)[:, None]
+        kept = (centres - point) @ normal <= 0
+        return Leaves(some.corners[kept], some.levels[kept], some.materials[kept])
+
+    def _box(self) -> tuple[Corner, Corner] | None:
+        """Return the corners at which octants are cut; None leaves them whole."""
+        return ((0, 0, 0), (self.rom.octree.size,) * 3 if self.high is None else self.high) if self.cut else None
 
     def describe(self, voxel: Corner) -> str:
         """Say all that the memory knows of the octant that holds a voxel, in lines."""

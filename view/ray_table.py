@@ -1,4 +1,4 @@
-"""A ray's way through the octree, told to people: a row a word."""
+"""A ray's path through the octree as a table: one row per word."""
 
 from __future__ import annotations
 
@@ -11,11 +11,20 @@ if TYPE_CHECKING:
     from voxrt.sim import RayPath, Reading
 
 HEADS = ("step", "address", "word", "level", "x", "y", "z", "entered at", "T", "is")
-"""What the columns of :func:`ray_table` hold; x, y, z are the octant's first and last voxels."""
+"""The heads of the columns of :func:`ray_table`; x, y, z are the first and last voxels of the octant."""
 
 
-def ray_table(rom: Rom, path: RayPath) -> list[tuple[str, ...]]:
-    """Give a row of text for each word that a ray read."""
+def ray_table(rom: Rom | None, path: RayPath) -> list[tuple[str, ...]]:
+    """Return a row of text for each word that a ray read; without a memory, materials have no names.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> from voxrt.sim import follow_ray
+    >>> path = follow_ray(from_points([[5, 2, 2]], [7], depth=3), (80, 40, 40), (0, 0, 1))
+    >>> ray_table(None, path)[-1]
+    ('4', '0x15', '0xFFFFFF07', '0', '5', '2', '2', 'the eye', '0', 'leaf: material 7')
+    """
     return [
         (
             str(step),
@@ -34,13 +43,13 @@ def ray_table(rom: Rom, path: RayPath) -> list[tuple[str, ...]]:
     ]
 
 
-def describe_root(rom: Rom, path: RayPath) -> str:
-    """Say what word 0 is, which every ray begins at and none reads."""
+def describe_root(rom: Rom | None, path: RayPath) -> str:
+    """Describe word 0. Every ray starts from it; it is kept between rays and not read again."""
     return f"word 0 is 0x{path.root:08X}, {_meaning(rom, path.root)}; kept from ray to ray"
 
 
-def describe_end(rom: Rom, path: RayPath) -> str:
-    """Say what the ray hit."""
+def describe_end(rom: Rom | None, path: RayPath) -> str:
+    """Describe what the ray hit."""
     if path.cell is None:
         return "nothing: the ray leaves the world"
     x, y, z = path.cell
@@ -49,17 +58,19 @@ def describe_end(rom: Rom, path: RayPath) -> str:
 
 
 def _plane(path: RayPath, reading: Reading) -> str:
-    """Name the plane that the ray crossed last."""
+    """Return the plane that the ray crossed last."""
     if reading.axis == FACE_NONE:
         return "the eye"
     return f"{'xyz'[reading.axis]} = {path.point(reading.time)[reading.axis]:g}"
 
 
-def _meaning(rom: Rom, word: int) -> str:
+def _meaning(rom: Rom | None, word: int) -> str:
     if not word >> 31:
         return f"pointer to 0x{word:X}"
     return f"leaf: {_name(rom, word & 0xFF)}"
 
 
-def _name(rom: Rom, material: int) -> str:
-    return f"material {material}, {rom.materials[material].name}" if material else "empty"
+def _name(rom: Rom | None, material: int) -> str:
+    if not material:
+        return "empty"
+    return f"material {material}" + ("" if rom is None else f", {rom.materials[material].name}")

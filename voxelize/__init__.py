@@ -21,7 +21,7 @@ from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Mate
 from voxrt.voxelize.mesh import MaterialMap, Mesh
 from voxrt.voxelize.scene import PointLight, Scene, SceneObject, Viewpoint
 from voxrt.voxelize.voxelizer import voxelize
-from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
+from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 
 __all__ = [
     "DEFAULT_COLOUR",
@@ -39,6 +39,7 @@ __all__ = [
     "MaterialMap",
     "Mesh",
     "MeshCollider",
+    "ObjectMode",
     "ObjectReport",
     "PointLight",
     "Scene",

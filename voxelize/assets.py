@@ -19,8 +19,8 @@ UpAxis: TypeAlias = Literal["x", "y", "z"]
 
 UP_AXES: tuple[UpAxis, ...] = ("x", "y", "z")
 
-# Module, function and options of each loader. Loaders are imported when needed: importing USD takes longer than building
-# a small scene.
+# Module, function and options of each loader. Loaders are imported when needed, for importing USD takes longer than
+# building a small scene.
 _LOADERS = {
     ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
     ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
@@ -38,8 +38,8 @@ SUFFIXES = tuple(_LOADERS)
 """The suffixes that :func:`load` reads, in lower case."""
 
 _WHY_IGNORED = {
-    "up": "the up axis was ignored: {} files declare it",
-    "unit": "the unit was ignored: {} files declare it",
+    "up": "the up axis was ignored: {} files define it",
+    "unit": "the unit was ignored: {} files define it",
     "time": "the time was ignored: {} files have no animation",
     "animation": "the animation's name was ignored: {} files have no named animations",
     "variants": "variants were ignored: {} files have none",
@@ -66,7 +66,7 @@ def load(
         A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
         ``.toml`` scene file. The case of the suffix does not matter.
     up
-        The file's up axis, for formats that do not declare it (OBJ, STL, PLY); None for y.
+        The file's up axis, for formats that do not define it (OBJ, STL, PLY); None for y.
     unit
         Metres per unit of the file, for the same formats; None for 1.
     time
@@ -100,7 +100,7 @@ def load(
     ...     _ = path.write_text("v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n")
     ...     scene = load(path, unit=0.01)
     >>> scene
-    Scene('sail', 1 objects, 1 triangles, 2 materials, 1 warnings)
+    Scene(name='sail', objects=1, triangles=1, materials=2, warnings=1)
     >>> scene.warnings[0].message
     'faces without a material got the default one'
     """

@@ -45,7 +45,7 @@ class MaterialMap:
     One triangle of which the left half has material 1 and the right half material 2:
 
     >>> MaterialMap([[2, 1]], [[[0, 0], [2, 0], [0, 1]]], [1, 2])
-    MaterialMap(1 triangles, 2 cells)
+    MaterialMap(triangles=1, cells=2)
     """
 
     sizes: NDArray[np.int32]
@@ -68,7 +68,7 @@ class MaterialMap:
         object.__setattr__(self, "materials", materials)
 
     def __repr__(self) -> str:
-        return f"MaterialMap({len(self.sizes)} triangles, {len(self.materials)} cells)"
+        return f"MaterialMap(triangles={len(self.sizes)}, cells={len(self.materials)})"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -97,7 +97,7 @@ class Mesh:
     Examples
     --------
     >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
-    Mesh(3 vertices, 1 triangles)
+    Mesh(vertices=3, triangles=1)
     >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]], [1])
     Traceback (most recent call last):
         ...
@@ -128,8 +128,9 @@ class Mesh:
             _same_length("Mesh.material_map", len(material_map.sizes), count)
 
     def __repr__(self) -> str:
-        parts = [f"{len(self.positions)} vertices", f"{len(self.triangles)} triangles"]
-        parts += ["appearance"] * (self.appearance is not None) + ["material map"] * (self.material_map is not None)
+        parts = [f"vertices={len(self.positions)}", f"triangles={len(self.triangles)}"]
+        parts += [f"appearance={self.appearance!r}"] * (self.appearance is not None)
+        parts += [f"material_map={self.material_map!r}"] * (self.material_map is not None)
         return f"Mesh({', '.join(parts)})"
 
 

@@ -47,7 +47,7 @@ class SceneObject:
     --------
     >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
     >>> SceneObject("sail", mesh)
-    SceneObject('sail', Mesh(3 vertices, 1 triangles), 0 colliders)
+    SceneObject(name='sail', mesh=Mesh(vertices=3, triangles=1), colliders=0)
     """
 
     name: str
@@ -72,7 +72,7 @@ class SceneObject:
         object.__setattr__(self, "collider_material", material)
 
     def __repr__(self) -> str:
-        return f"SceneObject({self.name!r}, {self.mesh!r}, {len(self.colliders)} colliders)"
+        return f"SceneObject(name={self.name!r}, mesh={self.mesh!r}, colliders={len(self.colliders)})"
 
 
 _AFFINE_TOLERANCE = 1e-6
@@ -171,11 +171,11 @@ class Scene:
     >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
     >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
     >>> Scene("boat", [SceneObject("sail", mesh)], [EMPTY, Material("cloth", (240, 240, 230))])
-    Scene('boat', 1 objects, 1 triangles, 2 materials, 0 warnings)
+    Scene(name='boat', objects=1, triangles=1, materials=2, warnings=0)
     >>> Scene("boat", [SceneObject("sail", mesh)], [EMPTY])
     Traceback (most recent call last):
         ...
-    ValueError: object 'sail' uses material 1, and Scene.materials has 1 entries: declare the material
+    ValueError: object 'sail' uses material 1, and Scene.materials ends at 0: declare the material
     """
 
     name: str
@@ -211,15 +211,15 @@ class Scene:
             used = max(highest[key], one.collider_material if one.colliders else 0)
             if used >= len(self.materials):
                 raise ValueError(
-                    f"object {one.name!r} uses material {used}, and Scene.materials has {len(self.materials)} "
-                    "entries: declare the material"
+                    f"object {one.name!r} uses material {used}, and Scene.materials ends at {len(self.materials) - 1}: "
+                    "declare the material"
                 )
 
     def __repr__(self) -> str:
         triangles = sum(len(one.mesh.triangles) for one in self.objects)
         return (
-            f"Scene({self.name!r}, {len(self.objects)} objects, {triangles} triangles, "
-            f"{len(self.materials)} materials, {len(self.warnings)} warnings)"
+            f"Scene(name={self.name!r}, objects={len(self.objects)}, triangles={triangles}, "
+            f"materials={len(self.materials)}, warnings={len(self.warnings)})"
         )
 
 

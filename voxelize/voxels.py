@@ -59,7 +59,7 @@ class Voxels:
     octant_materials: NDArray[np.uint8]
 
     def __repr__(self) -> str:
-        return f"Voxels(depth {self.depth}, {len(self.brick_codes)} bricks, {len(self.octant_codes)} octants)"
+        return f"Voxels(depth={self.depth}, bricks={len(self.brick_codes)}, octants={len(self.octant_codes)})"
 
 
 class ObjectMode(StrEnum):
@@ -133,4 +133,4 @@ class Voxelization:
     seconds: dict[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        return f"Voxelization({self.voxels!r}, {len(self.objects)} objects, {len(self.warnings)} warnings)"
+        return f"Voxelization(voxels={self.voxels!r}, objects={len(self.objects)}, warnings={len(self.warnings)})"

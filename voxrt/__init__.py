@@ -1,6 +1,6 @@
 """voxrt: meshes to voxels to an octree memory to pictures ray-traced by hardware.
 
-The front door. Each name is imported when it is first used, so that ``import voxrt`` and ``voxrt --help`` are instant::
+The front door. Each name is imported when it is first used, so ``import voxrt`` and ``voxrt --help`` are instant::
 
     import voxrt
 
@@ -9,7 +9,7 @@ The front door. Each name is imported when it is first used, so that ``import vo
     frame = voxrt.render(rom, size=(640, 480), engine="model")
 
 The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`voxrt.octree`, :mod:`voxrt.export`,
-:mod:`voxrt.sim`.
+:mod:`voxrt.sim`, :mod:`voxrt.view`.
 """
 
 import sys
@@ -17,38 +17,17 @@ from importlib import import_module
 from pkgutil import extend_path
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from voxrt.export import WRITABLE_SUFFIXES, convert, read_any, read_rom, rom_info
-    from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
-    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
-    from voxrt.octree.camera import Camera, Lighting
-    from voxrt.outputs import OutputError
-    from voxrt.pipeline import BuildResult, Picture, build, render, save_picture
-    from voxrt.plain_verilog import ToolError
-    from voxrt.sim import (
-        Frame,
-        NoSuchConfigurationError,
-        SimulatorError,
-        check,
-        compare,
-        comparison_sheet,
-        shader_features,
-    )
-    from voxrt.view import ViewerError
-    from voxrt.viewpoint import ViewpointError, aim_camera
-    from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
-
 # A checkout's Python and an installed wheel's extension modules make one package.
 __path__ = extend_path(__path__, __name__)
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "BOARDS",
     "WRITABLE_SUFFIXES",
     "AssetError",
     "BudgetFit",
+    "BuildOptions",
     "BuildResult",
     "Camera",
     "DoesNotFitError",
@@ -62,6 +41,8 @@ __all__ = [
     "Octree",
     "OutputError",
     "Picture",
+    "RayHits",
+    "RayPath",
     "Region",
     "Rom",
     "RomError",
@@ -72,7 +53,9 @@ __all__ = [
     "ViewerError",
     "ViewpointError",
     "aim_camera",
+    "board",
     "build",
+    "cast_rays",
     "check",
     "compare",
     "comparison_sheet",
@@ -80,38 +63,86 @@ __all__ = [
     "diff",
     "differing_regions",
     "draw_likeness_curve",
+    "export",
     "fit_grid",
+    "follow_ray",
     "likeness_curve",
     "load",
+    "mesh_scene",
+    "octree",
     "read_any",
     "read_rom",
     "render",
     "rom_info",
     "save_picture",
+    "serve",
     "shader_features",
+    "sim",
+    "view",
+    "voxelize",
+    "voxelize_mesh",
 ]
 
 _HOMES = {
-    "voxrt.export": ("WRITABLE_SUFFIXES", "convert", "read_any", "read_rom", "rom_info"),
-    "voxrt.likeness_curve": ("LikenessAtDepth", "draw_likeness_curve", "likeness_curve"),
-    "voxrt.octree": ("BOARDS", "Octree", "Region", "Rom", "RomError", "diff", "differing_regions"),
-    "voxrt.octree.camera": ("Camera", "Lighting"),
+    "voxrt.build_options": ("BuildOptions",),
+    "voxrt.build_result": ("BuildResult",),
+    "voxrt.export": (
+        "read_any",
+        "read_rom",
+        "rom_info",
+    ),
+    "voxrt.fitting": (
+        "BudgetFit",
+        "InteriorFit",
+    ),
+    "voxrt.from_arrays": ("mesh_scene",),
+    "voxrt.likeness_curve": (
+        "LikenessAtDepth",
+        "draw_likeness_curve",
+        "likeness_curve",
+    ),
+    "voxrt.octree": (
+        "BOARDS",
+        "Octree",
+        "Region",
+        "Rom",
+        "RomError",
+        "diff",
+        "differing_regions",
+    ),
+    "voxrt.octree.camera": (
+        "Camera",
+        "Lighting",
+    ),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.fitting": ("BudgetFit", "InteriorFit"),
-    "voxrt.pipeline": ("BuildResult", "Picture", "build", "render", "save_picture"),
+    "voxrt.pictures": (
+        "Picture",
+        "render",
+        "save_picture",
+    ),
+    "voxrt.pipeline": (
+        "build",
+        "voxelize_mesh",
+    ),
     "voxrt.plain_verilog": ("ToolError",),
     "voxrt.sim": (
-        "Camera",
         "Frame",
         "NoSuchConfigurationError",
+        "RayHits",
+        "RayPath",
         "SimulatorError",
+        "cast_rays",
         "check",
         "compare",
         "comparison_sheet",
+        "follow_ray",
         "shader_features",
     ),
     "voxrt.view": ("ViewerError",),
-    "voxrt.viewpoint": ("ViewpointError", "aim_camera"),
+    "voxrt.viewpoint": (
+        "ViewpointError",
+        "aim_camera",
+    ),
     "voxrt.voxelize": (
         "AssetError",
         "DoesNotFitError",
@@ -122,14 +153,53 @@ _HOMES = {
         "fit_grid",
         "load",
     ),
+    "voxrt.writers": (
+        "WRITABLE_SUFFIXES",
+        "convert",
+    ),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
+_ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 
+if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
+    from voxrt import board, export, octree, serve, sim, view, voxelize
+    from voxrt.build_options import BuildOptions
+    from voxrt.build_result import BuildResult
+    from voxrt.export import read_any, read_rom, rom_info
+    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.from_arrays import mesh_scene
+    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
+    from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.outputs import OutputError
+    from voxrt.pictures import Picture, render, save_picture
+    from voxrt.pipeline import build, voxelize_mesh
+    from voxrt.plain_verilog import ToolError
+    from voxrt.sim import (
+        Frame,
+        NoSuchConfigurationError,
+        RayHits,
+        RayPath,
+        SimulatorError,
+        cast_rays,
+        check,
+        compare,
+        comparison_sheet,
+        follow_ray,
+        shader_features,
+    )
+    from voxrt.view import ViewerError
+    from voxrt.viewpoint import ViewpointError, aim_camera
+    from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
+    from voxrt.writers import WRITABLE_SUFFIXES, convert
+else:
 
-def __getattr__(name: str) -> object:
-    if name not in _HOME:
+    def __getattr__(name: str) -> object:
+        if name in _HOME:
+            return getattr(import_module(_HOME[name]), name)
+        if name in _ROOMS:
+            return import_module(f"{__name__}.{name}")
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
 
 
 def __dir__() -> list[str]:
@@ -137,4 +207,4 @@ def __dir__() -> list[str]:
 
 
 if "IPython" in sys.modules:  # a notebook: it finds the cards on the values' classes
-    import_module("voxrt.view.cards")
+    import_module("voxrt.cards")

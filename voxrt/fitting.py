@@ -14,7 +14,6 @@ from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -62,7 +61,7 @@ class InteriorFit:
     words_before: int
 
 
-def find_material(asset: Path, scene: Scene, wanted: int | str) -> int:
+def find_material(asset: object, scene: Scene, wanted: int | str) -> int:
     """Find the id of a material that is asked for by name or by id.
 
     Raises

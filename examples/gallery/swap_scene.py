@@ -16,8 +16,8 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.view import View
+from voxrt.board_scenes import board_scene
 from voxrt.export import Blob
-from voxrt.staging import board_scene
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
 device = open_rtl("tiny")
@@ -36,7 +36,7 @@ def report(stage: str, done: int, total: int) -> None:
 memory, size, frames = SceneMemory(device), (240, 180), []
 for name in ("house.obj", "dog.usda"):
     rom = voxrt.build(EXAMPLES / name, depth=6).rom
-    memory.swap(board_scene(Blob(rom)), report)
+    memory.load(board_scene(Blob(rom)), report)
     view = View(voxrt.aim_camera(rom, size), size, background=rom.materials[0].colour)
     frames.append(device.frame(view))
     cost = frames[-1].counters

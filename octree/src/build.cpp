@@ -44,7 +44,7 @@ bool cells_match_mask(const std::uint8_t* cells, const std::uint64_t* mask) {
     return difference == 0;
 }
 
-// The node of a brick in a world of at least 8 voxels a side, or the whole of a smaller world.
+// The node of a brick in a world of at least 8 voxels per side, or the whole of a smaller world.
 Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) {
     const std::uint64_t* mask = voxels.brick_masks + 8 * i;
     const std::int32_t row = voxels.brick_rows[i];

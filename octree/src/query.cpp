@@ -59,7 +59,7 @@ private:
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
-// Bounds of the solid voxels of a block relative to its corner, each block once a level.
+// Bounds of the solid voxels of a block relative to its corner, each block once per level.
 class BoundsFinder {
 public:
     explicit BoundsFinder(const Memory& memory) : memory_(memory) {}

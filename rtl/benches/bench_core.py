@@ -49,7 +49,7 @@ class Core:
         dut.bram_en_i.value = 0
         dut.m_axis_tready.value = 0
         dut.rst_ni.value = 0
-        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
         await ClockCycles(dut.clk_i, 20)
         dut.rst_ni.value = 1
         await ClockCycles(dut.clk_i, 2)
@@ -382,14 +382,11 @@ async def values_out_of_range_count_as_the_nearest(dut, register):
     await core.load(words_of(voxels))
     await core.set_frame(CAMERA, 7, 5, 3)
     if register == "size":
-        for width, height in ((0, 5), (7, 0), (0, 0)):
-            await core.write("size", width=width, height=height)
+        for written, meant in (((0, 5), (1, 5)), ((7, 0), (7, 1)), ((0, 0), (1, 1))):
+            await core.write("size", width=written[0], height=written[1])
             await core.write("control", start=1)
             await core.wait()
-            width, height = width or 1, height or 1
-            np.testing.assert_array_equal(
-                core.picture(width, height), render(voxels, CAMERA, width, height, COLOURS)[0]
-            )
+            np.testing.assert_array_equal(core.picture(*meant), render(voxels, CAMERA, *meant, COLOURS)[0])
         return
     for depth in (0, deepest + 1, 31):
         pictures = []

@@ -35,7 +35,7 @@ def some_light(side):
 async def exact(dut, enabled):
     """Many worlds and lights; a hit point for each clock that counts."""
     drive(dut, enable_i=0)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     counts = pace(enabled)
     for _ in range(40):

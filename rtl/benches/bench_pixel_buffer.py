@@ -3,14 +3,15 @@
 from random import randrange, shuffle
 
 import cocotb
-from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
+from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge, with_timeout
 from streams import PACES, drive, pace, reset, start, take
 
 
 async def complete(dut, pixels, kind, disorder):
-    """Allocate an entry per pixel; store and complete them late and out of order, the pixel no later than the answer."""
+    """Allocate an entry per pixel; store and complete them late, out of order, the pixel first or with the answer."""
     waiting, there, allocated = [], pace(kind), 0
     while pixels[allocated:] or waiting:
+        await FallingEdge(dut.clk_i)  # ready_o is that of the next clock.
         allocates = allocated < len(pixels) and int(dut.ready_o.value) and next(there)
         drive(dut, allocate_i=allocates, complete_i=0, store_i=0)
         if waiting and (len(waiting) > disorder or allocated == len(pixels) or not int(dut.ready_o.value)):

@@ -89,7 +89,7 @@ class Ring:
 async def prepare(dut):
     """Start the clock, and fill the table."""
     drive(dut, material_write_i=0, hit_i=0, issues_i=0)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     ring = Ring(dut)
     await ring.fill_table()

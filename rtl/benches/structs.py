@@ -1,4 +1,4 @@
-"""Packed structs of voxrt_pkg, which the simulator shows as one number: fields from the highest on, with their widths."""
+"""Packed structs of voxrt_pkg, which the simulator shows as one number: fields and widths, the highest first."""
 
 
 def wrapped(value, width):

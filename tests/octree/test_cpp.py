@@ -3,16 +3,16 @@
 import re
 import shutil
 import subprocess
-import tomllib
 from pathlib import Path
 
 import pytest
 
+import voxrt
+
 ROOT = Path(__file__).resolve().parents[2]
-VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 LIBRARIES = ("libvoxrt_voxelize.a", "libvoxrt_octree.a")
 CONSUMER = """
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(voxrt.__version__ 3.25)
 project(consumer LANGUAGES CXX)
 find_package(voxrt {version} REQUIRED)
 add_executable(consumer {program})
@@ -68,22 +68,24 @@ def consume(installed, folder, program, version):
 @pytest.mark.parametrize(("program", "says"), [("mesh_to_ray", "hits material 2"), ("query_octree", "hits material")])
 def test_a_program_finds_the_installed_package(installed, tmp_path, program, says):
     example = ROOT / "examples" / "cpp" / f"{program}.cpp"
-    source, folder, prefix = consume(installed, tmp_path / "consumer", example, ".".join(VERSION.split(".")[:2]))
+    source, folder, prefix = consume(
+        installed, tmp_path / "consumer", example, ".".join(voxrt.__version__.split(".")[:2])
+    )
     build(source, folder, prefix)
     assert says in subprocess.run([folder / "consumer"], check=True, capture_output=True, text=True).stdout
 
 
 def test_another_version_is_not_found(installed, tmp_path):
-    major, minor = map(int, VERSION.split(".")[:2])
+    major, minor = map(int, voxrt.__version__.split(".")[:2])
     example = ROOT / "examples" / "cpp" / "query_octree.cpp"
     refused = configure(*consume(installed, tmp_path / "consumer", example, f"{major}.{minor + 1}"))
     assert refused.returncode != 0
-    assert f"version: {VERSION}" in refused.stderr
+    assert f"version: {voxrt.__version__}" in refused.stderr
 
 
-def test_the_package_has_the_version_of_pyproject(installed):
+def test_the_package_has_the_version_of_voxrt(installed):
     text = (installed / "lib" / "cmake" / "voxrt" / "voxrtConfigVersion.cmake").read_text()
-    assert re.search(r'set\(PACKAGE_VERSION "(.*)"\)', text)[1] == VERSION
+    assert re.search(r'set\(PACKAGE_VERSION "(.*)"\)', text)[1] == voxrt.__version__
 
 
 def test_every_installed_header_compiles_alone(installed, tmp_path):

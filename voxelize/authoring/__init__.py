@@ -8,7 +8,7 @@
 >>> well = authoring.cylinder(1, 1.5) - authoring.cylinder(0.8, 2)
 >>> yard.add("well", well, material="stone", translate=(2, 0.75, 1))
 >>> yard.build()
-Scene('yard', 2 objects, 1036 triangles, 3 materials, 0 warnings)
+Scene(name='yard', objects=2, triangles=1036, materials=3, warnings=0)
 
 :mod:`voxrt.voxelize.authoring.scene_toml` describes the file.
 """

@@ -48,7 +48,7 @@ class Author:
     >>> yard.look(eye=(6, 4, 9), target=(0, 1, 0))
     >>> yard.light((3, 8, 4))
     >>> yard.build()
-    Scene('yard', 1 objects, 12 triangles, 2 materials, 0 warnings)
+    Scene(name='yard', objects=1, triangles=12, materials=2, warnings=0)
     """
 
     def __init__(self, name: str, *, background: Colour = EMPTY.colour) -> None:
@@ -146,11 +146,9 @@ class Author:
         arguments.instance("solid", solid, Solid)
         positions, triangles, runs = (solid if material is None else solid.of(material)).surface()
         ids = np.concatenate([np.full(count, self._id_of(own, count), dtype=np.uint8) for own, count in runs])
-        colliders = ()
-        if collider is not None:
-            colliders = (collider_around(collider, positions, triangles, pow2=pow2),)
+        colliders = [] if collider is None else [collider_around(collider, positions, triangles, pow2=pow2)]
         mesh = Mesh(positions, triangles, ids)
-        self._enter(SceneObject(name, mesh, _finite(name, transform), colliders, int(ids[0])))
+        self._enter(SceneObject(name, mesh, _finite(name, transform), tuple(colliders), int(ids[0])))
 
     def add_asset(
         self,

@@ -116,7 +116,7 @@ class SurfaceAppearance:
         object.__setattr__(self, "colours", colours)
 
     def __repr__(self) -> str:
-        return f"SurfaceAppearance({len(self.rows)} triangles, {', '.join(repr(one.name) for one in self.entries[:8])})"
+        return f"SurfaceAppearance(triangles={len(self.rows)}, entries={len(self.entries)})"
 
 
 def sample(

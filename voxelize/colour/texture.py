@@ -66,7 +66,7 @@ class Texture:
 
     def __repr__(self) -> str:
         height, width = self.pixels.shape[:2]
-        return f"Texture({width} x {height} pixels)"
+        return f"Texture(width={width}, height={height}, wrap={self.wrap}, nearest={self.nearest})"
 
 
 def look_up(texture: Texture, uv: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -31,7 +31,7 @@ public:
     }
 
     struct Enclosure {
-        double mean = 0, highest = 0; // of the absolute winding number where it is beyond 1/2
+        double mean = 0, highest = 0; // of the absolute winding number where it exceeds 1/2
     };
 
     /// `caps`: those that were added.

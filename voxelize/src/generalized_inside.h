@@ -1,4 +1,4 @@
-// Which voxels of a tile lie inside a surface with holes: those where its generalized winding number is beyond 1/2
+// Which voxels of a tile lie inside a surface with holes: those where its generalized winding number exceeds 1/2
 // (Jacobson, Kavan and Sorkine-Hornung 2013; cap_winding.h).
 //
 // That number is the winding number of the capped surface, known for every voxel, less what the caps add. Cubes are
@@ -96,7 +96,7 @@ public:
 
 private:
     static constexpr double kSqrt3 = 1.7320508075688772;
-    static constexpr double kTie = 0.5 + 1e-6;          // beyond 1/2 by more than rounding
+    static constexpr double kTie = 0.5 + 1e-6;          // above 1/2 by more than rounding
     static constexpr double kSample = 0.5 + 1.0 / 8192; // the sample point of a voxel is on its column's ray
 
     struct Cell {
@@ -256,9 +256,9 @@ private:
     std::vector<Class> classes_;
     std::vector<uint32_t> mixed_;            // by brick: the number of its expansion
     std::vector<LocalExpansion> expansions_; // of mixed bricks
-    LocalExpansion levels_[4];               // of the cubes, then of the cells around the one at hand
+    LocalExpansion levels_[4];               // of the cubes, then of the cells around the current one
 
-    // The mixed brick at hand.
+    // The current mixed brick.
     int x_ = 0, y_ = 0, z_ = 0;
     const int* numbers_ = nullptr;
     const Slices* surface_ = nullptr;

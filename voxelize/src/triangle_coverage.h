@@ -1,4 +1,4 @@
-// Which voxels a triangle covers, and which columns it crosses: exact, a column at a time.
+// Which voxels a triangle covers, and which columns it crosses: exact, one column at a time.
 //
 // A voxel is covered when the closed triangle meets the voxel's open interior. Thirteen axes can separate a box from a
 // triangle (3 box normals, the triangle's normal, 9 products of edges; Akenine-Moeller, "Fast 3D Triangle-Box Overlap

@@ -3,7 +3,7 @@
 // A voxel is solid where the closed solid of an object overlaps the voxel's interior at all; touching is not overlap.
 // Where objects compete, the first in authored order keeps the voxel. Coverage of triangles is exact
 // (triangle_coverage.h). Inside is where the winding number is not zero, or, for surfaces with holes, where the
-// generalized winding number is beyond 1/2 (generalized_inside.h).
+// generalized winding number exceeds 1/2 (generalized_inside.h).
 //
 //     const MeshView mesh{positions, triangles, materials};            // spans, borrowed
 //     const double frame[12] = {s, 0, 0, x, 0, s, 0, y, 0, 0, s, z};   // mesh to grid space, in 1/4096 voxel

@@ -3,135 +3,97 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
 import voxrt
+from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
+from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.results import build_report, print_json
+
+_ASSET = (
+    "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml)."
+)
+
+
+def _option(name: str, *names: str, **said: Any) -> Parameter:  # noqa: ANN401 - whatever cyclopts takes
+    """Make the parameter of an option of :class:`BuildOptions`, whose documentation is its help."""
+    return Parameter(names or None, help=OPTION_HELP[name], **said)
 
 
 def build(
-    asset: Annotated[Path, Parameter(metavar="ASSET")],
+    asset: Annotated[Path, Parameter(metavar="ASSET", help=_ASSET)],
     /,
     *,
-    output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
-    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
-    voxel_size: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
-    fill: Literal["solid", "surface"] = "solid",
-    interior: Annotated[str, Parameter(metavar="keep|any|MATERIAL")] = "keep",
-    geometry: Literal["auto", "render", "collider"] = "auto",
-    pow2: Literal["box", "none"] = "box",
-    up: Literal["x", "y", "z"] | None = None,
-    unit: Annotated[float | None, Parameter(converter=metres, metavar="METRES")] = None,
-    time: Annotated[float | None, Parameter(converter=seconds, metavar="SECONDS")] = None,
-    animation: Annotated[str | None, Parameter(metavar="NAME")] = None,
-    variant: Annotated[tuple[str, ...], Parameter(metavar="NAME", show_default=False)] = (),
-    allow_outside: Annotated[bool, Parameter(show_default=False)] = False,
-    colours: Annotated[int, Parameter(converter=shades, metavar="K")] = 32,
-    budget: Annotated[int | None, Parameter(converter=words, metavar="WORDS")] = None,
-    board: Annotated[str | None, Parameter(metavar="NAME")] = None,
-    preview: Annotated[str | None, Parameter(metavar="[FILE]")] = None,
-    size: Pixels = (640, 480),
-    engine: Literal["rtl", "model"] = "rtl",
-    dialect: Literal["report", "seed-rtl", "msb"] = "report",
-    strict: Annotated[bool, Parameter(show_default=False)] = False,
-    profile: Annotated[bool, Parameter(show_default=False)] = False,
+    output: Annotated[
+        Path,
+        Parameter(("--output", "-o"), metavar="DIR", help="Folder for the files. It is made if it is missing."),
+    ] = Path(),
+    depth: Annotated[int | None, _option("depth", converter=levels, metavar="N")] = BuildOptions.depth,
+    voxel_size: Annotated[
+        float | None, _option("voxel_size", converter=metres, metavar="METRES")
+    ] = BuildOptions.voxel_size,
+    fill: Annotated[Fill, _option("fill")] = BuildOptions.fill,
+    interior: Annotated[str, _option("interior", metavar="keep|any|MATERIAL")] = str(BuildOptions.interior),
+    geometry: Annotated[Geometry, _option("geometry")] = BuildOptions.geometry,
+    pow2: Annotated[Pow2, _option("pow2")] = BuildOptions.pow2,
+    up: Annotated[UpAxis | None, _option("up")] = BuildOptions.up,
+    unit: Annotated[float | None, _option("unit", converter=metres, metavar="METRES")] = BuildOptions.unit,
+    time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
+    animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
+    variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
+    allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
+    colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
+    budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
+    board: Annotated[
+        str | None,
+        Parameter(metavar="NAME", help="Name of a board, such as pynq-z1. Its memory is the budget."),
+    ] = None,
+    preview: Annotated[str | None, _option("preview", metavar="[FILE]")] = None,
+    size: Annotated[Pixels, _option("size")] = BuildOptions.size,
+    engine: Annotated[Engine, _option("engine")] = BuildOptions.engine,
+    dialect: Annotated[Dialect, _option("dialect")] = BuildOptions.dialect,
+    strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
+    profile: Annotated[
+        bool,
+        Parameter(show_default=False, help="Print the time of each stage, with its parts indented below it."),
+    ] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture.
-
-    Parameters
-    ----------
-    asset
-        A glTF (.gltf .glb), OBJ, USD (.usd .usda .usdc .usdz), STL or PLY file, or a scene of some (.toml).
-    output
-        Folder to write to; made when it is missing.
-    depth
-        Levels of the octree, 1 to 16: the scene's bounding cube gets 2^N voxels a side. 7 when neither this nor
-        --voxel-size is given.
-    voxel_size
-        Size of a voxel instead of --depth.
-    fill
-        Fill what closed surfaces enclose, or keep the shell only.
-    interior
-        What becomes of voxels that no ray from outside can reach: keep their object's material; any: each takes
-        whatever makes the memory smallest; MATERIAL: all take that material, an id or a name.
-    geometry
-        auto: an object's colliders where it has some, else its triangles; render: always the triangles; collider:
-        always colliders, the bounding box where an object has none.
-    pow2
-        Round box colliders up to powers of two voxels, or never.
-    up
-        The up axis of formats that do not say (OBJ, STL, PLY).
-    unit
-        Metres per unit of formats that do not say.
-    time
-        The second of its animation at which the asset is shown (glTF, USD).
-    animation
-        Which of its animations, by name or by number counted from 0 (glTF). [default: the first]
-    variant
-        A material variant (glTF), or /prim/path:set=variant (USD), any number of times.
-    allow_outside
-        Open files that the asset names outside its folder and the folders in it, too.
-    colours
-        Materials that textures and vertex colours are reduced to, 1 to 254; uniform materials keep their colour.
-    budget
-        Words that the memory may take: what is seen least is given up until it fits.
-    board
-        A board whose memory is the budget.
-    preview
-        Render a picture of the scene, to NAME.preview.png in the output folder or to FILE, a .png.
-    size
-        Width and height of the preview, pixels. [default: 640x480]
-    engine
-        What renders the preview: the verilated hardware, or the exact model of it. A light of the scene's own is
-        cast by both.
-    dialect
-        How the memory spells a material: report is this project's; seed-rtl is what the published bitstreams read,
-        msb what their C++ program reads.
-    strict
-        Refuse an asset of which something would not be honoured as it stands, instead of warning.
-    profile
-        Show where the time goes, a stage a row, what a stage consists of indented below it.
-    reporting
-        How to tell what was done.
-    """
+    """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture."""
     if depth is not None and voxel_size is not None:
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
         raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
-    with stage_bar(
-        6 + (preview is not None) + (interior != "keep") + (budget is not None or board is not None)
-    ) as progress:
-        result = voxrt.build(
-            asset,
-            output,
-            depth=depth,
-            voxel_size=voxel_size,
-            fill=fill,
-            interior=interior,
-            geometry=geometry,
-            pow2=pow2,
-            up=up,
-            unit=unit,
-            time=time,
-            animation=animation,
-            variants=variant,
-            allow_outside=allow_outside,
-            colours=colours,
-            budget=board or budget,
-            dialect=dialect,
-            preview=png(Path(preview)) if preview else preview is not None,
-            size=size,
-            engine=engine,
-            strict=strict,
-            progress=progress,
-        )
+    options = BuildOptions(
+        depth=depth,
+        voxel_size=voxel_size,
+        fill=fill,
+        interior=interior,
+        geometry=geometry,
+        pow2=pow2,
+        up=up,
+        unit=unit,
+        time=time,
+        animation=animation,
+        variants=variants,
+        allow_outside=allow_outside,
+        colours=colours,
+        budget=board or budget,
+        dialect=dialect,
+        preview=png(Path(preview)) if preview else preview is not None,
+        size=size,
+        engine=engine,
+        strict=strict,
+    )
+    stages = 6 + bool(options.preview) + (interior != "keep") + (options.budget is not None)
+    with stage_bar(stages) as progress:
+        result = voxrt.build(asset, output, options, progress=progress)
     warn(result.warnings)
     if reporting.json:
         print_json(build_report(result))
@@ -144,8 +106,8 @@ def build(
             for stage, took in result.seconds.items()
             for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
         ]
-        stages = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
-        tabulate(("stage", "ms", "%"), [*stages, ("all", f"{1e3 * total:.1f}", "100")])
+        percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
+        tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])
 
 
 def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
@@ -168,7 +130,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
 
 
 def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
-    made = "what shares most" if interior.material is None else rom.materials[interior.material].name
+    made = "of any material" if interior.material is None else f"of {rom.materials[interior.material].name}"
     return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
 
 

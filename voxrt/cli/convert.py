@@ -12,7 +12,7 @@ from voxrt.cli.arguments import Reporting, UsageError, levels
 from voxrt.cli.memory_results import ConvertResult
 from voxrt.cli.messages import name_file, summarize, warn
 from voxrt.cli.results import print_json, warning_entries
-from voxrt.outputs import check_folder, uninterrupted, writing
+from voxrt.outputs import check_folder, uninterrupted
 
 
 def convert(
@@ -50,8 +50,7 @@ def convert(
         raise UsageError(f"{target}: is no format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
     check_folder(target.parent)
     blob, warnings = voxrt.read_any(source, depth=depth, dialect=from_dialect, colours=_colours(material))
-    with writing(target), uninterrupted():
-        target.parent.mkdir(parents=True, exist_ok=True)
+    with uninterrupted():
         files = voxrt.convert(blob, target, dialect=dialect)
     warn(warnings)
     if reporting.json:

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from voxrt.build_result import BuildResult
     from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.pipeline import BuildResult, Picture
+    from voxrt.pictures import Picture
     from voxrt.sim import Camera
     from voxrt.voxelize import SceneWarning
 

@@ -11,17 +11,15 @@ from cyclopts import Parameter
 import voxrt
 from voxrt import octree
 from voxrt import view as drawing
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Depth, Pixel, Pixels, Sight, UsageError, png, whole
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
-from voxrt.export.vox import write_vox
 from voxrt.outputs import check_folder, writing
-from voxrt.pipeline import PREVIEW_SIZE
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
-from voxrt.view.octant_files import write_glb, write_octants
-from voxrt.view.octant_page import write_page
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
+from voxrt.writers import PANE_WRITERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -30,7 +28,6 @@ if TYPE_CHECKING:
 
     from voxrt.view import Pane, Preview
 
-_SUFFIXES = (".vtu", ".glb", ".vox", ".html")
 _TURNS = 72  # pictures of a turntable
 _SIZE, _WIDE = (1024, 768), (1280, 720)
 
@@ -126,7 +123,7 @@ def view(
     preview = None if ray is None else _preview(sources[0], panes[0], ray)
     rows = _told(panes)
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
-        (output, lambda file: _export(panes[0], file)),
+        (output, lambda file: PANE_WRITERS[file.suffix.lower()](file, panes[0])),
         (screenshot, lambda file: voxrt.save_picture(drawing.picture(panes, size, preview=preview), file)),
         (turntable, lambda file: write_animation(file, drawing.turntable(panes, size, _TURNS))),
     ]
@@ -142,8 +139,8 @@ def view(
 
 
 def _check_files(screenshot: Path | None, turntable: Path | None, output: Path | None) -> None:
-    if output is not None and output.suffix.lower() not in _SUFFIXES:
-        raise UsageError(f"{output}: octants are written to files that end in {', '.join(_SUFFIXES)}")
+    if output is not None and output.suffix.lower() not in PANE_WRITERS:
+        raise UsageError(f"{output}: octants are written to files that end in {', '.join(PANE_WRITERS)}")
     if turntable is not None and turntable.suffix.lower() not in ANIMATION_SUFFIXES:
         raise UsageError(f"{turntable}: turntables are files that end in {' or '.join(ANIMATION_SUFFIXES)}")
     for file in (output, turntable, screenshot and png(screenshot)):
@@ -189,24 +186,12 @@ def _preview(source: Source, pane: Pane, ray: tuple[int, int]) -> Preview:
 def _told(panes: list[Pane]) -> list[tuple[str, str]]:
     rows = []
     for pane in panes:
-        grid = pane.grid()
+        mesh = pane.mesh()
         if len(panes) > 1:
             rows.append(("memory", pane.rom.name))
-        rows.append(("shown", f"{grid.n_cells:,} octants"))
-        rows.append(("hidden", f"{int(grid.field_data['hidden'][0]):,} octants"))
+        rows.append(("shown", f"{len(mesh.levels):,} octants"))
+        rows.append(("hidden", f"{mesh.hidden:,} octants"))
     return rows
-
-
-def _export(pane: Pane, file: Path) -> None:
-    match file.suffix.lower():
-        case ".vox":
-            write_vox(file, pane.rom, pane.high)
-        case ".glb":
-            write_glb(file, pane.rom, pane.grid())
-        case ".html":
-            write_page(file, pane.rom, pane.grid())
-        case _:
-            write_octants(file, pane.grid())
 
 
 def _half(pane: Pane, axis: int) -> tuple[int, int, int] | None:

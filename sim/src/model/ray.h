@@ -60,7 +60,7 @@ inline bool key_fits_64(const Line& line) {
 template <class Key> struct Reading {
     uint32_t address;
     uint32_t word;
-    int level;         // the word's octant is 2^level voxels a side
+    int level;         // the word's octant is 2^level voxels per side
     int32_t corner[3]; // its lowest cell, grid frame
     uint8_t face;
     Key time;
@@ -157,7 +157,7 @@ template <class Key> template <class Read> Hit<Key> Ray<Key>::trace(Read&& read)
             return {};
 
     int32_t corner[3] = {0, 0, 0};            // lowest cell of the current node, mirrored frame
-    int level = depth_;                       // the node is 2^level voxels a side
+    int level = depth_;                       // the node is 2^level voxels per side
     uint32_t block_at[octree::kMaxDepth + 1]; // block whose octants are 2^level a side
     uint32_t word = words_[0];
     uint32_t words_read = 0;

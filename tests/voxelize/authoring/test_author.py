@@ -18,7 +18,7 @@ from voxrt.voxelize import (
     SphereCollider,
     authoring,
 )
-from voxrt.voxelize.authoring import Author, AuthoringError
+from voxrt.voxelize.authoring import Author
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 
 WHITE = (255, 255, 255)

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.collider_shapes import Collider
+    from voxrt.voxelize.collider_shapes import Collider, ColliderKind
     from voxrt.voxelize.formats.gltf.document import Document
-    from voxrt.voxelize.formats.gltf.extras import ColliderKind, NodeExtras
+    from voxrt.voxelize.formats.gltf.extras import NodeExtras
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.nodes import Hierarchy
 

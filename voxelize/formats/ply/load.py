@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OPAQUE_FROM = 0.5
-"""A face of lower opacity is air."""
+"""Faces of a lower opacity are fully transparent."""
 
 
 def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
@@ -64,7 +64,7 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
 def _surface_appearance(
     tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]
 ) -> SurfaceAppearance | None:
-    """Appearance triangles with their faces' colours, else with their vertices'; None where there are none."""
+    """Give triangles their faces' colours, else with their vertices'; None where there are none."""
     by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
     if "tristrips" in tables:  # they have no colours of faces
         by_face = None

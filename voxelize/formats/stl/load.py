@@ -131,7 +131,7 @@ def _facet_colours(
 
 
 def _surface_appearance(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> SurfaceAppearance:
-    """Appearance facets with their colours."""
+    """Return the appearance of facets that have colours."""
     colours, coloured = tints
     linear = np.ones((len(colours), 3, 4), dtype=np.float32)
     linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]

@@ -1,4 +1,4 @@
-"""Files that arrive in chunks."""
+"""An upload in progress: files that arrive in chunks."""
 
 from __future__ import annotations
 
@@ -9,36 +9,38 @@ from ..board.errors import Refused
 
 if TYPE_CHECKING:
     from .packets import Chunk
-    from .requests import Upload
+    from .requests import StartUpload
 
 UPLOAD_LIMIT = 1 << 28
 """Bytes that the files of an upload may have together."""
 
 
-class Receiving:
-    """The files of one upload, growing as its chunks come.
+class Upload:
+    """The files of one upload and the bytes that have arrived.
 
-    Memory grows with what has arrived, not with what was announced.
+    It allocates memory for bytes that have arrived, not for those that were announced.
 
     Parameters
     ----------
     number
-        The upload's number, which its chunks carry.
-    upload
-        What was announced.
+        The number of the upload; every chunk repeats it.
+    announced
+        The files that were announced.
 
     Raises
     ------
     Refused
-        More bytes are announced than are taken.
+        The files are larger than :data:`UPLOAD_LIMIT` together.
     """
 
-    def __init__(self, number: int, upload: Upload) -> None:
+    def __init__(self, number: int, announced: StartUpload) -> None:
         self.number = number
-        self.upload = upload
-        self.size = sum(file.size for file in upload.files)
+        self.announced = announced
+        self.size = sum(file.size for file in announced.files)
         if self.size > UPLOAD_LIMIT:
-            raise Refused(f"an upload of {self.size} bytes is more than the {UPLOAD_LIMIT} that are taken")
+            raise Refused(
+                f"an upload of {self.size} bytes is more than the limit of {UPLOAD_LIMIT}; make the files smaller"
+            )
         self._data = bytearray()
 
     @property
@@ -52,38 +54,38 @@ class Receiving:
         return self.received == self.size
 
     def add(self, chunk: Chunk) -> None:
-        """Take the next chunk.
+        """Add the next chunk.
 
         Raises
         ------
         Refused
-            It is of another upload, not the next one, or more than was announced.
+            The chunk belongs to another upload, is not the next one, or is longer than announced.
         """
         if chunk.upload != self.number:
-            raise Refused(f"a chunk of upload {chunk.upload} came while upload {self.number} is under way")
+            raise Refused(f"a chunk of upload {chunk.upload} came during upload {self.number}; upload again")
         if chunk.offset != self.received or chunk.offset + len(chunk.data) > self.size:
             raise Refused(
                 f"a chunk of {len(chunk.data)} bytes at byte {chunk.offset} does not continue the {self.received} of "
-                f"{self.size} bytes that have come; upload again"
+                f"{self.size} bytes that have arrived; upload again"
             )
         self._data += chunk.data
 
     def files(self) -> dict[str, bytes]:
-        """Give the complete files by name.
+        """Return the complete files by name.
 
         Raises
         ------
         Refused
-            A file's CRC-32 is not the announced one, or two have the same name.
+            The CRC-32 of a file is not the announced one, or two files have the same name.
         """
         files: dict[str, bytes] = {}
         start = 0
-        for file in self.upload.files:
+        for file in self.announced.files:
             data = bytes(self._data[start : start + file.size])
             start += file.size
             if zlib.crc32(data) != file.crc32:
-                raise Refused(f"{file.name} was damaged on its way (CRC-32); upload again")
+                raise Refused(f"{file.name} was damaged in transit (CRC-32); upload again")
             if file.name in files:
-                raise Refused(f"two files are called {file.name}; give each a name of its own")
+                raise Refused(f"two files have the name {file.name}; rename one of them")
             files[file.name] = data
         return files

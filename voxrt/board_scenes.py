@@ -1,4 +1,4 @@
-"""Scenes for the frame server: memories as a board takes them, and meshes built on the way."""
+"""Scenes for devices: octree memories and assets as :class:`voxrt.board.scene.Scene`."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
-from voxrt.pipeline import PREVIEW_SIZE, build
+from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
 from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES
@@ -27,7 +28,7 @@ _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
 
 def board_scene(blob: Blob) -> Scene:
-    """Give a memory as a board takes it, seen as its author wants, or whole."""
+    """Make the scene of a memory, with its author's camera, or with one that sees all of it."""
     rom = blob.rom
     colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
     for number, material in enumerate(rom.materials):
@@ -45,21 +46,21 @@ def board_scene(blob: Blob) -> Scene:
 
 
 def load_scene(path: Path, depth: int | None = None, progress: Progress | None = None) -> Scene:
-    """Read a memory, or build an asset, for a board.
+    """Read a memory or build an asset, and make its scene.
 
     Parameters
     ----------
     path
         A blob, a ``.mem`` with or without its manifest, or an asset.
     depth
-        Levels, for an asset and for a memory without manifest.
+        Levels of an asset, or of a memory without manifest; None for the default.
     progress
-        Hears of each stage of a build.
+        Receives the stages of a build.
 
     Raises
     ------
     RomError, AssetError, DoesNotFitError
-        The file is not what it should be, or too large.
+        The file is malformed or too large.
     """
     if path.suffix.lower() == ".blob":
         return read_blob(path.read_bytes())
@@ -74,13 +75,13 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     return board_scene(Blob(built.rom, built.view, built.lighting))
 
 
-class BuildingReader:
-    """Makes scenes of uploaded memories and of uploaded assets, which it builds.
+class AssetReader:
+    """Makes scenes from uploaded memories, and builds scenes from uploaded assets.
 
     Parameters
     ----------
     depth
-        Levels that assets are built with; None for the usual ones.
+        Levels of assets; None for the default.
     """
 
     def __init__(self, depth: int | None = None) -> None:
@@ -88,24 +89,31 @@ class BuildingReader:
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of the files that it begins with."""
+        """Suffixes of the files that hold a scene."""
         return (".blob", ".mem", *sorted(SUFFIXES))
 
     def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make the scene, or raise Refused."""
+        """Make a scene from files, given by name.
+
+        Raises
+        ------
+        Refused
+            The files are no scene.
+        """
         for name in files:
             if PurePath(name).name != name or name in {".", ".."} or "\\" in name:
-                raise Refused(f"{name}: is no plain file name; give the files without their folders")
+                raise Refused(f"{name}: is no plain file name; upload the files without their folders")
         with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
             paths = [Path(folder, name) for name in files]
             for path, data in zip(paths, files.values(), strict=True):
                 path.write_bytes(data)
-            first = [path for path in paths if path.suffix.lower() in self.suffixes]
-            if len(first) != 1:
+            main = [path for path in paths if path.suffix.lower() in self.suffixes]
+            if len(main) != 1:
                 raise Refused(
-                    f"{', '.join(files)}: one file of {' '.join(self.suffixes)} is wanted, with the files that it names"
+                    f"{', '.join(files)}: upload exactly one file with a suffix of {' '.join(self.suffixes)}, "
+                    "and the files that it refers to"
                 )
             try:
-                return load_scene(first[0], self._depth if first[0].suffix.lower() in SUFFIXES else None, progress)
+                return load_scene(main[0], self._depth if main[0].suffix.lower() in SUFFIXES else None, progress)
             except (RomError, voxelize.AssetError, voxelize.DoesNotFitError) as error:
                 raise Refused(str(error).replace(f"{folder}/", "")) from error

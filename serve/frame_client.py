@@ -1,4 +1,4 @@
-"""A client of the frame server: uploads a scene, and sees frames."""
+"""A client of the frame server: it changes the view, receives frames and uploads scenes."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
 from ..board.errors import Refused
-from .packets import CHUNK_LIMIT, Chunk, pack_chunk, unpack_frame
-from .show import PROTOCOL
+from .packets import CHUNK_LIMIT, PROTOCOL_VERSION, Chunk, pack_chunk, unpack_frame
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Mapping
@@ -22,18 +21,18 @@ if TYPE_CHECKING:
     from .packets import FramePacket
 
 _MESSAGE_LIMIT = 1 << 28
-_WINDOW = 8  # chunks under way that the server has not acknowledged
+_WINDOW = 8  # chunks that may be sent before the server acknowledges the first of them
 
 
-class Client:
-    """A viewer: made by :func:`visit`.
+class FrameClient:
+    """A connected client; :func:`open_client` makes it.
 
     Attributes
     ----------
     hello
-        What the server said of itself.
+        The first message of the server.
     state
-        What it last said of the show.
+        The newest state that the server sent; empty before the first.
     """
 
     def __init__(self, connection: ClientConnection, hello: dict[str, Any]) -> None:
@@ -44,22 +43,22 @@ class Client:
         self._frame: FramePacket | None = None
 
     async def send(self, kind: str, **fields: object) -> int:
-        """Send a request without waiting for its answer; gives its number."""
+        """Send a request without waiting for its answer; return its number."""
         self._requests += 1
         await self._connection.send(json.dumps({"type": kind, "request": self._requests, **fields}))
         return self._requests
 
-    async def ask(self, kind: str, **fields: object) -> dict[str, Any]:
+    async def request(self, kind: str, **fields: object) -> dict[str, Any]:
         """Send a request and wait for its answer.
 
         Raises
         ------
         Refused
-            The server refused it, or hung up.
+            The server refused the request, or closed the connection.
         """
         return await self._answer(await self.send(kind, **fields))
 
-    async def take(self) -> None:
+    async def take_control(self) -> None:
         """Take control.
 
         Raises
@@ -67,16 +66,16 @@ class Client:
         Refused
             Another viewer has it.
         """
-        if not (await self.ask("take"))["granted"]:
-            raise Refused("another viewer steers; wait, or ask for control in the page")
+        if not (await self.request("take"))["granted"]:
+            raise Refused("another viewer has control; wait, or ask for control in the page")
 
-    async def frame(self) -> FramePacket:
+    async def next_frame(self) -> FramePacket:
         """Wait for the next frame.
 
         Raises
         ------
         Refused
-            The server hung up.
+            The server closed the connection.
         """
         while self._frame is None:
             await self._receive()
@@ -86,15 +85,15 @@ class Client:
     async def upload(
         self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool = False
     ) -> dict[str, Any]:
-        """Let the server run a scene made of `files`; `check_only` stops before its first word is written.
+        """Upload files and let the server show their scene; with `check_only` nothing is written to the device.
 
         Raises
         ------
         Refused
-            The server refused it, or hung up. The old scene runs on.
+            The server refused the scene, or closed the connection. The present scene stays.
         """
         announced = [{"name": name, "size": len(data), "crc32": zlib.crc32(data)} for name, data in files.items()]
-        ready = await self.ask("upload", files=announced, check_only=check_only)
+        ready = await self.request("upload", files=announced, check_only=check_only)
         number, data = ready["request"], b"".join(files.values())
         received = 0
         for offset in range(0, len(data), CHUNK_LIMIT):
@@ -120,11 +119,11 @@ class Client:
                 return message
 
     async def _receive(self) -> dict[str, Any] | None:
-        """Take one message; frames and states are kept, answers are given."""
+        """Receive one message: keep a frame or a state, return an answer."""
         try:
             message = await self._connection.recv()
         except ConnectionClosed as error:
-            raise Refused(f"the server hung up ({error}); the scene that ran there still runs") from None
+            raise Refused(f"the server closed the connection ({error}); it still shows its present scene") from None
         if isinstance(message, bytes):
             self._frame = unpack_frame(message)
             return None
@@ -136,31 +135,34 @@ class Client:
 
 
 @asynccontextmanager
-async def visit(url: str) -> AsyncIterator[Client]:
+async def open_client(url: str) -> AsyncIterator[FrameClient]:
     """Connect to the server whose page is at `url`, with its ``#token=...`` where it has one.
 
     Raises
     ------
     Refused
-        There is no server, it does not let us in, or it speaks another version.
+        No server answers, it refuses the connection, or it has another version of the protocol.
     """
     parts = urlsplit(url if "//" in url else f"http://{url}")
     if parts.scheme not in {"http", "ws"} or not parts.netloc:
         raise Refused(f"{url}: is no address such as http://127.0.0.1:8000/")
     token = parse_qs(parts.fragment or parts.query).get("token", [""])[0]
     headers = {"Authorization": f"Bearer {token}"} if token else {}
-    address = f"ws://{parts.netloc}/v{PROTOCOL}"
+    address = f"ws://{parts.netloc}/v{PROTOCOL_VERSION}"
     try:
         connection = await connect(
             address, additional_headers=headers, compression=None, max_size=_MESSAGE_LIMIT, open_timeout=10, proxy=None
         )
     except InvalidStatus as error:
-        said = (error.response.body or b"").decode("utf-8", "replace").strip()
-        raise Refused(f"{parts.netloc}: {said or error}") from None
+        reason = (error.response.body or b"").decode("utf-8", "replace").strip()
+        raise Refused(f"{parts.netloc}: {reason or error}") from None
     except (TimeoutError, OSError, InvalidHandshake) as error:
-        raise Refused(f"{parts.netloc}: no frame server answers there ({error}); start one: voxrt serve") from None
+        raise Refused(f"{parts.netloc}: no frame server answers ({error}); start one: voxrt serve") from None
     async with connection:
         hello = json.loads(await connection.recv())
-        if hello.get("protocol") != PROTOCOL:
-            raise Refused(f"{parts.netloc} speaks protocol {hello.get('protocol')} and this is {PROTOCOL}; upgrade")
-        yield Client(connection, hello)
+        if hello.get("protocol") != PROTOCOL_VERSION:
+            raise Refused(
+                f"{parts.netloc} has protocol version {hello.get('protocol')} and this client {PROTOCOL_VERSION}; "
+                "upgrade the older one"
+            )
+        yield FrameClient(connection, hello)

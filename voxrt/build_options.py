@@ -1,0 +1,214 @@
+"""The options of a build: the one place for their names, their defaults and what they mean.
+
+:func:`voxrt.build` takes :class:`BuildOptions`, or the same names as keywords. The command line reads its defaults and
+its help from here, so this module imports no heavy library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+Fill: TypeAlias = Literal["solid", "surface"]
+Geometry: TypeAlias = Literal["auto", "render", "collider"]
+Pow2: TypeAlias = Literal["box", "none"]
+UpAxis: TypeAlias = Literal["x", "y", "z"]
+Engine: TypeAlias = Literal["rtl", "model"]
+Dialect: TypeAlias = Literal["report", "seed-rtl", "msb"]
+
+DEFAULT_DEPTH = 7
+"""Levels of the octree if neither they nor the size of a voxel are given."""
+
+PREVIEW_SIZE = (640, 480)
+"""Default width and height of a picture, pixels."""
+
+_WIDEST = 1 << 14
+_MOST_THREADS = 1024
+
+
+@dataclass(frozen=True, kw_only=True)
+class BuildOptions:
+    """How an asset is built.
+
+    Attributes
+    ----------
+    depth
+        Levels of the octree, 1 to 16. The grid has 2**depth voxels per side. The default is 7, unless `voxel_size` is
+        given.
+    voxel_size
+        Side of a voxel in metres. Give this or `depth`, not both.
+    fill
+        ``"solid"``: fill what closed surfaces enclose. ``"surface"``: keep only the shell.
+    interior
+        Material of the hidden voxels: those that no ray from outside can reach. ``"keep"``: the material of their
+        object. ``"any"``: for each the material that makes the memory smallest. The name or the id of a material: that
+        material for all of them.
+    geometry
+        What is voxelized. ``"auto"``: the colliders of an object if it has any, else its triangles. ``"render"``:
+        always the triangles. ``"collider"``: always colliders; an object without one becomes its bounding box.
+    pow2
+        ``"box"``: round the sides of box colliders up to powers of two voxels, which saves memory. ``"none"``: keep
+        them as they are.
+    up
+        The up axis of an asset whose format does not state it (OBJ, STL, PLY). The default is y.
+    unit
+        Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.
+    time
+        Second of the animation at which the asset is built (glTF, USD).
+    animation
+        The animation to use, by name or by number, counted from 0 (glTF). The default is the first.
+    variants
+        Variants to build: the name of a material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
+    allow_outside
+        Also open files that the asset names outside of its own folder.
+    colours
+        The largest number of materials made of textures and vertex colours, 1 to 254. Materials of one colour are not
+        counted and keep their colour.
+    budget
+        The largest size of the memory, in words. Detail that is seen least is given up until the memory fits. In
+        Python, also the name of a board: its memory is the budget.
+    dialect
+        How the ``.mem`` file encodes materials. ``"report"``: for the hardware of this project. ``"seed-rtl"``: for the
+        published bitstreams of the original system. ``"msb"``: for its C++ program.
+    preview
+        Render a picture of the whole scene, with the scene's own light if it has one. It goes to the given PNG file,
+        or to ``NAME.preview.png`` in the output folder. In Python, True asks for the latter.
+    size
+        Width and height of the preview in pixels. The default is 640 x 480.
+    engine
+        What renders the preview. ``"rtl"``: the verilated hardware, which counts its clock cycles. ``"model"``: the
+        exact C++ model, which is faster. Both give the same pixels.
+    strict
+        Refuse an asset that would otherwise cause a warning.
+    threads
+        Threads of the native stages; 0 takes one per core. The result does not depend on it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An option has a value of the wrong type, or one that is out of range. Conversions that are exact are made:
+        ``depth=7.0`` is ``depth=7``, lists become tuples.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions
+    >>> options = BuildOptions(depth=8, fill="surface")
+    >>> options.colours
+    32
+    >>> BuildOptions(engine="gpu")
+    Traceback (most recent call last):
+        ...
+    ValueError: engine must be 'rtl' or 'model', not 'gpu'
+    """
+
+    depth: int | None = None
+    voxel_size: float | None = None
+    fill: Fill = "solid"
+    interior: int | str = "keep"
+    geometry: Geometry = "auto"
+    pow2: Pow2 = "box"
+    up: UpAxis | None = None
+    unit: float | None = None
+    time: float | None = None
+    animation: str | None = None
+    variants: Sequence[str] = ()
+    allow_outside: bool = False
+    colours: int = 32
+    budget: int | str | None = None
+    dialect: Dialect = "report"
+    preview: str | PathLike[str] | bool = False
+    size: tuple[int, int] = PREVIEW_SIZE
+    engine: Engine = "rtl"
+    strict: bool = False
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        for name, value in _checked(self).items():
+            object.__setattr__(self, name, value)
+
+
+class BuildKeywords(TypedDict, total=False):
+    """The options of :class:`BuildOptions` as keywords, for type checkers."""
+
+    depth: int | None
+    voxel_size: float | None
+    fill: Fill
+    interior: int | str
+    geometry: Geometry
+    pow2: Pow2
+    up: UpAxis | None
+    unit: float | None
+    time: float | None
+    animation: str | None
+    variants: Sequence[str]
+    allow_outside: bool
+    colours: int
+    budget: int | str | None
+    dialect: Dialect
+    preview: str | PathLike[str] | bool
+    size: tuple[int, int]
+    engine: Engine
+    strict: bool
+    threads: int
+
+
+def _checked(given: BuildOptions) -> dict[str, object]:
+    """Return the options by name, converted exactly; TypeError or ValueError if that is not possible."""
+    from voxrt.octree import BOARDS, MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.voxelize.arguments import choice, flag, real, text, whole  # noqa: PLC0415
+
+    if given.depth is not None and given.voxel_size is not None:
+        raise ValueError("depth and voxel_size exclude each other; give one of them")
+
+    def budget(name: str, value: object) -> int | str:
+        return choice(name, value, tuple(BOARDS)) if isinstance(value, str) else whole(name, value, 1, 1 << 31)
+
+    checks: dict[str, Callable[[str, Any], object]] = {
+        "depth": lambda name, value: whole(name, value, 1, MAX_DEPTH),
+        "voxel_size": lambda name, value: real(name, value, above=0),
+        "fill": lambda name, value: choice(name, value, get_args(Fill)),
+        "interior": lambda name, value: value if isinstance(value, str) else whole(name, value, 1, 255),
+        "geometry": lambda name, value: choice(name, value, get_args(Geometry)),
+        "pow2": lambda name, value: choice(name, value, get_args(Pow2)),
+        "up": lambda name, value: choice(name, value, get_args(UpAxis)),
+        "unit": lambda name, value: real(name, value, above=0),
+        "time": real,
+        "animation": text,
+        "variants": _texts,
+        "allow_outside": flag,
+        "colours": lambda name, value: whole(name, value, 1, 254),
+        "budget": budget,
+        "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
+        "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
+        "size": _pixels,
+        "engine": lambda name, value: choice(name, value, get_args(Engine)),
+        "strict": flag,
+        "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
+    }
+    optional = {option.name for option in fields(BuildOptions) if option.default is None}
+    values = {name: getattr(given, name) for name in checks}
+    return {
+        name: None if value is None and name in optional else checks[name](name, value)
+        for name, value in values.items()
+    }
+
+
+def _texts(name: str, value: object) -> tuple[str, ...]:
+    from voxrt.voxelize.arguments import shown, text  # noqa: PLC0415
+
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} must be a sequence of strings, not {shown(value)}")
+    return tuple(text(f"{name}[{row}]", one) for row, one in enumerate(value))
+
+
+def _pixels(name: str, value: object) -> tuple[int, int]:
+    from voxrt.voxelize.arguments import shown, whole  # noqa: PLC0415
+
+    if not isinstance(value, Iterable) or len(parts := list(value)) != 2:
+        raise ValueError(f"{name} must be a width and a height in pixels, not {shown(value)}")
+    return whole(f"{name}[0]", parts[0], 1, _WIDEST), whole(f"{name}[1]", parts[1], 1, _WIDEST)

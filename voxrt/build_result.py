@@ -1,0 +1,114 @@
+"""What a build made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from voxrt.octree import census, to_dense, to_points
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.octree import Octree, Rom
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.pictures import Picture
+    from voxrt.voxelize import ObjectReport, Scene, SceneWarning
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class BuildResult:
+    """What a build made.
+
+    Attributes
+    ----------
+    rom
+        The octree memory with its materials and its place in the scene.
+    scene
+        What the asset said.
+    objects
+        How each object was voxelized, in authored order.
+    warnings
+        What the asset said and the build did not honour as it stands.
+    outputs
+        The files written, by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
+    preview
+        The rendered picture; None if none was asked for.
+    interior
+        What became of hidden voxels; None if they keep their materials.
+    budget
+        What fitting the budget took; None if there was none.
+    seconds
+        Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
+        ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
+    parts
+        Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
+    view, lighting
+        The author's camera and light; None if the author gave none.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> built = voxrt.build("examples/house.obj", depth=4)
+    >>> built
+    <BuildResult 'house': depth 4, 721 words, 2,504 solid voxels, 5 materials>
+    >>> built.coordinates.shape
+    (2504, 3)
+    >>> built.to_dense().shape
+    (16, 16, 16)
+    """
+
+    rom: Rom
+    scene: Scene
+    objects: tuple[ObjectReport, ...]
+    warnings: tuple[SceneWarning, ...]
+    outputs: dict[str, Path] = field(default_factory=dict)
+    preview: Picture | None = None
+    interior: InteriorFit | None = None
+    budget: BudgetFit | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+    parts: dict[str, dict[str, float]] = field(default_factory=dict)
+    view: Camera | None = None
+    lighting: Lighting | None = None
+
+    def __repr__(self) -> str:
+        words, count = len(self.octree.words), len(self.rom.materials) - 1
+        files = "".join(f", {path}" for path in self.outputs.values())
+        return (
+            f"<BuildResult {self.rom.name!r}: depth {self.octree.depth}, {words:,} words, {self.solid_voxels:,} solid "
+            f"voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
+        )
+
+    @property
+    def octree(self) -> Octree:
+        """The octree memory."""
+        return self.rom.octree
+
+    @property
+    def solid_voxels(self) -> int:
+        """The number of voxels that are not empty."""
+        return census(self.rom.octree).solid_voxels
+
+    @property
+    def coordinates(self) -> NDArray[np.int32]:
+        """The solid voxels: int32, shape (N, 3), grid frame, in Morton order. :func:`voxrt.octree.to_points`."""
+        return to_points(self.rom.octree)[0]
+
+    @property
+    def material_ids(self) -> NDArray[np.uint8]:
+        """The materials of `coordinates`: uint8, shape (N,), rows of ``rom.materials``."""
+        return to_points(self.rom.octree)[1]
+
+    def to_dense(self) -> NDArray[np.uint8]:
+        """Return material ids voxel by voxel: uint8, shape (S, S, S), indexed [x, y, z]; S = 2**depth, 0 is empty.
+
+        Raises
+        ------
+        DoesNotFitError
+            The array would take more than 2 GiB; :func:`voxrt.octree.to_dense` returns a part of it.
+        """
+        return to_dense(self.rom.octree)

@@ -1,0 +1,43 @@
+"""Notebook cards of the front door's own values; importing this module registers them, and those of the rooms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from voxrt.build_result import BuildResult
+from voxrt.pictures import Picture
+from voxrt.sim.image import encode_png
+from voxrt.view.cards import card, octree_rows, register_card, rom_png
+
+if TYPE_CHECKING:
+    from voxrt.sim import Frame
+
+
+def _build_html(result: BuildResult) -> str:
+    rom = result.rom
+    rows = [
+        ("name", rom.name),
+        *octree_rows(rom.octree),
+        *([("voxel", f"{rom.grid.voxel_size:.4g} m")] if rom.grid else []),
+        ("materials", ", ".join(material.name for material in rom.materials[1:])),
+        *(("warning", warning.message) for warning in result.warnings),
+        ("seconds", f"{sum(result.seconds.values()):.2f}"),
+        *((kind, str(path)) for kind, path in result.outputs.items()),
+    ]
+    return card(rows, _build_png(result))
+
+
+def _build_png(result: BuildResult) -> bytes:
+    if result.preview is not None:
+        return encode_png(result.preview.frame.colour)
+    return rom_png(result.rom, "material")
+
+
+def _picture_html(picture: Picture) -> str:
+    frame: Frame = picture.frame
+    height, width = frame.material.shape
+    return card([("picture", f"{width}x{height} pixels, by {picture.engine}")], encode_png(frame.colour))
+
+
+register_card(BuildResult, _build_html, _build_png)
+register_card(Picture, _picture_html, lambda picture: encode_png(picture.frame.colour))

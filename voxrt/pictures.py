@@ -1,0 +1,148 @@
+"""Pictures of memories: rendered, and saved as PNG files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt import sim
+from voxrt.build_options import PREVIEW_SIZE
+from voxrt.octree import Rom
+from voxrt.octree.camera import CAMERA_LIGHT
+from voxrt.outputs import OutputError, check_folder, writing
+from voxrt.viewpoint import aim_camera
+from voxrt.voxelize.arguments import instance, whole_array
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import ArrayLike
+
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim import Engine, Frame
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Picture:
+    """A frame, the camera that saw it and the engine that rendered it.
+
+    Attributes
+    ----------
+    frame
+        The pixels and what they cost.
+    camera
+        The camera.
+    engine
+        ``"rtl"`` or ``"model"``.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> built = voxrt.build("examples/house.obj", depth=4)
+    >>> camera = voxrt.aim_camera(built.rom, (64, 48))
+    >>> frame = voxrt.render(built.rom, camera, size=(64, 48), engine="model")
+    >>> voxrt.Picture(frame, camera, "model").frame.colour.shape
+    (48, 64, 3)
+    """
+
+    frame: Frame
+    camera: Camera
+    engine: Engine
+
+
+def render(
+    rom: Rom,
+    camera: Camera | None = None,
+    *,
+    size: tuple[int, int] = PREVIEW_SIZE,
+    engine: Engine = "rtl",
+    config: str = "tiny",
+    lighting: Lighting | None = None,
+    threads: int = 0,
+) -> Frame:
+    """Render a picture of a memory.
+
+    Parameters
+    ----------
+    rom
+        The memory and its materials.
+    camera
+        The camera. None shows the whole scene from the front right and above.
+    size
+        Width and height in pixels.
+    engine
+        ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
+        give the same pixels.
+    config
+        The configuration of the ray tracer for ``"rtl"``.
+    lighting
+        Light, mirrors and flat colours. The ray tracer needs a configuration that has them. None lights the scene from
+        the camera.
+    threads
+        Threads of the model; 0 takes one per core.
+
+    Returns
+    -------
+    Frame
+        The pixels: ``colour`` (uint8, shape (H, W, 3), sRGB), ``material`` and ``face``, and what they cost.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument of the wrong type or out of range.
+    SimulatorError
+        The installation has no such engine, or the engine cannot hold the memory or the camera, or has no such shading.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> rom = voxrt.build("examples/house.obj", depth=5).rom
+    >>> frame = voxrt.render(rom, size=(64, 48), engine="model")
+    >>> frame.colour.shape
+    (48, 64, 3)
+    """
+    rom = instance("rom", rom, Rom)
+    return sim.render(
+        rom,
+        camera or aim_camera(rom, size),
+        size,
+        engine=engine,
+        lighting=lighting or CAMERA_LIGHT,
+        config=config,
+        threads=threads,
+    )
+
+
+def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
+    """Write a picture as a PNG file. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    colour
+        uint8, shape (H, W, 3), sRGB.
+    path
+        The file. Its folder is made if it is missing.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+    TypeError, ValueError
+        The array is no picture.
+
+    Examples
+    --------
+    >>> import numpy as np, voxrt
+    >>> voxrt.save_picture(np.zeros((48, 64, 3), np.uint8), "black.png")
+    """
+    pixels = whole_array("colour", colour, ("H", "W", 3), np.uint8, low=0, high=255)
+    path = Path(path)
+    check_folder(path.parent)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        sim.write_png(path, pixels)
