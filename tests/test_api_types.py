@@ -21,15 +21,15 @@ GOOD = """\
 import voxrt
 from voxrt.octree import *
 from voxrt.sim import *
-from voxrt import BuildOptions, build
+from voxrt import BuildOptions
 
-built = build("a.glb", "out", depth=8, fill="surface")
-built = build("a.glb", options=BuildOptions(depth=8))
+built = voxrt.build("a.glb", "out", depth=8, fill="surface")
+built = voxrt.build("a.glb", options=BuildOptions(depth=8))
 size: int = built.octree.size
 voxels = to_dense(built.octree)
 frame: Frame = voxrt.render(built.rom, engine="model")
 hits = voxrt.cast_rays(built.octree, [[0, 0, 0]], [[1, 0, 0]]).voxel
-leaves = voxrt.octree.to_points(built.octree)
+points = voxrt.octree.to_points(built.octree)
 """
 
 BAD = """\
