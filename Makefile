@@ -7,13 +7,13 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint hardware docs bench sanitize clean
+.PHONY: help demo test lint lint-workflows hardware docs bench sanitize clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
-	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall"
+	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
@@ -27,12 +27,26 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
 
-lint: $(VENV)/.installed $(VENV)/.tools
+lint: $(VENV)/.installed $(VENV)/.tools lint-workflows
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
 	$(BIN)/python rtl/lint.py
+
+# The workflows, forms and texts of .github. actionlint checks the shell scripts in them by shellcheck.
+WORKFLOW_FILES := .github .pre-commit-config.yaml .yamllint
+lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
+	$(BIN)/yamllint --strict $(WORKFLOW_FILES)
+	$(BIN)/codespell $(WORKFLOW_FILES) SECURITY.md
+	$(BIN)/shellcheck .ci/run .github/*.sh
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.dependabot .github/dependabot.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms \
+	  $(filter-out %/config.yml,$(wildcard .github/ISSUE_TEMPLATE/*.yml))
+	@if test -x $(BIN)/actionlint; then echo $(BIN)/actionlint && PATH="$(abspath $(BIN)):$$PATH" actionlint; \
+	  else echo "actionlint is left out: it is built by Go, which is not here"; fi
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
@@ -47,32 +61,48 @@ hardware: $(VENV)/.hardware
 docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
 
-# Without Python, so that the sanitizers see our own code alone.
+# Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-sanitize: $(foreach program,voxelize octree ask_octree,$(SANITIZERS:%=build/sanitize/$(program)-%))
+SANITIZED := voxelize octree mesh_to_ray query_octree
+sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
 comma := ,
-sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*)
+sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -I$(CURDIR)/build/sanitize/include
+HEADERS := $(wildcard voxelize/src/*.h octree/src/*.h sim/src/model/*.h)
+# $(call archive,FOLDER): the library of a folder's sources.
+define archive
+@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
+cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard $(1)/src/*.cpp)))
+$(AR) rcs $@ $(@:.a=)/*.o
+endef
 
-build/sanitize/voxelize-%: tests/voxelize/native/exercise.cpp $(wildcard voxelize/src/*)
-	@mkdir -p $(@D)
-	$(sanitized) -Ivoxelize/src -o $@ $< $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp)) -pthread
+# Headers are included as <voxrt/FOLDER/...>, as from CMake.
+build/sanitize/include/voxrt:
+	@mkdir -p $@
+	@ln -sfn $(CURDIR)/voxelize/src $@/voxelize
+	@ln -sfn $(CURDIR)/octree/src $@/octree
+	@ln -sfn $(CURDIR)/sim/src/model $@/sim
 
-build/sanitize/octree-%: tests/octree/native/exercise.cpp build/sanitize/liboctree-%.a
+build/sanitize/%/libvoxelize.a: $(wildcard voxelize/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+	$(call archive,voxelize)
+
+build/sanitize/%/liboctree.a: $(wildcard octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+	$(call archive,octree)
+
+build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
+	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+
+build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -Ioctree/src -o $@ $^ -pthread
 
-build/sanitize/ask_octree-%: examples/cpp/ask_octree.cpp sim/src/model/memory.cpp build/sanitize/liboctree-%.a
-	@mkdir -p build/sanitize/include/voxrt
-	@ln -sfn $(CURDIR)/octree/src build/sanitize/include/voxrt/octree
-	@ln -sfn $(CURDIR)/sim/src/model build/sanitize/include/voxrt/sim
-	$(sanitized) -Ibuild/sanitize/include -o $@ $^ -pthread
+build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
 
-build/sanitize/liboctree-%.a: $(wildcard octree/src/*)
-	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-	cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard octree/src/*.cpp)))
-	$(AR) rcs $@ $(@:.a=)/*.o
-.SECONDARY: $(SANITIZERS:%=build/sanitize/liboctree-%.a)
+build/sanitize/%/query_octree: examples/cpp/query_octree.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
+
+.SECONDARY: $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
 	rm -rf $(VENV) build demo
@@ -87,6 +117,13 @@ $(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
 
 $(VENV)/.tools: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group dev
+	@touch $@
+
+# No Python package brings actionlint itself: Go's module proxy has it.
+$(VENV)/.actionlint: $(VENV)/.ready Makefile
+	@if command -v go >/dev/null; then echo "building actionlint"; \
+	  GOBIN=$(abspath $(BIN)) GOFLAGS=-modcacherw go install github.com/rhysd/actionlint/cmd/actionlint@v1.7.12 || \
+	  echo "actionlint cannot be built by the Go that is here"; fi
 	@touch $@
 
 $(VENV)/.hardware $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import voxrt
-from voxrt import octree
+from voxrt import export, octree
 from voxrt.fitting import Views, fit_budget
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def scenes() -> Iterator[octree.Rom]:
     for path in sorted((ROOT / "examples").glob("*.glb")):
         yield voxrt.build(path, depth=8).rom
     for path in sorted(ASSETS.glob("vox/*/vox/scene_*.vox")):
-        yield octree.read_vox(path)[0]
+        yield export.read_vox(path)[0]
     for materials in (1, 3):
         colours = ((0, 0, 0), (200, 80, 60), (70, 160, 90), (80, 110, 200))[: materials + 1]
         table = tuple(voxrt.Material(f"material {number}", colour) for number, colour in enumerate(colours))

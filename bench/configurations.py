@@ -16,14 +16,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results"
 SCRIPTS = ("bench/rtl.py", "rtl/area.py", "rtl/clock.py")
-# The size at which cycles per pixel are taken; frames per second are counted for both sizes from them.
+# The size at which cycles per pixel are taken. Frames per second would need the clock of each configuration.
 SIZE = "640x480"
-FRAMES = ((640, 480), (1920, 1080))
 SCENES = {"published house, depth 10": "house", "Menger sponge, 128 a side": "sponge"}
 # Reference: fpga-voxel-integer-ray-tracer-report.txt, tables 8 and 10, and its RTL simulated at 256x256 pixels.
 ORIGINAL = (
-    "| the original, 1 core | | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | | | | |",
-    "| the original, 2 cores | | 2 | | | | | | 170 | | | | |",
+    "| the original, 1 core | | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | |",
+    "| the original, 2 cores | | 2 | | | | | | 170 | |",
 )
 
 
@@ -55,15 +54,12 @@ def main() -> None:
         for row in table("rtl.md")
         if row["section"].startswith(SIZE)
     }
-    (clock,) = (row for row in table("clock.md") if row["part"] == "core of one lane")
-    megahertz = int(clock["MHz"])
-    frames = [f"{scene}, frames/s at {width}x{height}" for width, height in FRAMES for scene in SCENES.values()]
     area_heads = ["lanes", "LUT", "LUT, paired", "FF", "DSP48", "BRAM36"]
     heads = ["configuration", "frame", *area_heads]
-    heads += [f"{scene}, cycles per pixel" for scene in SCENES.values()] + frames
+    heads += [f"{scene}, cycles per pixel" for scene in SCENES.values()]
     lines = [
-        f"Cycles a pixel at {SIZE}, the original's at 256x256. Area: yosys `synth_xilinx`, an estimate; the original's",
-        f"is from Vivado. Frames a second at {megahertz} MHz: a core of one lane on an ECP5, placed and routed.",
+        f"Cycles per pixel at {SIZE}, those of the original at 256x256. Area: an estimate of yosys `synth_xilinx`; the",
+        "area of the original is from Vivado.",
         "",
         f"| {' | '.join(heads)} |",
         "|---" * len(heads) + "|",
@@ -74,9 +70,6 @@ def main() -> None:
             counted = [cycles[name, frame, scene] for scene in SCENES]
             cells = [name, frame, *(area[head] for head in area_heads)]
             cells += [f"{each:.2f}" for each in counted]
-            cells += [
-                f"{megahertz * 1e6 / (each * width * height):.1f}" for width, height in FRAMES for each in counted
-            ]
             lines.append(f"| {' | '.join(cells)} |")
     lines += [row + " |" * (len(heads) + 1 - row.count("|")) for row in ORIGINAL]
     text = "\n".join(lines) + "\n"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import voxrt
-from voxrt import octree
+from voxrt import export, octree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ def scenes() -> Iterator[tuple[str, octree.Octree]]:
     for path in sorted((ROOT / "examples").glob("*.glb")):
         yield path.stem, voxrt.build(path, depth=9).rom.octree
     for path in sorted(ASSETS.glob("vox/*/vox/scene_*.vox")):
-        rom, _ = octree.read_vox(path)
+        rom, _ = export.read_vox(path)
         yield rom.name, rom.octree
     for name, materials in balls(256):
         yield name, octree.from_dense(materials)

@@ -8,7 +8,6 @@ without. The speed is the median of the rounds, by the processor's time; all els
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
 from statistics import median
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rtl_scenes import scenes
 
+from voxrt.rtl.configurations import read_configurations
 from voxrt.sim._rtl import CONFIGS, FEATURES, Tracer
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results" / "rtl.md"
-LANES = {name: it["Lanes"] for name, it in json.loads((ROOT / "rtl" / "configurations.json").read_text()).items()}
+LANES = {name: it.parameters["Lanes"] for name, it in read_configurations().items()}
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 MIRRORS = np.ones(256, np.uint8)
 NOTES = (

@@ -1,9 +1,9 @@
-"""Frames a second and latency of the frame server on the exact model, at 640x480 on this machine's cores.
+"""Frames per second and latency of the frame server on the exact model, 640x480 pixels.
 
     python bench/server.py SCENE [SECONDS]
 
-SCENE is a memory or an asset. A viewer on loopback first takes frames as fast as they come, then turns the camera step
-by step and waits for each step's frame: from the request to the whole frame in the viewer's hands. The original
+SCENE is a memory or an asset. A client on loopback first receives frames as fast as they come. Then it moves the camera
+in steps. The latency is the time from a request until the client has received the whole frame. The original project
 took 200 ms (report, section 5.2.3).
 """
 
@@ -15,57 +15,54 @@ import statistics
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.serve.client import visit
-from voxrt.serve.server import FrameServer, Listening
-from voxrt.serve.show import Program
-from voxrt.staging import BuildingReader, load_scene
-
-if TYPE_CHECKING:
-    from voxrt.serve.client import Client
+from voxrt.board_scenes import AssetReader, load_scene
+from voxrt.serve.frame_client import FrameClient, open_client
+from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.server import FrameServer
+from voxrt.serve.server_options import ServerOptions
 
 ORIGINAL_LATENCY = 0.2
 STEPS = 100
 
 
 async def measure(scene_file: Path, seconds: float) -> None:
-    """Print the figures of one scene."""
-    async with FrameServer(ModelDevice(), Program(BuildingReader()), Listening()) as server:
-        await server.show.stage.put_on(load_scene(scene_file), lambda _stage, _done, _total: None)
-        async with visit(server.url) as client:
-            await client.take()
+    """Print the results for one scene."""
+    async with FrameServer(ModelDevice(), SceneLibrary(AssetReader()), ServerOptions()) as server:
+        await server.session.renderer.load(load_scene(scene_file), lambda _stage, _done, _total: None)
+        async with open_client(server.url) as client:
+            await client.take_control()
             frames = await count_frames(client, seconds)
-            latencies = sorted(await turn(client))
+            latencies = sorted(await measure_latency(client))
     print(f"{scene_file.name}, 640x480: {frames / seconds:.1f} frames per second")
-    middle, slow = statistics.median(latencies), latencies[math.ceil(0.95 * STEPS) - 1]
-    print(f"request to frame: {1000 * middle:.1f} ms in the middle, {1000 * slow:.1f} ms for 95 of 100;")
-    print(f"the original's 200 ms are {ORIGINAL_LATENCY / middle:.1f} times the middle")
+    median, slow = statistics.median(latencies), latencies[math.ceil(0.95 * STEPS) - 1]
+    print(f"latency: median {1000 * median:.1f} ms, 95th percentile {1000 * slow:.1f} ms")
+    print(f"the 200 ms of the original project are {ORIGINAL_LATENCY / median:.1f} times the median")
 
 
-async def count_frames(client: Client, seconds: float) -> int:
+async def count_frames(client: FrameClient, seconds: float) -> int:
     """Count the frames that arrive."""
-    await client.ask("view", nonstop=True)
-    await client.frame()
+    await client.request("view", nonstop=True)
+    await client.next_frame()
     end = time.perf_counter() + seconds
     frames = 0
     while time.perf_counter() < end:
-        await client.frame()
+        await client.next_frame()
         frames += 1
-    await client.ask("view", nonstop=False)
+    await client.request("view", nonstop=False)
     return frames
 
 
-async def turn(client: Client) -> list[float]:
-    """Move the camera step by step; seconds that each took to be seen."""
+async def measure_latency(client: FrameClient) -> list[float]:
+    """Move the camera in steps; return the latency of each in seconds."""
     camera = client.state["view"]["camera"]
     latencies = []
     for step in range(STEPS):
         moved = {**camera, "position": [value + step for value in camera["position"]]}
         started = time.perf_counter()
         request = await client.send("view", camera=moved)
-        while (await client.frame()).request != request:
+        while (await client.next_frame()).request != request:
             pass
         latencies.append(time.perf_counter() - started)
     return latencies

@@ -1,5 +1,5 @@
-"""What runs on the board, or stands in for it: device, scene memory, frame server, browser page.
+"""Devices: the register driver, the scene memory, the PYNQ board, the simulated core and the exact model.
 
-Needs Python 3.10, NumPy and websockets, and nothing else of voxrt: ``board/pyproject.toml`` packages this folder alone
-as ``voxrt-board``. Inside voxrt it is :mod:`voxrt.board`.
+All but :mod:`~.simulated` needs only Python 3.10 and NumPy. ``board/pyproject.toml`` packages these modules together
+with the frame server in ``serve/`` as ``voxrt-board``. Inside voxrt the package is :mod:`voxrt.board`.
 """

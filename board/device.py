@@ -1,4 +1,4 @@
-"""The device: what the frame server needs of a ray tracer, be it a board, its simulation or its model."""
+"""The interface of a device: what the frame server needs of a board, its simulation or the exact model."""
 
 from __future__ import annotations
 
@@ -16,28 +16,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """What a device says of itself.
+    """What a device is and what it can hold.
 
     Attributes
     ----------
     name, version
-        For people.
+        Shown to users.
     capacity
         Words of scene memory.
     depth
-        Deepest octree, levels.
+        Levels of the deepest octree.
     size
-        Largest frame, columns and rows.
+        The largest frame, columns and rows.
     position_limit
-        Camera positions lie below this on either side of zero, 1/16 voxel.
+        Bound of camera and light positions, 1/16 voxel: -limit <= position < limit.
     features
-        Which of :data:`~.view.FEATURES` it has.
+        The supported ones of :data:`~.view.FEATURES`.
     width_step
-        Frames have a multiple of this many columns.
-    movable_root
-        Whether an octree may stand anywhere in the memory, so that two can be there at a time; otherwise at word 0.
+        The width of a frame is a multiple of this number of columns.
     clock
-        Hertz; None where there is no clock.
+        Clock frequency, hertz; None for a device without a clock.
     """
 
     name: str
@@ -48,13 +46,12 @@ class Identity:
     position_limit: int
     features: frozenset[str] = frozenset()
     width_step: int = 1
-    movable_root: bool = True
     clock: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Counters:
-    """What a frame cost: rays traced, octree words read and clocks (both None without hardware), wall seconds."""
+    """The cost of a frame: rays, octree words read and clock cycles (None where not counted), wall seconds."""
 
     rays: int
     words_read: int | None
@@ -64,7 +61,7 @@ class Counters:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
-    """A complete frame: uint8, shape (H, W, 3), sRGB, row 0 at the top, C-contiguous; and what it cost."""
+    """A complete frame: uint8, shape (H, W, 3), sRGB, row 0 at the top, C-contiguous; and its cost."""
 
     colour: NDArray[np.uint8]
     counters: Counters
@@ -73,31 +70,39 @@ class Frame:
 class Device(Protocol):
     """A ray tracer with its scene memory.
 
-    Calls come one at a time, from any thread, and may block. Frames are made by :meth:`frame` alone, so that between
-    two calls the device stands at a frame boundary. What goes wrong raises :class:`~.errors.DeviceError`.
+    The memory can hold several octrees. A frame shows the one that :meth:`select_scene` selected last.
+
+    Calls come one at a time, from any thread, and may block. Every method raises :class:`~.errors.DeviceError` when
+    the device fails.
     """
 
     @property
     def identity(self) -> Identity:
-        """What it is and what it holds."""
+        """What it is and what it can hold."""
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name, in the order of their addresses."""
 
+    def hold(self) -> None:
+        """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""
+
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
-        """Write words (uint32, shape (N,)) from word `address` on."""
+        """Write words (uint32, shape (N,)) from word `address` on.
+
+        Words of the selected octree change the frame in progress: call :meth:`hold` before.
+        """
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
 
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
-        """Write the material table: uint8, shape (256, 3), sRGB, and bool, shape (256,)."""
+        """Write the material table: uint8, shape (256, 3), sRGB, and bool, shape (256,). Holds the device."""
 
     def select_scene(self, root: int, depth: int) -> None:
-        """Trace the octree of `depth` levels whose root word stands at `root`, from the next frame on."""
+        """Show the octree of `depth` levels whose root is word `root` from the next frame on. Holds the device."""
 
     def frame(self, view: View) -> Frame:
-        """Render a frame of exactly this view, and return when it is complete."""
+        """Render one frame of `view`, and return it when it is complete."""
 
     def close(self) -> None:
-        """Let go of the device; nothing is called afterwards."""
+        """Release the device; nothing is called afterwards."""

@@ -1,9 +1,9 @@
-"""What a board says when it cannot do what it was asked."""
+"""Errors of boards and of the frame server. Each message is one line."""
 
 
-class Refused(Exception):  # noqa: N818 - an answer, not a fault
-    """A request that makes no sense or does not fit, in one line: what is wrong and what to do about it."""
+class Refused(Exception):  # noqa: N818 - the answer to a request, not a fault of the program
+    """A request that is invalid or does not fit: what is wrong, and how to fix it."""
 
 
 class DeviceError(Exception):
-    """The device did not do what it was told, in one line."""
+    """A failure of the device."""

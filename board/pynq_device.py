@@ -1,7 +1,7 @@
-"""The ray tracer on a PYNQ board: overlay, MMIO and VDMA behind :class:`~.register_device.RegisterDevice`.
+"""The ray tracer on a PYNQ board: overlay, MMIO and VDMA for :class:`~.register_device.RegisterDevice`.
 
-Written from PYNQ's documentation (``pynq.Overlay``, ``pynq.MMIO``, ``pynq.allocate``) and exercised against a stand-in
-with the verilated core inside; it has not run on a board.
+It follows PYNQ's documentation (``pynq.Overlay``, ``pynq.MMIO``, ``pynq.allocate``). The tests run it against a fake of
+these classes with the verilated core inside. It has not run on a board.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .register_device import RegisterDevice
 from .vdma import VdmaVideo
 
 PARTS = ("core", "memory", "vdma")
-"""What the block design, rtl/vivado/build.tcl, calls its parts."""
+"""Names of the parts in the block design, rtl/vivado/build.tcl."""
 
 _PAUSE_SECONDS = 0.0005
 
@@ -26,18 +26,20 @@ def open_pynq(bitstream: str) -> RegisterDevice:
     Raises
     ------
     DeviceError
-        This is no PYNQ board, or the bitstream is not this ray tracer's.
+        The machine is no PYNQ board, or the bitstream is not the ray tracer's.
     """
     try:
         pynq: Any = import_module("pynq")
     except ImportError as error:
-        raise DeviceError(f"this machine has no PYNQ ({error}); run it on the board") from error
+        raise DeviceError(f"this machine has no package pynq ({error}); run it on the board") from error
     try:
         overlay = pynq.Overlay(bitstream)
         parts = {**overlay.ip_dict, **overlay.mem_dict}
         registers, memory, vdma = (pynq.MMIO(parts[name]["phys_addr"], parts[name]["addr_range"]) for name in PARTS)
     except (OSError, RuntimeError, KeyError, AttributeError) as error:
-        raise DeviceError(f"{bitstream}: cannot be opened as the ray tracer's bitstream ({error!r})") from error
+        raise DeviceError(
+            f"{bitstream}: cannot be opened as the ray tracer's bitstream ({error!r}); build it with rtl/vivado"
+        ) from error
     return RegisterDevice("PYNQ", registers, memory.array, VdmaVideo(vdma, pynq.allocate, _pause), _pause)
 
 

@@ -1,4 +1,8 @@
-"""The ray tracer behind its registers: an identity, a camera, a start bit, a frame-done bit, a memory port, video."""
+"""The driver of the ray tracer: registers, memory port and video stream as a :class:`~.device.Device`.
+
+A scene is written to a free part of the memory while frames show another one. It appears by a write of the register
+``root`` between two frames.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import numpy as np
 from .device import Counters, Frame, Identity
 from .errors import DeviceError
 from .registers import MATERIALS, REGISTERS
+from .scene import EMPTY_LEAF
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -30,17 +35,17 @@ _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
 
 class Registers(Protocol):
-    """The register block, byte addresses; :class:`pynq.MMIO` is one."""
+    """The register block; :class:`pynq.MMIO` is one."""
 
     def read(self, offset: int, /) -> int:
-        """Read a register."""
+        """Read the register at a byte address."""
 
     def write(self, offset: int, value: int, /) -> None:
-        """Write a register."""
+        """Write the register at a byte address."""
 
 
 class Memory(Protocol):
-    """The scene memory's words as the processor sees them; a NumPy array of uint32 is one."""
+    """The words of the scene memory; a NumPy array of uint32 is one."""
 
     def __len__(self) -> int:
         """Give the number of words."""
@@ -53,7 +58,7 @@ class Memory(Protocol):
 
 
 class Video(Protocol):
-    """What catches the AXI4-Stream video, a frame at a time."""
+    """The receiver of the AXI4-Stream video; it receives one frame at a time."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -61,44 +66,46 @@ class Video(Protocol):
 
     @property
     def width_step(self) -> int:
-        """Frames have a multiple of this many columns."""
+        """The width of a frame is a multiple of this number of columns."""
 
     def expect(self, size: tuple[int, int], /) -> None:
-        """Be ready for one frame of `size`, whatever became of the one before."""
+        """Prepare for one frame of `size`; an earlier frame that is not complete is dropped."""
 
     def take(self) -> NDArray[np.uint8]:
-        """Give the frame when it is complete: uint8, shape (H, W, 3), the stream's bytes.
+        """Wait until the frame is complete, and return it: uint8, shape (H, W, 3), the bytes of the stream.
 
         Raises
         ------
         DeviceError
-            None came, or one of another form.
+            No frame came, or the stream was malformed.
         """
 
     def close(self) -> None:
-        """Catch no more."""
+        """Stop receiving."""
 
 
 class RegisterDevice:
-    """A device driven as ``rtl/registers.rdl`` describes it; :class:`~.device.Device` says what the methods do.
+    """The driver of the registers in ``rtl/registers.rdl``; :class:`~.device.Device` documents the methods.
+
+    Opening writes ``root``, ``depth`` and word 0 of the memory: until a scene is selected, the world is empty.
 
     Parameters
     ----------
     name
-        For people.
+        Shown to users.
     registers
         The register block.
     memory
         The scene memory.
     video
-        What catches frames.
+        The receiver of the frames.
     pause
-        Called between two looks at the status: lets time pass for the hardware.
+        Called between two reads of the status register.
 
     Raises
     ------
     DeviceError
-        No ray tracer answers there, or one of another version.
+        The identity register is not the ray tracer's, or its version is not supported.
     """
 
     def __init__(
@@ -109,12 +116,10 @@ class RegisterDevice:
         self._video = video
         self._pause = pause
         if self._read("identity") != _IDENTITY:
-            raise DeviceError(f"{name}: no voxrt ray tracer answers; load its bitstream")
+            raise DeviceError(f"{name}: the ray tracer does not answer; load the bitstream of voxrt")
         version = self._fields("version")
         if version["major"] != 0:
-            raise DeviceError(
-                f"{name}: registers of version {version['major']} are not known here; upgrade voxrt-board"
-            )
+            raise DeviceError(f"{name}: register version {version['major']} is not supported; upgrade voxrt-board")
         configuration = self._fields("configuration")
         words = min(1 + (8 << configuration["block_bits"]), len(memory))
         self.identity = Identity(
@@ -126,38 +131,45 @@ class RegisterDevice:
             features=frozenset(name for name, built_in in self._fields("features").items() if built_in),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
-            movable_root=False,
         )
-        self._hold()
+        # The registers and the memory may still hold the scene of an earlier program: nothing of it may be traced.
+        self.hold()
+        self.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
+        self.select_scene(0, 1)
 
     def registers(self) -> Mapping[str, int]:
         """Read all registers, by name, in the order of their addresses."""
         return {name: self._read(name) for name in REGISTERS}
 
+    def hold(self) -> None:
+        """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""
+        self._write("control", self._bits("control", "hold"))
+        self._wait("busy", 0, "the present frame does not end")
+
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
-        """Write words from word `address` on, while no frame can begin."""
-        self._hold()
+        """Write words from word `address` on, at once: the frame in progress, if any, goes on."""
         self._memory[address : address + len(words)] = words
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
-        """Read words from word `address` on."""
+        """Read `count` words from word `address` on."""
         return np.array(self._memory[address : address + count], dtype=np.uint32)
 
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
-        """Write the material table."""
-        self._hold()
+        """Write the material table, while no frame can start."""
+        self.hold()
         for material, (red, green, blue) in enumerate(colours.tolist()):
             row = _MIRROR * bool(mirrors[material]) | red << 16 | green << 8 | blue
             self._registers.write(MATERIALS + 4 * material, row)
 
     def select_scene(self, root: int, depth: int) -> None:
-        """Trace the octree at word 0 from the next frame on."""
-        if root != 0:
-            raise DeviceError(f"an octree at word {root}: this hardware traces the one at word 0")
+        """Trace the octree at word `root` from the next frame on."""
+        # The hardware latches depth and root together when a frame starts. None starts between these two writes.
+        self.hold()
         self._write("depth", depth)
+        self._write("root", root)
 
     def frame(self, view: View) -> Frame:
-        """Start a frame, and take it when the frame-done bit says that it is complete."""
+        """Start a frame, wait for the frame-done bit, and return the frame."""
         started = time.perf_counter()
         columns, rows = view.size
         self._write_fields("size", width=columns, height=rows)
@@ -178,25 +190,25 @@ class RegisterDevice:
         self._write("control", self._bits("control", "start"))
         self._wait("frame_done", 1, "the frame does not end")
         status = self._fields("status")
-        errors = [said for field, said in _ERRORS.items() if status[field]]
+        errors = [problem for field, problem in _ERRORS.items() if status[field]]
         if errors:
-            raise DeviceError(f"the ray tracer met {' and '.join(errors)}; upload the scene again, or move the camera")
+            raise DeviceError(
+                f"the ray tracer reports {' and '.join(errors)}; upload the scene again, or move the camera"
+            )
         colour = np.ascontiguousarray(self._video.take()[..., _TO_RED_GREEN_BLUE])
         if colour.shape != (rows, columns, 3):
-            raise DeviceError(f"a frame of {colour.shape[1]}x{colour.shape[0]} pixels came for one of {columns}x{rows}")
+            raise DeviceError(
+                f"the frame has {colour.shape[1]}x{colour.shape[0]} pixels instead of {columns}x{rows}; try again"
+            )
         counters = Counters(
             self._read("rays"), self._read("words_read"), self._read("cycles"), time.perf_counter() - started
         )
         return Frame(colour, counters)
 
     def close(self) -> None:
-        """Let no frame begin any more."""
-        self._hold()
+        """Let no further frame start."""
+        self.hold()
         self._video.close()
-
-    def _hold(self) -> None:
-        self._write("control", self._bits("control", "hold"))
-        self._wait("busy", 0, "the frame under way does not end")
 
     def _wait(self, field: str, value: int, problem: str) -> None:
         pixels, end = -1, 0.0
@@ -206,7 +218,9 @@ class RegisterDevice:
                 end = time.monotonic() + _STUCK_SECONDS
             elif time.monotonic() > end:
                 self._write("control", self._bits("control", "soft_reset", "hold"))
-                raise DeviceError(f"{problem}: no pixel came for {_STUCK_SECONDS:.0f} s; it was dropped, try again")
+                raise DeviceError(
+                    f"{problem}: no pixel came for {_STUCK_SECONDS:.0f} s; the frame was dropped, try again"
+                )
             self._pause()
 
     def _read(self, name: str) -> int:
@@ -220,9 +234,9 @@ class RegisterDevice:
             self._write_fields(f"{name}[{axis}]", value=value)
 
     def _write_fields(self, name: str, **values: int) -> None:
-        places = REGISTERS[name][1]
+        fields = REGISTERS[name][1]
         self._write(
-            name, sum((value & ((1 << places[field][1]) - 1)) << places[field][0] for field, value in values.items())
+            name, sum((value & ((1 << fields[field][1]) - 1)) << fields[field][0] for field, value in values.items())
         )
 
     def _fields(self, name: str) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""A scene as a board takes it, checked before the first word is written."""
+"""The scene that a board loads, and the check of its octree memory."""
 
 from __future__ import annotations
 
@@ -17,17 +17,20 @@ if TYPE_CHECKING:
 
 MAX_DEPTH = 16
 
+EMPTY_LEAF = 0xFFFFFF00
+"""The word of empty space, report dialect."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
-    """An octree memory with its materials and what to see it by.
+    """An octree memory with its materials, first camera and first lighting.
 
     Attributes
     ----------
     name
-        For people.
+        Shown to users.
     depth
-        Levels; the world is 2**depth voxels a side.
+        Levels; the world has 2**depth voxels per side.
     words
         uint32, shape (N,), report dialect: word 0 is the root, blocks stand at 1 + 8k.
     colours
@@ -35,9 +38,9 @@ class Scene:
     mirrors
         bool, shape (256,): materials that reflect.
     camera
-        Where to look from at first, in frames of 640 x 480; None where the file does not say.
+        First camera, for frames of 640 x 480; None where the file has none.
     lighting
-        None where the file does not say.
+        First lighting; None where the file has none.
     """
 
     name: str
@@ -50,29 +53,29 @@ class Scene:
 
     @property
     def background(self) -> Triple:
-        """The colour of row 0."""
+        """The colour of row 0 of `colours`."""
         red, green, blue = (int(channel) for channel in self.colours[0])
         return red, green, blue
 
     @property
     def crc32(self) -> int:
-        """CRC-32 of the words, little-endian bytes."""
+        """CRC-32 of the words as little-endian bytes."""
         return zlib.crc32(self.words.astype("<u4").tobytes())
 
 
 def check_memory(words: NDArray[np.uint32], depth: int) -> None:
-    """Refuse a memory that is no octree of `depth` levels, so that the ray tracer never meets one.
+    """Refuse a memory that is no octree of `depth` levels.
 
     Raises
     ------
     Refused
-        A pointer that leaves the memory, stands beside the blocks, or leads deeper than `depth` (a cycle always does);
-        a leaf that is no tag of the report dialect. Names the word.
+        A pointer leads out of the memory, to no block, or deeper than `depth` (as every cycle does), or a leaf is no
+        material tag of the report dialect. The message names the word.
     """
     if not 1 <= depth <= MAX_DEPTH:
         raise Refused(f"a depth of {depth} is not 1 to {MAX_DEPTH}; build the scene again")
     if len(words) % 8 != 1:
-        raise Refused(f"{len(words)} words are not a root and blocks of 8; build the scene again")
+        raise Refused(f"{len(words)} words are not a root and blocks of 8 words; build the scene again")
     addresses = np.zeros(1, dtype=np.int64)
     for level in range(depth + 1):
         reached = words[addresses]
@@ -86,7 +89,7 @@ def check_memory(words: NDArray[np.uint32], depth: int) -> None:
 
 
 def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:
-    """Give the words of a memory as they read when its root stands at `base`, a multiple of 8."""
+    """Return the words of a memory for a root at word `base`, a multiple of 8."""
     return np.where(words >> 31 == 0, words + np.uint32(base), words)
 
 

@@ -1,4 +1,4 @@
-"""Scenes in a device's memory: one runs, another takes its place, and nothing that breaks on the way shows."""
+"""Scenes in the memory of a device: how the next one is loaded while frames show the present one."""
 
 from __future__ import annotations
 
@@ -7,51 +7,56 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from .errors import DeviceError, Refused
-from .scene import check_memory, relocate
+from .scene import EMPTY_LEAF, check_memory, relocate
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from .device import Device
     from .scene import Scene
 
-_BURST = 4096  # words between two reports of progress
+_BURST = 4096  # words per step
 
 
 class Progress(Protocol):
-    """Hears how far a scene has come."""
+    """Receives the progress of a scene that is being loaded."""
 
     def __call__(self, stage: str, done: int, total: int, /) -> None:
-        """Hear that `stage` is `done` parts of `total` through."""
+        """Receive that `done` of `total` parts of `stage` are complete."""
 
 
 class SceneMemory:
     """The memory of one device.
 
-    Where two scenes fit, the new one is written beside the running one and selected when it is complete. Where they do
-    not, it is written over the running one, which is restored from this object's copy should anything go wrong.
+    Where two scenes fit, the new one is written to the part of the memory that the present one does not use. Then its
+    materials, depth and root are written while the device is held: frames show either scene, and never a mixture.
+
+    Where two scenes do not fit, the device is held while the new one replaces the present one. If that fails, the
+    present one is written again from this object's copy.
 
     Parameters
     ----------
     device
-        Called from the thread that calls :meth:`swap`; nobody else calls it meanwhile.
+        No other caller uses it while a method or a step runs.
     """
 
     def __init__(self, device: Device) -> None:
         self._device = device
-        self._running: Scene | None = None
+        self._loaded: Scene | None = None
         self._base = 0
 
     @property
-    def running(self) -> Scene | None:
+    def loaded(self) -> Scene | None:
         """The scene that frames show."""
-        return self._running
+        return self._loaded
 
     def check(self, scene: Scene) -> None:
-        """Refuse a scene that the device cannot hold, or that is malformed; touches nothing.
+        """Refuse a scene that the device cannot hold, or that is malformed; nothing is written.
 
         Raises
         ------
         Refused
-            Too many words, too deep, or no octree.
+            The scene has too many words or levels, or its words are no octree.
         """
         identity = self._device.identity
         if len(scene.words) > identity.capacity:
@@ -66,64 +71,104 @@ class SceneMemory:
             )
         check_memory(scene.words, scene.depth)
 
-    def swap(self, scene: Scene, progress: Progress) -> None:
-        """Write a scene, read it back, and let the next frame show it.
+    def load(self, scene: Scene, progress: Progress) -> None:
+        """Write a scene, read it back, and show it from the next frame on.
 
         Raises
         ------
         Refused
-            As :meth:`check` does, before the first word.
+            As :meth:`check`; nothing was written.
         DeviceError
-            The memory did not keep what was written. The old scene runs on.
+            The memory did not keep what was written. The present scene stays.
+        """
+        for _ in self.load_in_steps(scene, progress):
+            pass
+
+    def load_in_steps(self, scene: Scene, progress: Progress) -> Iterator[None]:
+        """Do what :meth:`load` does in steps; frames may be rendered between two steps.
+
+        These frames show the present scene. The new one is shown after the last step. A caller that stops before it
+        leaves the present scene as it is. Where two scenes do not fit there is one step only.
+
+        Raises
+        ------
+        Refused, DeviceError
+            As :meth:`load`.
         """
         self.check(scene)
-        spare = self._spare(len(scene.words))
-        base = 0 if spare is None else spare
-        try:
-            self._write(scene, base, progress)
-            self._select(scene, base)
-        except BaseException as fault:
-            self._restore(overwritten=spare is None, fault=fault)
-            raise
-        self._running, self._base = scene, base
+        base = self._free_base(len(scene.words))
+        if base is None:
+            self._overwrite(scene, progress)
+            return
+        for _ in self._transfer(scene, base, progress):
+            yield
+        self._switch(scene, base)
 
-    def _spare(self, count: int) -> int | None:
-        """Find where `count` words fit beside the running scene; None where they do not."""
-        if self._running is None or count <= self._base:
-            return 0
-        if not self._device.identity.movable_root:
+    def _free_base(self, count: int) -> int | None:
+        """Find where `count` words fit beside the loaded scene: before it, or at the end of the memory.
+
+        Scenes stand at either end of the memory, so the free part is in one piece: two scenes fit whenever their sizes
+        allow it.
+        """
+        if self._loaded is None:
             return None
-        behind = -(-(self._base + len(self._running.words)) // 8) * 8
-        return behind if behind + count <= self._device.identity.capacity else None
+        if count <= self._base:
+            return 0
+        last = (self._device.identity.capacity - count) // 8 * 8
+        return last if last >= self._base + len(self._loaded.words) else None
 
-    def _write(self, scene: Scene, base: int, progress: Progress) -> None:
+    def _transfer(self, scene: Scene, base: int, progress: Progress) -> Iterator[None]:
         words = relocate(scene.words, base)
         for start in range(0, len(words), _BURST):
             progress("write", start, len(words))
             self._device.write_memory(base + start, words[start : start + _BURST])
+            yield
         for start in range(0, len(words), _BURST):
             progress("verify", start, len(words))
-            wanted = words[start : start + _BURST]
-            found = self._device.read_memory(base + start, len(wanted))
-            differs = np.flatnonzero(found != wanted)
-            if len(differs):
-                at = int(differs[0])
+            expected = words[start : start + _BURST]
+            found = self._device.read_memory(base + start, len(expected))
+            differing = np.flatnonzero(found != expected)
+            if len(differing):
+                first = int(differing[0])
                 raise DeviceError(
-                    f"word 0x{base + start + at:X} reads 0x{int(found[at]):08X} where 0x{int(wanted[at]):08X} was "
-                    "written; upload again, and check the board if that repeats"
+                    f"word 0x{base + start + first:X} reads 0x{int(found[first]):08X} where "
+                    f"0x{int(expected[first]):08X} was written; upload again, and check the board if that repeats"
                 )
+            yield
         progress("verify", len(words), len(words))
+
+    def _switch(self, scene: Scene, base: int) -> None:
+        try:
+            self._select(scene, base)
+        except BaseException as error:
+            self._restore(error, overwritten=False)
+            raise
+        self._loaded, self._base = scene, base
+
+    def _overwrite(self, scene: Scene, progress: Progress) -> None:
+        try:
+            self._device.hold()
+            for _ in self._transfer(scene, 0, progress):
+                pass
+            self._select(scene, 0)
+        except BaseException as error:
+            self._restore(error, overwritten=True)
+            raise
+        self._loaded, self._base = scene, 0
 
     def _select(self, scene: Scene, base: int) -> None:
         self._device.write_materials(scene.colours, scene.mirrors)
         self._device.select_scene(base, scene.depth)
 
-    def _restore(self, *, overwritten: bool, fault: BaseException) -> None:
-        if self._running is None:
-            return
+    def _restore(self, error: BaseException, *, overwritten: bool) -> None:
         try:
+            if self._loaded is None:
+                self._device.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
+                self._device.select_scene(0, 1)
+                return
             if overwritten:
-                self._write(self._running, self._base, lambda _stage, _done, _total: None)
-            self._select(self._running, self._base)
+                for _ in self._transfer(self._loaded, self._base, lambda _stage, _done, _total: None):
+                    pass
+            self._select(self._loaded, self._base)
         except DeviceError as second:
-            raise DeviceError(f"{fault}; and the old scene could not be restored: {second}") from fault
+            raise DeviceError(f"{error}; and the present scene could not be restored: {second}") from error

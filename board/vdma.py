@@ -1,8 +1,8 @@
-"""The AXI VDMA as a catcher of single frames: the stream into one buffer of the processor's memory.
+"""The AXI VDMA: it writes the video stream to a buffer in the processor's memory, one frame at a time.
 
-Registers and their use are those of AMD's product guide PG020. PYNQ's own driver of the VDMA is not used: its frames
-are right for a camera, which never stops, and not for frames that are started one by one. It waits for four before it
-gives the first, and gives the one before that which came last.
+Registers and their use are those of AMD's product guide PG020. PYNQ's own VDMA driver is not used. It is made for
+endless video: it waits for four frames before it returns the first one, and it returns the last frame but one. The ray
+tracer starts every frame by itself.
 """
 
 from __future__ import annotations
@@ -23,39 +23,39 @@ if TYPE_CHECKING:
 
 # S2MM, the channel from the stream into memory.
 _CONTROL, _STATUS, _ROWS, _ROW_BYTES, _STRIDE, _FIRST_BUFFER = 0x30, 0x34, 0xA0, 0xA4, 0xA8, 0xAC
-_BUFFERS = 3  # of the channel; all of them are our one
+_BUFFERS = 3  # buffer addresses of the channel; all are set to the same buffer
 _RUN, _RESET = 1 << 0, 1 << 2
-_FRAME_CAME = 1 << 12
+_FRAME_DONE = 1 << 12
 _ERRORS = {
     1 << 4: "an internal error",
-    1 << 5: "a memory slave's error",
-    1 << 6: "an address that is none",
-    1 << 7: "a frame that began too early",
-    1 << 8: "a line that ended too early",
-    1 << 11: "a frame that began too late",
-    1 << 15: "a line that ended too late",
+    1 << 5: "an error of the memory",
+    1 << 6: "an invalid address",
+    1 << 7: "a frame that starts too early",
+    1 << 8: "a line that ends too early",
+    1 << 11: "a frame that starts too late",
+    1 << 15: "a line that ends too late",
 }
 _SECONDS = 2.0
 
 
 class VdmaVideo:
-    """Frames from a VDMA; :class:`~.register_device.Video` says what the methods do.
+    """Frames from a VDMA; :class:`~.register_device.Video` documents the methods.
 
     Parameters
     ----------
     registers
-        The VDMA's.
+        The registers of the VDMA.
     allocate
         ``pynq.allocate``: makes arrays that the VDMA can write.
     pause
-        Called between two looks at the status.
+        Called between two reads of the status register.
     """
 
     size = (1920, 1080)
-    """What a board's contiguous memory surely holds."""
+    """A frame of this size fits into the contiguous memory of every board."""
 
     width_step = 8
-    """Lines are whole words of its memory bus, 64 bits: without realignment the VDMA can write no others."""
+    """The VDMA writes whole 64-bit words: a line of 3-byte pixels needs a multiple of 8 pixels."""
 
     def __init__(self, registers: Registers, allocate: Callable[..., Any], pause: Callable[[], None]) -> None:
         self._registers = registers
@@ -65,7 +65,7 @@ class VdmaVideo:
         self._expected = False
 
     def expect(self, size: tuple[int, int]) -> None:
-        """Be ready for one frame; a frame before it that never ended is forgotten."""
+        """Prepare for one frame; an earlier frame that is not complete is dropped."""
         columns, rows = size
         shape = rows, columns, 3
         if self._expected or self._buffer is None or self._buffer.shape != shape:
@@ -78,21 +78,21 @@ class VdmaVideo:
             self._registers.write(_STRIDE, 3 * columns)
             self._registers.write(_ROW_BYTES, 3 * columns)
             self._registers.write(_ROWS, rows)  # this starts the channel
-        self._registers.write(_STATUS, _FRAME_CAME | sum(_ERRORS))  # writing 1 clears
+        self._registers.write(_STATUS, _FRAME_DONE | sum(_ERRORS))  # writing 1 clears
         self._expected = True
 
     def take(self) -> NDArray[np.uint8]:
-        """Give the frame when it is in memory."""
-        status = self._until(_STATUS, lambda status: bool(status & (_FRAME_CAME | sum(_ERRORS))))
-        errors = [said for bit, said in _ERRORS.items() if status & bit]
+        """Wait until the frame is in memory, and return it."""
+        status = self._until(_STATUS, lambda status: bool(status & (_FRAME_DONE | sum(_ERRORS))))
+        errors = [problem for bit, problem in _ERRORS.items() if status & bit]
         if errors:
-            raise DeviceError(f"the VDMA met {' and '.join(errors)}; the frame was dropped, try again")
+            raise DeviceError(f"the VDMA reports {' and '.join(errors)}; the frame was dropped, try again")
         self._expected = False
         self._buffer.invalidate()
         return np.array(self._buffer, dtype=np.uint8)
 
     def close(self) -> None:
-        """Stop the channel and give its memory back."""
+        """Stop the channel and free its buffer."""
         self._reset()
         self._free()
 
@@ -110,6 +110,6 @@ class VdmaVideo:
         end = time.monotonic() + _SECONDS
         while not holds(value := self._registers.read(register)):
             if time.monotonic() > end:
-                raise DeviceError(f"the VDMA did not answer within {_SECONDS:.0f} s; check the block design")
+                raise DeviceError(f"the VDMA did not answer for {_SECONDS:.0f} s; check the block design")
             self._pause()
         return value

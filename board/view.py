@@ -1,4 +1,4 @@
-"""What decides the pixels of a frame besides the scene: camera, size, background, lighting."""
+"""The view of a frame: camera, size, background, lighting."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ import numpy as np
 
 import voxrt
 from voxrt import octree, voxelize
-from voxrt.voxelize.authoring import author
-from voxrt.voxelize.authoring.author import Solid, box, box_between, extrude, sphere
+from voxrt.voxelize import authoring
+from voxrt.voxelize.authoring import Solid, box, box_between, extrude, sphere
 
 if TYPE_CHECKING:
     from voxrt.voxelize import Scene
@@ -54,7 +54,7 @@ def legs() -> Solid:
 
 def playground() -> Scene:
     """Return the scene."""
-    made = author.Author("playground", background="#b4d8f0")
+    made = authoring.Author("playground", background="#b4d8f0")
     for name, colour in COLOURS.items():
         made.material(name, colour, mirror=name == "mirror")
 

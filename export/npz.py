@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from voxrt.octree import to_points
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
     from voxrt.octree import Rom
 
@@ -51,7 +53,7 @@ def write_npz(path: Path, rom: Rom, high: tuple[int, int, int] | None = None) ->
     if high is not None:
         kept = (coordinates < high).all(axis=1)
         coordinates, material_ids = coordinates[kept], material_ids[kept]
-    arrays = {
+    arrays: dict[str, NDArray[Any]] = {
         "coordinates": coordinates.astype(np.uint16),
         "material_ids": material_ids,
         "colours": np.array([material.colour for material in rom.materials], np.uint8),

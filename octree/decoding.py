@@ -90,16 +90,20 @@ def decode(
         raise RomError(f"{source or 'memory'}: there is no word in it; an octree memory has at least its root")
     report = leaf_materials(words, dialect, source=source, lines=lines)
     limit = MAX_DEPTH if depth is None else depth
-    fault, address, least = _native.validate(report, limit)
-    if fault == "length":
+    verdict = _native.validate(report, limit)
+    if verdict.fault == "length":
         raise RomError(
             f"{source or 'memory'}: {len(words)} words are not a root and blocks of 8 (1 + 8k); the file is cut short, "
             "or holds more than an octree memory"
         )
-    if fault:
-        facts = {"word": int(report[address]), "count": len(words), "depth": limit, "least": least}
-        raise RomError(
-            f"{place(address, source, lines)}: {_PROBLEMS[fault].format(**facts)}; {_FIXES[fault].format(**facts)}"
-        )
+    if verdict.fault:
+        facts = {
+            "word": int(report[verdict.address]),
+            "count": len(words),
+            "depth": limit,
+            "least": verdict.least_depth,
+        }
+        problem, fix = _PROBLEMS[verdict.fault].format(**facts), _FIXES[verdict.fault].format(**facts)
+        raise RomError(f"{place(verdict.address, source, lines)}: {problem}; {fix}")
     report.flags.writeable = False
-    return Octree(max(1, least) if depth is None else depth, report)
+    return Octree(max(1, verdict.least_depth) if depth is None else depth, report)

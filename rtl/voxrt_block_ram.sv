@@ -1,18 +1,17 @@
 // True dual-port block RAM with output registers: port A reads or writes, port B reads.
 module voxrt_block_ram #(
-  parameter  int unsigned Width   = 18,
-  parameter  int unsigned Depth   = 1024,
-  localparam int unsigned RowBits = $clog2(Depth)
+  parameter int unsigned Width = 18,
+  parameter int unsigned Depth = 1024
 ) (
-  input  logic               clk_i,
-  input  logic               a_read_i,
-  input  logic               a_write_i,
-  input  logic [RowBits-1:0] a_row_i,
-  input  logic [  Width-1:0] a_data_i,
-  output logic [  Width-1:0] a_data_o,   // Two clocks after a_read_i.
-  input  logic               b_read_i,
-  input  logic [RowBits-1:0] b_row_i,
-  output logic [  Width-1:0] b_data_o
+  input  logic                     clk_i,
+  input  logic                     a_read_i,
+  input  logic                     a_write_i,
+  input  logic [$clog2(Depth)-1:0] a_row_i,
+  input  logic [        Width-1:0] a_data_i,
+  output logic [        Width-1:0] a_data_o,  // Two clocks after a_read_i.
+  input  logic                     b_read_i,
+  input  logic [$clog2(Depth)-1:0] b_row_i,
+  output logic [        Width-1:0] b_data_o
 );
   // Public, so that a simulation can fill a large memory at once.
   logic [Width-1:0] data_q[Depth]  /* verilator public_flat_rw */;

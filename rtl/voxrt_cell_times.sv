@@ -1,51 +1,45 @@
-// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, or middle ones, one an axis;
-// modulo 2**KeyBits.
+// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, or middle ones, one per
+// axis; modulo 2**KeyBits.
 //
 // Distances from origins to planes come from the camera's origin, which all rays share, or, with Light or Mirrors, from
-// one that each ray has of its own: reflections move it, and shadow rays start at the lit point and count 1/32 voxel.
+// an origin per ray: reflections move it, and shadow rays start at a hit point and count 1/32 voxel.
 module voxrt_cell_times
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned MaxDepth     = 10,
-  parameter  int unsigned PositionBits = 17,
-  parameter  int unsigned Slots        = 11,
-  parameter  int unsigned RowBits      = 5,
-  parameter  bit          Light        = 1'b0,
-  parameter  bit          Mirrors      = 1'b0,
-  localparam int unsigned SlotBits     = $clog2(Slots),
-  localparam int unsigned SubBits      = Light ? FractionBits : 0,
-  localparam int unsigned CellBits     = MaxDepth + SubBits,
-  localparam int unsigned OriginBits   = distance_bits(MaxDepth, PositionBits),
-  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light)
+  parameter int unsigned MaxDepth     = 10,
+  parameter int unsigned PositionBits = 17,
+  parameter int unsigned Slots        = 11,
+  parameter bit          Light        = 1'b0,
+  parameter bit          Mirrors      = 1'b0
 ) (
-  input  logic                         clk_i,
+  input  logic                                                   clk_i,
   // Held during a frame.
-  input  logic signed [OriginBits-1:0] origin_i          [3],
-  input  logic signed [OriginBits-1:0] mirrored_origin_i [3],
-  // A ray has come, and will start some time: its weights, in the row that holds them until it has ended.
-  input  logic                         arrives_i,
-  input  logic        [   RowBits-1:0] arrival_row_i,
-  input  logic        [WeightBits-1:0] weight_i          [3],
-  // Stage 1: the cell's lowest corner. Stage 2: the ray's row, the cell's size, one-hot, and whether its far planes are
-  // asked for.
-  input  logic        [  SlotBits-1:0] slot1_i,
-  input  logic        [  CellBits-1:0] corner1_i         [3],
-  input  logic        [           2:0] mirrored1_i,
-  input  logic        [           2:0] dead1_i,
-  input  logic                         shadow1_i,
-  input  logic        [   RowBits-1:0] row2_i,
-  input  logic        [  CellBits-1:0] size2_i,
-  input  logic                         shadow2_i,
-  input  logic                         takes_far_i,
-  // Stage 9: a new ray; or the ray is reflected by a plane of this number and axis, in its own mirrored frame.
-  input  logic        [  SlotBits-1:0] slot9_i,
-  input  logic                         starts_i,
-  input  logic signed [OriginBits-1:0] ray_origin_i      [3],
-  input  logic                         reflects_i,
-  input  face_e                        face_i,
-  input  logic signed [MaxDepth+1:0]   shift_i,               // Side - 2 plane.
-  output logic        [   KeyBits-1:0] time_o            [3]  // At stage 6.
+  input  world_t                                                 world_i,
+  // The weights of a ray, in the row that holds them until it has ended.
+  input  weights_write_t                                         weights_write_i,
+  // Stage 1: the cell's lowest corner. Stage 2: the ray's row, the cell's size, one-hot, and whether the far planes are
+  // wanted.
+  input  logic                  [$clog2(Slots)-1:0]              slot1_i,
+  input  logic                  [cell_bits(MaxDepth, Light)-1:0] corner1_i   [3],
+  input  logic                  [2:0]                            mirrored1_i,
+  input  logic                  [2:0]                            dead1_i,
+  input  logic                                                   shadow1_i,
+  input  logic                  [row_bits(Light)-1:0]            row2_i,
+  input  logic                  [cell_bits(MaxDepth, Light)-1:0] size2_i,
+  input  logic                                                   shadow2_i,
+  input  logic                                                   takes_far2_i,
+  // Stage 9: a new ray with its origin; or the ray is reflected by a plane of the key's face.
+  input  logic                  [$clog2(Slots)-1:0]              slot9_i,
+  input  decision_t                                              decision_i,
+  input  logic                  [2:0][DistanceLimit-1:0]         ray_origin_i,
+  input  face_e                                                  key_face_i,
+  // Stage 6.
+  output logic                  [key_bits(MaxDepth, Light)-1:0]  time_o      [3]
 );
+  localparam int unsigned SubBits = Light ? FractionBits : 0;
+  localparam int unsigned RowBits = row_bits(Light);
+  localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
+  localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;
   localparam int unsigned TimeBits = DistanceBits + WeightBits;
 
@@ -54,18 +48,27 @@ module voxrt_cell_times
 
   if (Light || Mirrors) begin : gen_own_origin
     logic signed [DistanceBits-1:0] origin_x_q[Slots], origin_y_q[Slots], origin_z_q[Slots];
-    logic signed [DistanceBits-1:0] origin1[3], near2_q[3], step2, shift;
-    logic                           unused_origin;
+    logic signed [DistanceBits-1:0] origin1[3], ray_origin[3], near2_q[3], step2, shift;
+    logic signed [  OriginBits-1:0] exact_origin[3];
+    logic signed [    MaxDepth+1:0] planes;
+    logic                           unused_shared;
 
-    assign unused_origin = &{origin_i[0], origin_i[1], origin_i[2], mirrored_origin_i[0], mirrored_origin_i[1],
-                             mirrored_origin_i[2], mirrored1_i};
+    assign unused_shared = &{world_i, mirrored1_i};
 
-    assign shift = Mirrors ? DistanceBits'(shift_i) <<< FractionBits : '0;
+    assign planes = decision_i.shift[MaxDepth+1:0];
+    assign shift  = Mirrors ? DistanceBits'(planes) <<< FractionBits : '0;
 
     assign origin1[0] = origin_x_q[slot1_i];
     assign origin1[1] = origin_y_q[slot1_i];
     assign origin1[2] = origin_z_q[slot1_i];
-    assign step2      = (DistanceBits'(size2_i) << (FractionBits - SubBits)) >> !takes_far_i;
+    assign step2      = (DistanceBits'(size2_i) << (FractionBits - SubBits)) >> !takes_far2_i;
+
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        exact_origin[a] = ray_origin_i[a][OriginBits-1:0];
+        ray_origin[a]   = DistanceBits'(exact_origin[a]);
+      end
+    end
 
     // Planes of a dead axis must not meet the origin: a distance one less has the sign that tells where it is.
     always_ff @(posedge clk_i) begin
@@ -74,12 +77,12 @@ module voxrt_cell_times
             DistanceBits'(dead1_i[a]);
         distance3_q[a] <= near2_q[a] + (step2 << shadow2_i);
       end
-      if (starts_i) origin_x_q[slot9_i] <= DistanceBits'(ray_origin_i[0]);
-      else if (reflects_i && face_i == FaceX) origin_x_q[slot9_i] <= origin_x_q[slot9_i] + shift;
-      if (starts_i) origin_y_q[slot9_i] <= DistanceBits'(ray_origin_i[1]);
-      else if (reflects_i && face_i == FaceY) origin_y_q[slot9_i] <= origin_y_q[slot9_i] + shift;
-      if (starts_i) origin_z_q[slot9_i] <= DistanceBits'(ray_origin_i[2]);
-      else if (reflects_i && face_i == FaceZ) origin_z_q[slot9_i] <= origin_z_q[slot9_i] + shift;
+      if (decision_i.issues) origin_x_q[slot9_i] <= ray_origin[0];
+      else if (decision_i.reflects && key_face_i == FaceX) origin_x_q[slot9_i] <= origin_x_q[slot9_i] + shift;
+      if (decision_i.issues) origin_y_q[slot9_i] <= ray_origin[1];
+      else if (decision_i.reflects && key_face_i == FaceY) origin_y_q[slot9_i] <= origin_y_q[slot9_i] + shift;
+      if (decision_i.issues) origin_z_q[slot9_i] <= ray_origin[2];
+      else if (decision_i.reflects && key_face_i == FaceZ) origin_z_q[slot9_i] <= origin_z_q[slot9_i] + shift;
     end
   end else begin : gen_shared_origin
     localparam int unsigned WholeBits = DistanceBits - FractionBits;
@@ -87,20 +90,23 @@ module voxrt_cell_times
     logic        [FractionBits-1:0] fraction2_q[3];
     logic                           unused_origin;
 
-    assign unused_origin = &{ray_origin_i[0], ray_origin_i[1], ray_origin_i[2], shadow1_i, shadow2_i, slot1_i, slot9_i,
-                             starts_i, reflects_i, face_i, shift_i};
+    assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, slot1_i, slot9_i, decision_i, key_face_i};
 
     // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
     // origin's fraction counts as above 0.
     for (genvar a = 0; a < 3; a++) begin : gen_near
-      logic whole;
-      assign whole = origin_i[a][FractionBits-1:0] == '0 && !dead1_i[a];
+      logic signed [OriginBits-1:0] origin, mirrored_origin;
+      logic                         whole;
+
+      assign origin          = world_i.origin[a][OriginBits-1:0];
+      assign mirrored_origin = world_i.mirrored_origin[a][OriginBits-1:0];
+      assign whole           = origin[FractionBits-1:0] == '0 && !dead1_i[a];
 
       always_ff @(posedge clk_i) begin
         near2_q[a] <= WholeBits'(corner1_i[a]) + WholeBits'(whole)
-            + ~WholeBits'((mirrored1_i[a] ? mirrored_origin_i[a] : origin_i[a]) >>> FractionBits);
-        fraction2_q[a] <= mirrored1_i[a] ? origin_i[a][FractionBits-1:0] : mirrored_origin_i[a][FractionBits-1:0];
-        distance3_q[a] <= {near2_q[a] + WholeBits'({1'b0, takes_far_i ? size2_i : size2_i >> 1}), fraction2_q[a]};
+            + ~WholeBits'((mirrored1_i[a] ? mirrored_origin : origin) >>> FractionBits);
+        fraction2_q[a] <= mirrored1_i[a] ? origin[FractionBits-1:0] : mirrored_origin[FractionBits-1:0];
+        distance3_q[a] <= {near2_q[a] + WholeBits'({1'b0, takes_far2_i ? size2_i : size2_i >> 1}), fraction2_q[a]};
       end
     end
   end
@@ -108,16 +114,19 @@ module voxrt_cell_times
   // 3, 4, 5.
   logic        [WeightBits-1:0] weight_x_q[2**RowBits], weight_y_q[2**RowBits], weight_z_q[2**RowBits];
   logic        [WeightBits-1:0] weight3_q [3];
+  logic        [   RowBits-1:0] written_row;
   logic signed [  TimeBits-1:0] exact_time[3];
+
+  assign written_row = weights_write_i.row[RowBits-1:0];
 
   always_ff @(posedge clk_i) begin
     weight3_q[0] <= weight_x_q[row2_i];
     weight3_q[1] <= weight_y_q[row2_i];
     weight3_q[2] <= weight_z_q[row2_i];
-    if (arrives_i) begin
-      weight_x_q[arrival_row_i] <= weight_i[0];
-      weight_y_q[arrival_row_i] <= weight_i[1];
-      weight_z_q[arrival_row_i] <= weight_i[2];
+    if (weights_write_i.valid) begin
+      weight_x_q[written_row] <= weights_write_i.weights[0];
+      weight_y_q[written_row] <= weights_write_i.weights[1];
+      weight_z_q[written_row] <= weights_write_i.weights[2];
     end
   end
 

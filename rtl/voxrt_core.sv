@@ -1,19 +1,26 @@
-// The ray tracer as a core for a block design: AXI4-Lite registers, AXI4-Stream video, and a memory port that an AXI
-// BRAM controller drives. One clock, one synchronous reset.
+// The ray tracer as a core for a block design: AXI4-Lite registers, AXI4-Stream video, and a memory port for an AXI
+// BRAM controller. One clock, one synchronous reset; a reset of one clock is enough.
 //
 // Registers: registers.rdl. Stream: voxrt_pixel_packer.
 //
-// Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). What
-// is read comes memory_clocks(Banked) clocks after its address: set the controller's read latency so. Write a scene
-// while control.hold is set and status.busy clear; writing at other times shows in the frame, and harms nothing else.
+// Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). A word
+// read comes memory_clocks(Banked) clocks after its address: set the controller's read latency so. Write a scene while
+// control.hold is set and status.busy clear. Writing at other times shows in the frame, and slows it down: the port
+// never waits, and lanes keep at least half of their share of the memory.
 module voxrt_core
   import voxrt_pkg::*;
 #(
+  // Lanes: 1 .. 255. A lane reads a word per clock.
   parameter int unsigned Lanes        = 1,
+  // Deepest octree, in levels below the root: 2 .. 16.
   parameter int unsigned MaxDepth     = 10,
+  // Width of the camera's position, signed, in 1/16 voxel: 6 .. 32 bits.
   parameter int unsigned PositionBits = 17,
+  // The octree memory holds 2**BlockBits blocks of eight words, and the root: 5 .. 24 bits.
   parameter int unsigned BlockBits    = 12,
+  // The form of the octree memory: 0 = private copies, one per two lanes; 1 = one memory in banks, for all lanes.
   parameter bit          Banked       = 1'b0,
+  // Features of the shader, 0 = not built in: flat colours, a point light with shadows, mirrors.
   parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
@@ -54,8 +61,18 @@ module voxrt_core
   output logic        m_axis_tuser,
   output logic        m_axis_tlast
 );
-  localparam int unsigned DepthBits = $clog2(MaxDepth + 1);
-  localparam int unsigned LightBits = light_bits(MaxDepth);
+  if (Lanes < 1 || Lanes > 255) begin : gen_bad_lanes
+    $error("voxrt_core: Lanes must be 1 to 255");
+  end
+  if (MaxDepth < 2 || MaxDepth > DepthLimit) begin : gen_bad_depth
+    $error("voxrt_core: MaxDepth must be 2 to 16 levels");
+  end
+  if (PositionBits < 6 || PositionBits > PositionLimit) begin : gen_bad_position
+    $error("voxrt_core: PositionBits must be 6 to 32 bits");
+  end
+  if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
+    $error("voxrt_core: BlockBits must be 5 to 24 bits");
+  end
 
   voxrt_registers_pkg::voxrt_registers__in_t  status;
   voxrt_registers_pkg::voxrt_registers__out_t control;
@@ -98,31 +115,34 @@ module voxrt_core
 
   always_ff @(posedge clk_i) busy_q <= rst_n && busy;
 
-  // Camera and light.
-  shading_t                       shading;
-  logic signed [   LightBits-1:0] light   [3];
-  logic signed [PositionBits-1:0] position[3];
-  logic signed [  CameraBits-1:0] look[3], right[3], up[3];
+  frame_t frame;
 
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      position[a] = control.position[a].value.value[PositionBits-1:0];
-      look[a]     = control.look[a].value.value;
-      right[a]    = control.right[a].value.value;
-      up[a]       = control.up[a].value.value;
-      light[a]    = control.light[a].value.value[LightBits-1:0];
-    end
-    shading.flat    = control.shading.flat.value;
-    shading.light   = control.shading.light.value;
-    shading.ambient = control.shading.ambient.value;
-    shading.bounces = control.shading.bounces.value;
+  for (genvar a = 0; a < 3; a++) begin : gen_axis
+    assign frame.position[a] = control.position[a].value.value;
+    assign frame.look[a]     = control.look[a].value.value;
+    assign frame.right[a]    = control.right[a].value.value;
+    assign frame.up[a]       = control.up[a].value.value;
+    assign frame.light[a]    = control.light[a].value.value;
   end
 
-  logic        pixel_valid, pixel_ready, pixel_first, pixel_line_end;
-  colour_t     pixel_colour;
-  logic [31:0] cycles, rays, words_read, hits, stalls;
-  logic        unused_access_valid, unused_last;
-  pixel_t      unused_pixel;
+  assign frame.width           = control.size.width.value;
+  assign frame.height          = control.size.height.value;
+  assign frame.depth           = control.depth.depth.value;
+  assign frame.root            = control.root.address.value;
+  assign frame.shading.flat    = control.shading.flat.value;
+  assign frame.shading.light   = control.shading.light.value;
+  assign frame.shading.ambient = control.shading.ambient.value;
+  assign frame.shading.bounces = control.shading.bounces.value;
+
+  material_write_t material_write;
+
+  assign material_write.valid    = control.materials.req && control.materials.req_is_wr;
+  assign material_write.material = control.materials.addr[9:2];
+  assign material_write.entry    = control.materials.wr_data[24:0];
+
+  logic          pixel_valid, pixel_ready, unused_access_valid;
+  shaded_pixel_t pixel;
+  counters_t     counters;
 
   voxrt_rtu #(
     .Lanes       (Lanes),
@@ -138,38 +158,19 @@ module voxrt_core
     .rst_ni          (rst_n),
     .start_i         (start),
     .busy_o          (busy),
-    .position_i      (position),
-    .look_i          (look),
-    .right_i         (right),
-    .up_i            (up),
-    .width_i         (control.size.width.value),
-    .height_i        (control.size.height.value),
-    .depth_i         (control.depth.depth.value[DepthBits-1:0]),
-    .root_i          (control.root.address.value),
-    .shading_i       (shading),
-    .light_i         (light),
+    .frame_i         (frame),
     .access_i        (bram_en_i),
     .access_write_i  (bram_we_i == '1),
     .access_address_i(bram_addr_i >> 2),
     .access_word_i   (bram_wrdata_i),
     .access_valid_o  (unused_access_valid),
     .access_word_o   (bram_rddata_o),
-    .table_write_i   (control.materials.req && control.materials.req_is_wr),
-    .table_material_i(control.materials.addr[9:2]),
-    .table_row_i     (control.materials.wr_data[24:0]),
-    .out_valid_o     (pixel_valid),
-    .out_ready_i     (pixel_ready),
-    .out_colour_o    (pixel_colour),
-    .out_pixel_o     (unused_pixel),
-    .out_first_o     (pixel_first),
-    .out_line_end_o  (pixel_line_end),
-    .out_last_o      (unused_last),
+    .material_write_i(material_write),
+    .pixel_valid_o   (pixel_valid),
+    .pixel_ready_i   (pixel_ready),
+    .pixel_o         (pixel),
     .error_o         (error),
-    .cycles_o        (cycles),
-    .rays_o          (rays),
-    .words_read_o    (words_read),
-    .hits_o          (hits),
-    .stalls_o        (stalls)
+    .counters_o      (counters)
   );
 
   voxrt_pixel_packer u_packer (
@@ -177,9 +178,9 @@ module voxrt_core
     .rst_ni    (rst_n),
     .valid_i   (pixel_valid),
     .ready_o   (pixel_ready),
-    .colour_i  (pixel_colour),
-    .first_i   (pixel_first),
-    .line_end_i(pixel_line_end),
+    .colour_i  (pixel.colour),
+    .first_i   (pixel.first),
+    .line_end_i(pixel.line_end),
     .m_axis_tvalid,
     .m_axis_tready,
     .m_axis_tdata,
@@ -188,28 +189,25 @@ module voxrt_core
     .m_axis_tlast
   );
 
-  always_comb begin
-    status                                      = '{default: '0};
-    status.configuration.lanes.next             = 8'(Lanes);
-    status.configuration.max_depth.next         = 5'(MaxDepth);
-    status.configuration.position_bits.next     = 6'(PositionBits);
-    status.configuration.block_bits.next        = 5'(BlockBits);
-    status.configuration.banked.next            = Banked;
-    status.features.flat.next                   = Flat;
-    status.features.light.next                  = Light;
-    status.features.mirrors.next                = Mirrors;
-    status.status.busy.next                     = busy;
-    status.status.frame_done.hwset              = busy_q && !busy && rst_n;
-    status.status.direction_overflow.hwset      = busy && error.direction_overflow;
-    status.status.bad_pointer.hwset             = busy && error.bad_pointer;
-    status.status.step_limit.hwset              = busy && error.step_limit;
-    status.cycles.value.next                    = cycles;
-    status.rays.value.next                      = rays;
-    status.words_read.value.next                = words_read;
-    status.hits.value.next                      = hits;
-    status.stalls.value.next                    = stalls;
-    status.materials.rd_ack                     = control.materials.req && !control.materials.req_is_wr;
-    status.materials.wr_ack                     = control.materials.req && control.materials.req_is_wr;
-  end
-
+  assign status.configuration.lanes.next         = 8'(Lanes);
+  assign status.configuration.max_depth.next     = 5'(MaxDepth);
+  assign status.configuration.position_bits.next = 6'(PositionBits);
+  assign status.configuration.block_bits.next    = 5'(BlockBits);
+  assign status.configuration.banked.next        = Banked;
+  assign status.features.flat.next               = Flat;
+  assign status.features.light.next              = Light;
+  assign status.features.mirrors.next            = Mirrors;
+  assign status.status.busy.next                 = busy;
+  assign status.status.frame_done.hwset          = busy_q && !busy && rst_n;
+  assign status.status.direction_overflow.hwset  = busy && error.direction_overflow;
+  assign status.status.bad_pointer.hwset         = busy && error.bad_pointer;
+  assign status.status.step_limit.hwset          = busy && error.step_limit;
+  assign status.cycles.value.next                = counters.cycles;
+  assign status.rays.value.next                  = counters.rays;
+  assign status.words_read.value.next            = counters.words_read;
+  assign status.hits.value.next                  = counters.hits;
+  assign status.stalls.value.next                = counters.stalls;
+  assign status.materials.rd_ack                 = control.materials.req && !control.materials.req_is_wr;
+  assign status.materials.wr_ack                 = control.materials.req && control.materials.req_is_wr;
+  assign status.materials.rd_data                = '0;
 endmodule

@@ -32,4 +32,17 @@ module voxrt_fifo #(
       read_q  <= '0;
     end
   end
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  logic [IndexBits:0] count;
+  assign count = write_q - read_q;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && reset_seen_q) assert (count <= (IndexBits + 1)'(Depth)) else $error("more words than the FIFO holds");
+  end
+`endif
 endmodule

@@ -1,154 +1,188 @@
-// From sub-cells that rays of the camera met to shadow rays: where from, which way, for all lanes.
+// From hit points of the camera's rays to shadow rays, for all lanes; and where the light is among the planes.
 //
-// Lanes have their turns one after another: a turn every Lanes clocks is enough for a lane, whose rays read a dozen words
-// each between two requests. A lane has at most QueueDepth shadow rays under way, from its request until it starts the
-// ray (started_i); it may make a request while ready_o is high, and at a clock in which it starts a shadow ray.
+// Lanes are served in turn: once per Lanes clocks is enough for a lane, whose rays read a dozen words between two hit
+// points. A lane has at most QueueDepth shadow rays under way, from its hit point until it issues the ray (issued_i):
+// it may give a hit point while hit_point_ready_o is high, and at a clock in which it issues a shadow ray.
 module voxrt_light
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned Lanes      = 1,
-  parameter  int unsigned MaxDepth   = 10,
-  parameter  int unsigned TagBits    = 8,
-  parameter  int unsigned QueueDepth = 16,
-  localparam int unsigned PlaceBits  = MaxDepth + FractionBits,
-  localparam int unsigned LitBits    = MaxDepth + LitFractionBits + 2,
-  localparam int unsigned LightBits  = light_bits(MaxDepth)
+  parameter int unsigned Lanes      = 1,
+  parameter int unsigned MaxDepth   = 10,
+  parameter int unsigned QueueDepth = 16
 ) (
-  input  logic                        clk_i,
-  input  logic                        rst_ni,
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
   // Held during a frame.
-  input  logic        [   MaxDepth:0] world_i,            // One-hot: the world's side.
-  input  logic signed [LightBits-1:0] light_i    [3],     // 1/16 voxel.
-  // Requests, as voxrt_lane makes them.
-  input  logic        [    Lanes-1:0] request_i,
-  output logic        [    Lanes-1:0] ready_o,
-  input  logic        [  TagBits-1:0] tag_i      [Lanes],
-  input  face_e                       face_i     [Lanes],
-  input  logic        [          2:0] mirrored_i [Lanes],
-  input  logic        [PlaceBits-1:0] place_i    [Lanes][3],
-  input  logic        [    Lanes-1:0] started_i,
+  input  logic          [MaxDepth:0] side_i,                     // Of the world, voxels, one-hot.
+  input  logic          [2:0][31:0]  light_i,                    // 1/16 voxel, signed.
+  // Hit points, as voxrt_lane gives them.
+  input  logic          [ Lanes-1:0] hit_point_valid_i,
+  output logic          [ Lanes-1:0] hit_point_ready_o,
+  input  hit_point_t                 hit_point_i        [Lanes],
+  input  logic          [ Lanes-1:0] issued_i,
   // To voxrt_ray_setup, which always takes them.
-  output logic                        valid_o,
-  output logic        [    Lanes-1:0] lane_o,
-  output logic        [  TagBits-1:0] tag_o,
-  output logic signed [  LitBits-1:0] lit_o      [3],     // 1/32 voxel.
-  output logic signed [ ScanBits-1:0] way_o      [3],
-  // Which planes are before the light, and which are not behind it: those of lower number than these. In the grid's frame,
-  // [0], and mirrored, [1].
-  output logic        [   MaxDepth:0] before_light_o[2][3],
-  output logic        [   MaxDepth:0] to_light_o [2][3]
+  output logic                       valid_o,
+  output logic          [ Lanes-1:0] lane_o,                     // One-hot.
+  output shadow_ray_t                shadow_ray_o,
+  output light_planes_t              light_planes_o
 );
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
+  localparam int unsigned HitBits = MaxDepth + FractionBits;
+  localparam int unsigned LightBits = light_bits(MaxDepth);
 
+  // A hit point in the queue, no wider than this configuration needs.
   typedef struct packed {
-    logic [TagBits-1:0]        tag;
-    face_e                     face;
-    logic [2:0]                mirrored;
-    logic [2:0][PlaceBits-1:0] place;
-  } request_t;
+    logic [TagBits-1:0]      tag;
+    face_e                   face;
+    logic [2:0]              mirrored;
+    logic [2:0][HitBits-1:0] point;
+  } queued_t;
 
-  logic     [Lanes-1:0] waiting, turn_q;  // One-hot: whose turn it is.
-  request_t             requests[Lanes];
-  request_t             request;
+  logic    [Lanes-1:0] waiting, grant_q;  // One-hot.
+  queued_t             queued[Lanes];
+  queued_t             granted;
 
   always_ff @(posedge clk_i) begin
-    turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
-    if (!rst_ni) turn_q <= Lanes'(1);
+    grant_q <= Lanes'({grant_q, grant_q[Lanes-1]});
+    if (!rst_ni) grant_q <= Lanes'(1);
   end
 
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
-    logic [CountBits-1:0] places_q;  // Of shadow rays that the lane may still ask for.
-    logic                 unused_ready;
+    logic    [CountBits-1:0] credits_q;  // Shadow rays that the lane may still ask for.
+    logic                    ready;
+    queued_t                 arriving;
 
-    assign ready_o[i] = places_q != '0;
+    always_comb begin
+      arriving.tag      = hit_point_i[i].tag;
+      arriving.face     = hit_point_i[i].face;
+      arriving.mirrored = hit_point_i[i].mirrored;
+      for (int unsigned a = 0; a < 3; a++) arriving.point[a] = hit_point_i[i].point[a][HitBits-1:0];
+    end
+
+    assign hit_point_ready_o[i] = credits_q != '0;
 
     always_ff @(posedge clk_i) begin
-      places_q <= places_q - CountBits'(request_i[i]) + CountBits'(started_i[i]);
-      if (!rst_ni) places_q <= CountBits'(QueueDepth);
+      credits_q <= credits_q - CountBits'(hit_point_valid_i[i]) + CountBits'(issued_i[i]);
+      if (!rst_ni) credits_q <= CountBits'(QueueDepth);
     end
 
     voxrt_fifo #(
-      .Width($bits(request_t)),
+      .Width($bits(queued_t)),
       .Depth(QueueDepth)
-    ) u_requests (
+    ) u_hit_points (
       .clk_i,
       .rst_ni,
-      .valid_i(request_i[i]),
-      .ready_o(unused_ready),
-      .data_i ({tag_i[i], face_i[i], mirrored_i[i], place_i[i][2], place_i[i][1], place_i[i][0]}),
+      .valid_i(hit_point_valid_i[i]),
+      .ready_o(ready),
+      .data_i (arriving),
       .valid_o(waiting[i]),
-      .ready_i(turn_q[i]),
-      .data_o (requests[i])
+      .ready_i(grant_q[i]),
+      .data_o (queued[i])
     );
-  end
 
-  always_comb begin
-    request = '0;
-    for (int unsigned i = 0; i < Lanes; i++) if (turn_q[i]) request |= requests[i];
-  end
+`ifndef SYNTHESIS
+    // Before the first reset, nothing holds.
+    logic reset_seen_q = 1'b0;
+    always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
 
-  // The request, then the lit point, then the way.
-  logic     [        2:0] valid_q;
-  logic     [  Lanes-1:0] lane_q[3];
-  logic     [TagBits-1:0] tag_q [1:2];
-  request_t               request_q;
-  logic signed [LightBits+1:0] way[3];
-  logic [PlaceBits-1:0] place[3];
-
-  always_ff @(posedge clk_i) begin
-    valid_q      <= rst_ni ? {valid_q[1:0], (waiting & turn_q) != '0} : '0;
-    lane_q[0]    <= turn_q;
-    request_q    <= request;
-    lane_q[1:2]  <= lane_q[0:1];
-    tag_q        <= '{request_q.tag, tag_q[1]};
-  end
-
-  always_comb for (int unsigned a = 0; a < 3; a++) place[a] = request_q.place[a];
-
-  voxrt_light_way #(
-    .MaxDepth(MaxDepth)
-  ) u_way (
-    .clk_i,
-    .enable_i  (1'b1),
-    .world_i,
-    .light_i,
-    .place_i   (place),
-    .mirrored_i(request_q.mirrored),
-    .face_i    (request_q.face),
-    .lit_o,
-    .way_o     (way)
-  );
-
-  // The light among the planes.
-  localparam int unsigned Voxel = 2 ** FractionBits;
-  logic        [   MaxDepth:0] before_light_q[2][3], to_light_q[2][3];
-  logic signed [LightBits-1:0] mirrored_light[3];
-
-  function automatic logic [MaxDepth:0] plane_at(logic signed [LightBits-1:0] height, logic [MaxDepth:0] world);
-    logic signed [LightBits-1:0] plane = height >>> FractionBits;
-    if (plane < 0) return '0;
-    return plane > LightBits'(world) ? world : plane[MaxDepth:0];
-  endfunction
-
-  always_comb begin
-    for (int unsigned a = 0; a < 3; a++) mirrored_light[a] = LightBits'({world_i, FractionBits'(0)}) - light_i[a];
-  end
-
-  always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      before_light_q[0][a] <= plane_at(light_i[a] + LightBits'(Voxel - 1), world_i);
-      before_light_q[1][a] <= plane_at(mirrored_light[a] + LightBits'(Voxel - 1), world_i);
-      to_light_q[0][a]     <= plane_at(light_i[a] + LightBits'(Voxel), world_i);
-      to_light_q[1][a]     <= plane_at(mirrored_light[a] + LightBits'(Voxel), world_i);
+    always_ff @(posedge clk_i) begin
+      if (rst_ni && reset_seen_q) begin
+        assert (!hit_point_valid_i[i] || hit_point_ready_o[i] || issued_i[i]) else $error("a hit point without credit");
+        assert (!hit_point_valid_i[i] || ready) else $error("the queue of hit points overflows");
+        assert (credits_q <= CountBits'(QueueDepth)) else $error("more credits than places");
+      end
     end
+`else
+    logic unused_ready;
+    assign unused_ready = ready;
+`endif
   end
 
-  assign before_light_o = before_light_q;
-  assign to_light_o     = to_light_q;
+  always_comb begin
+    granted = '0;
+    for (int unsigned i = 0; i < Lanes; i++) if (grant_q[i]) granted |= queued[i];
+  end
+
+  // The hit point, then the point that is lit, then the direction.
+  logic                [        2:0] valid_q;
+  logic                [  Lanes-1:0] lane_q[3];
+  logic                [TagBits-1:0] tag_q [1:2];
+  queued_t                           queued_q;
+  hit_point_t                        hit_point;
+  logic signed     [LightBits+1:0] direction[3];
+  logic signed [MaxDepth+FractionBits+2:0] point[3];
+
+  always_ff @(posedge clk_i) begin
+    valid_q     <= rst_ni ? {valid_q[1:0], (waiting & grant_q) != '0} : '0;
+    lane_q[0]   <= grant_q;
+    queued_q    <= granted;
+    lane_q[1:2] <= lane_q[0:1];
+    tag_q       <= '{queued_q.tag, tag_q[1]};
+  end
+
+  always_comb begin
+    hit_point.tag      = queued_q.tag;
+    hit_point.face     = queued_q.face;
+    hit_point.mirrored = queued_q.mirrored;
+    for (int unsigned a = 0; a < 3; a++) hit_point.point[a] = PointLimit'(queued_q.point[a]);
+  end
+
+  voxrt_light_direction #(
+    .MaxDepth(MaxDepth)
+  ) u_direction (
+    .clk_i,
+    .enable_i   (1'b1),
+    .side_i,
+    .light_i,
+    .hit_point_i(hit_point),
+    .point_o    (point),
+    .direction_o(direction)
+  );
 
   assign valid_o = valid_q[2];
   assign lane_o  = lane_q[2];
-  assign tag_o   = tag_q[2];
 
-  always_comb for (int unsigned a = 0; a < 3; a++) way_o[a] = ScanBits'(way[a]);
+  always_comb begin
+    shadow_ray_o.tag = tag_q[2];
+    for (int unsigned a = 0; a < 3; a++) begin
+      shadow_ray_o.point[a]     = ShadowPointLimit'(point[a]);
+      shadow_ray_o.direction[a] = ScanBits'(direction[a]);
+    end
+  end
+
+  // The light among the planes.
+  localparam int unsigned Voxel = 2 ** FractionBits;
+  logic signed [LightBits-1:0] light[2][3];
+  logic        [   MaxDepth:0] occluder_q[2][3], backface_q[2][3];
+
+  function automatic logic [MaxDepth:0] plane_at(logic signed [LightBits-1:0] height, logic [MaxDepth:0] side);
+    logic signed [LightBits-1:0] plane = height >>> FractionBits;
+    if (plane < 0) return '0;
+    return plane > LightBits'(side) ? side : plane[MaxDepth:0];
+  endfunction
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      light[0][a] = light_i[a][LightBits-1:0];
+      light[1][a] = LightBits'({side_i, FractionBits'(0)}) - light[0][a];
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned m = 0; m < 2; m++) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        occluder_q[m][a] <= plane_at(light[m][a] + LightBits'(Voxel - 1), side_i);
+        backface_q[m][a] <= plane_at(light[m][a] + LightBits'(Voxel), side_i);
+      end
+    end
+  end
+
+  always_comb begin
+    for (int unsigned m = 0; m < 2; m++) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        light_planes_o.occluder[m][a] = (DepthLimit + 1)'(occluder_q[m][a]);
+        light_planes_o.backface[m][a] = (DepthLimit + 1)'(backface_q[m][a]);
+      end
+    end
+  end
 endmodule

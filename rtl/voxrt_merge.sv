@@ -1,6 +1,5 @@
 // Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
-module voxrt_merge
-#(
+module voxrt_merge #(
   parameter int unsigned Lanes = 1,
   parameter int unsigned Width = 8
 ) (
@@ -14,22 +13,32 @@ module voxrt_merge
   input  logic             ready_i,
   output logic [Width-1:0] pixel_o
 );
-  logic [Lanes-1:0] turn_q;  // One-hot.
+  logic [Lanes-1:0] next_lane_q;  // One-hot.
   logic             valid;
   logic [Width-1:0] pixel;
 
   always_comb begin
     pixel = '0;
-    for (int unsigned i = 0; i < Lanes; i++) if (turn_q[i]) pixel |= pixel_i[i];
+    for (int unsigned i = 0; i < Lanes; i++) if (next_lane_q[i]) pixel |= pixel_i[i];
   end
 
-  assign valid   = (valid_i & turn_q) != '0;
+  assign valid   = (valid_i & next_lane_q) != '0;
   assign valid_o = valid;
   assign pixel_o = pixel;
-  assign ready_o = ready_i ? turn_q : '0;
+  assign ready_o = ready_i ? next_lane_q : '0;
 
   always_ff @(posedge clk_i) begin
-    if (valid && ready_i) turn_q <= Lanes'({turn_q, turn_q[Lanes-1]});
-    if (!rst_ni || start_i) turn_q <= Lanes'(1);
+    if (valid && ready_i) next_lane_q <= Lanes'({next_lane_q, next_lane_q[Lanes-1]});
+    if (!rst_ni || start_i) next_lane_q <= Lanes'(1);
   end
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && reset_seen_q) assert ($onehot(next_lane_q)) else $error("next_lane_q is not one-hot");
+  end
+`endif
 endmodule

@@ -1,28 +1,29 @@
 // The product of two whole numbers, two clocks later.
 //
-// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: the lowest LogicBits bits of a are multiplied in
-// logic, and all others left to synthesis, which cascades DSP slices of 7-series parts and moves both registers and the
-// sum into them; a few bits in logic may spare a slice. 18 x 18: in parts, with a register behind each multiplier and one
-// behind their sum.
+// Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: the lowest LogicBits bits of a are
+// multiplied in logic, and all others left to synthesis, which cascades DSP slices of 7-series parts and moves both
+// registers and the sum into them; a few bits in logic may spare a slice. 18 x 18: in parts, with a register behind
+// each multiplier and one behind their sum.
 module voxrt_multiply
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned ABits       = 20,
-  parameter  int unsigned BBits       = 20,
-  parameter  int unsigned LogicBits   = 0,
-  localparam int unsigned ProductBits = ABits + BBits
+  parameter int unsigned ABits     = 20,
+  parameter int unsigned BBits     = 20,
+  parameter int unsigned LogicBits = 0
 ) (
   input  logic                   clk_i,
   input  logic [      ABits-1:0] a_i,
   input  logic [      BBits-1:0] b_i,
-  output logic [ProductBits-1:0] product_o
+  output logic [ABits+BBits-1:0] product_o
 );
+  localparam int unsigned ProductBits = ABits + BBits;
+
   logic [ProductBits-1:0] product2_q;
   assign product_o = product2_q;
 
   if (MultiplierBits >= 25 && LogicBits > 0) begin : gen_split
     localparam int unsigned HighBits = ProductBits - LogicBits;
-    // The narrower number's digits, two a row, choose multiples of the other.
+    // The narrower number's bits, two per row, choose multiples of the other.
     localparam bit          AChooses = LogicBits < BBits;
     localparam int unsigned ChooseBits = AChooses ? LogicBits : BBits;
     localparam int unsigned ChosenBits = AChooses ? BBits : LogicBits;

@@ -3,59 +3,56 @@
 //
 // The next corner is the old one with one bit set, that of the next size:
 //   Descend   size / 2, on the axes whose middle plane is behind
-//   Leave     place + size on the exit axis sets one bit and clears those below it, down to size. The bit set is the
-//             size of the cell that follows, below the common ancestor, whose block is on the stack under that size;
-//             the bits cleared are cleared on all axes. The addition overflows where the ray leaves the world: places
-//             have all bits set that are not the world's.
-//   new ray   half the world, on the axes of its first octant; all other bits are cleared
+//   Leave     coordinate + size on the exit axis sets one bit and clears those below it, down to size. The bit set is
+//             the size of the cell that follows, below the common ancestor, whose block is on the stack under that
+//             size; the bits cleared are cleared on all axes. The addition overflows where the ray leaves the world:
+//             coordinates are given the bits of outside_mask before.
+//   restart   half the world, on the axes of the root's octant; all other bits are cleared
 module voxrt_next_cell
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned MaxDepth = 10,
-  parameter  bit          Light    = 1'b0,
-  localparam int unsigned SubBits  = Light ? FractionBits : 0,
-  localparam int unsigned CellBits = MaxDepth + SubBits,
-  localparam int unsigned KeyBits  = key_bits(MaxDepth, Light)
+  parameter int unsigned MaxDepth = 10,
+  parameter bit          Light    = 1'b0
 ) (
-  input  logic                clk_i,
+  input  logic                                   clk_i,
+  input  logic                                   rst_ni,
   // Held during a frame.
-  input  logic [MaxDepth-1:0] beyond_i,           // Bits of a voxel's coordinate that are not the world's.
-  input  logic [CellBits-1:0] top_size_i,         // Half of the world.
+  input  logic [MaxDepth-1:0]                    outside_mask_i,  // Bits that are 0 in the world.
+  input  logic [cell_bits(MaxDepth, Light)-1:0]  top_size_i,      // Half of the world.
   // Which of stages 6, 7, 8 have a ray.
-  input  logic [         8:6] active_i,
+  input  logic [8:6]                             active_i,
   // Stage 6.
-  input  action_e             action_i,
-  input  logic [ KeyBits-1:0] time_i         [3], // Of far planes, to leave by; else of middle planes.
-  input  logic [ KeyBits-1:0] key_time_i,
-  input  face_e               key_face_i,
-  input  logic [         2:0] dead_i,
-  input  logic [CellBits-1:0] corner_i       [3],
-  input  logic [CellBits-1:0] size_i,
+  input  action_e                                action_i,
+  input  logic [key_bits(MaxDepth, Light)-1:0]   time_i      [3], // Of far planes, to leave by; else of middle planes.
+  input  logic [key_bits(MaxDepth, Light)-1:0]   key_time_i,
+  input  face_e                                  key_face_i,
+  input  logic [2:0]                             dead_i,
+  input  logic [cell_bits(MaxDepth, Light)-1:0]  corner_i    [3],
+  input  logic [cell_bits(MaxDepth, Light)-1:0]  size_i,
   // Stage 8.
-  output logic [CellBits-1:0] corner8_o      [3],
-  output face_e               key_face8_o,
-  // Stage 9: what the ray has done, and its next key, where it leaves.
-  output logic                finishes_o,         // It has hit, left the world, or met an error ...
-  output logic                goes_on_o,          // ... or not; both low where no ray is.
-  output logic                leaves_cell_o,
-  output logic [CellBits-1:0] corner9_o      [3],
-  output face_e               key_face9_o,
-  output logic [         2:0] set_o,              // Axes on which the corner gets the next size's bit.
-  output logic                smallest_o,         // Descends into the least size there is.
-  output logic [ KeyBits-1:0] exit_time_o    [3],
-  output face_e               exit_face_o,
-  // Stage 9: what becomes of it.
-  input  logic                renews_i,           // Begins at the root ...
-  input  logic [         2:0] set_i,              // ... or goes on; with the next size on these axes.
+  output logic [cell_bits(MaxDepth, Light)-1:0]  corner8_o   [3],
+  output face_e                                  key_face8_o,
+  // Stage 9: what the ray has done, and its next key, where it leaves its cell. Material and mirrored are the lane's.
+  output step_t                                  step_o,
+  output logic                                   leaves_cell_o,
+  output logic [key_bits(MaxDepth, Light)-1:0]   exit_time_o [3],
+  output face_e                                  exit_face_o,
+  // Stage 9: whether the slot's ray starts at the root; the axes on which the corner gets the next size.
+  input  logic                                   restarts_i,
+  input  logic [2:0]                             set_i,
   // Stage 10.
-  output logic [CellBits-1:0] size10_o,
+  output logic [cell_bits(MaxDepth, Light)-1:0]  size10_o,
   // Stage 11; octant in the mirrored frame.
-  output logic [CellBits-1:0] corner11_o     [3],
-  output logic [CellBits-1:0] size11_o,
-  output logic [         2:0] octant11_o
+  output logic [cell_bits(MaxDepth, Light)-1:0]  corner11_o  [3],
+  output logic [cell_bits(MaxDepth, Light)-1:0]  size11_o,
+  output logic [2:0]                             octant11_o
 );
-  // 6 compare. To leave: is x before y, y before z, z before x; else: is the middle plane before the key, on a dead axis
-  // before the start. Equal times go by axis: x is before y, y before z, and x before z.
+  localparam int unsigned SubBits = Light ? FractionBits : 0;
+  localparam int unsigned CellBits = cell_bits(MaxDepth, Light);
+  localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
+
+  // 6 compare. To leave: is x before y, y before z, z before x; else: is the middle plane before the key, on a dead
+  // axis before the start. Equal times go by axis: x is before y, y before z, and x before z.
   logic [ KeyBits-1:0] other     [3];
   logic [   KeyBits:0] difference[3];
   logic [         2:0] first;  // Of equals.
@@ -79,7 +76,7 @@ module voxrt_next_cell
       before7_q[a] <= difference[a][KeyBits];
       if (dead_i[a] && action_i != Leave) before7_q[a] <= time_i[a][KeyBits-1];
     end
-    // Registers keep what they have where no ray is.
+    // Registers hold where no ray is.
     if (active_i[6]) begin
       time7_q   <= time_i;
       corner7_q <= corner_i;
@@ -91,14 +88,14 @@ module voxrt_next_cell
   end
 
   // 7 exit.
-  logic                      x_before_y, y_before_z, x_before_z, descends7;
-  logic       [         2:0] exit;  // One-hot.
-  face_e                     exit_face, exit_face8_q, key_face8_q;
-  logic       [ KeyBits-1:0] time8_q  [3];
-  logic       [CellBits-1:0] corner8_q[3], size8_q, place8_q;
-  logic       [         2:0] set8_q;
-  logic                      dead8_q, descends8_q;
-  action_e                   action8_q;
+  logic                x_before_y, y_before_z, x_before_z, descends7;
+  logic [         2:0] exit;  // One-hot.
+  face_e               exit_face, exit_face8_q, key_face8_q;
+  logic [ KeyBits-1:0] time8_q  [3];
+  logic [CellBits-1:0] corner8_q[3], size8_q, coordinate8_q;
+  logic [         2:0] set8_q;
+  logic                dead8_q, descends8_q;
+  action_e             action8_q;
 
   assign x_before_y = !dead7_q[0] && (dead7_q[1] || before7_q[0]);
   assign y_before_z = !dead7_q[1] && (dead7_q[2] || before7_q[1]);
@@ -112,65 +109,74 @@ module voxrt_next_cell
       time8_q   <= time7_q;
       corner8_q <= corner7_q;
     end
-    action8_q    <= action7_q;
-    key_face8_q  <= key_face7_q;
-    exit_face8_q <= exit_face;
-    size8_q      <= size7_q;
-    place8_q     <= corner7_q[exit_face] | (CellBits'(beyond_i) << SubBits);
-    dead8_q      <= dead7_q == '1;
-    descends8_q  <= descends7;
-    set8_q       <= action7_q == Leave ? exit : descends7 ? before7_q : '0;
+    action8_q     <= action7_q;
+    key_face8_q   <= key_face7_q;
+    exit_face8_q  <= exit_face;
+    size8_q       <= size7_q;
+    coordinate8_q <= corner7_q[exit_face] | (CellBits'(outside_mask_i) << SubBits);
+    dead8_q       <= dead7_q == '1;
+    descends8_q   <= descends7;
+    set8_q        <= action7_q == Leave ? exit : descends7 ? before7_q : '0;
   end
 
   assign corner8_o   = corner8_q;
   assign key_face8_o = key_face8_q;
 
   // 8 add.
-  logic [CellBits-1:0] sum, sum9_q, place9_q, inner_size9_q, corner9_q[3];
+  logic [CellBits-1:0] sum, sum9_q, coordinate9_q, inner_size9_q, corner9_q[3];
   logic [ KeyBits-1:0] time9_q[3];
   logic [         2:0] set9_q;
-  logic                finished, leaves_world, leaves9_q, finishes9_q, goes_on9_q;
+  logic                done, leaves_world, leaves_cell9_q, done9_q, continues9_q;
   face_e               exit_face9_q, key_face9_q;
 
-  assign {leaves_world, sum} = {1'b0, place8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
-  assign finished = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
+  assign {leaves_world, sum} = {1'b0, coordinate8_q} + (action8_q == Leave ? {1'b0, size8_q} : '0);
+  assign done = leaves_world || action8_q == Finish || (action8_q == Leave && dead8_q);
 
   always_ff @(posedge clk_i) begin
     if (active_i[8]) begin
       time9_q   <= time8_q;
       corner9_q <= corner8_q;
     end
-    sum9_q        <= sum;
-    place9_q      <= place8_q;
-    inner_size9_q <= action8_q == Leave ? '0 : descends8_q ? size8_q >> 1 : size8_q;
-    set9_q        <= set8_q;
-    exit_face9_q  <= exit_face8_q;
-    leaves9_q     <= action8_q == Leave;
-    finishes9_q   <= active_i[8] && finished;
-    goes_on9_q    <= active_i[8] && !finished;
-    key_face9_q   <= key_face8_q;
+    sum9_q         <= sum;
+    coordinate9_q  <= coordinate8_q;
+    inner_size9_q  <= action8_q == Leave ? '0 : descends8_q ? size8_q >> 1 : size8_q;
+    set9_q         <= set8_q;
+    exit_face9_q   <= exit_face8_q;
+    leaves_cell9_q <= action8_q == Leave;
+    done9_q        <= active_i[8] && done;
+    continues9_q   <= active_i[8] && !done;
+    key_face9_q    <= key_face8_q;
+    // Without a reset, a ray of before it would free its row, and could be reflected.
+    if (!rst_ni) begin
+      done9_q      <= 1'b0;
+      continues9_q <= 1'b0;
+    end
   end
 
-  assign finishes_o    = finishes9_q;
-  assign goes_on_o     = goes_on9_q;
-  assign leaves_cell_o = leaves9_q;
-  assign corner9_o     = corner9_q;
-  assign key_face9_o   = key_face9_q;
-  assign set_o         = set9_q;
-  assign smallest_o    = inner_size9_q[0];
+  always_comb begin
+    step_o           = '0;
+    step_o.done      = done9_q;
+    step_o.continues = continues9_q;
+    step_o.key_face  = key_face9_q;
+    step_o.set       = set9_q;
+    step_o.smallest  = inner_size9_q[0];
+    for (int unsigned a = 0; a < 3; a++) step_o.corner[a] = PointLimit'(corner9_q[a]);
+  end
+
+  assign leaves_cell_o = leaves_cell9_q;
   assign exit_time_o   = time9_q;
   assign exit_face_o   = exit_face9_q;
 
-  // 9 turn.
+  // 9 schedule.
   logic [CellBits-1:0] corner10_q[3], size10_q, cleared10_q;
   logic [         2:0] set10_q;
 
   always_ff @(posedge clk_i) begin
-    size10_q    <= renews_i ? top_size_i : inner_size9_q | (sum9_q & ~place9_q);
-    cleared10_q <= place9_q & ~sum9_q;
+    size10_q    <= restarts_i ? top_size_i : inner_size9_q | (sum9_q & ~coordinate9_q);
+    cleared10_q <= coordinate9_q & ~sum9_q;
     set10_q     <= set_i;
     corner10_q  <= corner9_q;
-    if (renews_i) corner10_q <= '{default: '0};
+    if (restarts_i) corner10_q <= '{default: '0};
   end
 
   assign size10_o = size10_q;

@@ -1,13 +1,13 @@
-// Pixels of 24 bits into words of 32 bits as AXI4-Stream video: 4 pixels in 3 words. Bytes go out from the lowest on,
-// a pixel's in the order green, blue, red:
+// Pixels of 24 bits into words of 32 bits as AXI4-Stream video: 4 pixels in 3 words. The lowest byte of a word is the
+// first; the order of a pixel's bytes is green, blue, red:
 //
 //   word     31:24  23:16  15:8   7:0
 //   0        G1     R0     B0     G0
 //   1        B2     G2     R1     B1
 //   2        R3     B3     G3     R2
 //
-// Each line starts a word of its own: where the width is no multiple of 4, the line's last word has bytes that tkeep
-// marks as absent, and zero. tuser marks the first word of a frame, tlast the last of a line.
+// Each line starts a new word: where the width is no multiple of 4, the line's last word has null bytes, which tkeep
+// marks and which are zero. tuser marks the first word of a frame, tlast the last of a line.
 module voxrt_pixel_packer
   import voxrt_pkg::*;
 (
@@ -95,4 +95,18 @@ module voxrt_pixel_packer
   assign m_axis_tkeep  = keep_q;
   assign m_axis_tuser  = user_q;
   assign m_axis_tlast  = last_q;
+
+`ifndef SYNTHESIS
+  logic        stalled_q = 1'b0;
+  logic [37:0] offer_q;
+
+  always_ff @(posedge clk_i) begin
+    stalled_q <= rst_ni && m_axis_tvalid && !m_axis_tready;
+    offer_q   <= {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast};
+    if (rst_ni && stalled_q) begin
+      assert (m_axis_tvalid && offer_q == {m_axis_tdata, m_axis_tkeep, m_axis_tuser, m_axis_tlast})
+      else $error("an offered word changed before it was taken");
+    end
+  end
+`endif
 endmodule

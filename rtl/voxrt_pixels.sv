@@ -1,55 +1,42 @@
-// From the tracks' pixels to colours in pixel order: merge, brightness where a feature needs it, shader.
+// From the lanes' pixels to colours in pixel order: merge, brightness where a feature needs it, shader.
 module voxrt_pixels
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned Lanes      = 1,
-  parameter  int unsigned MaxDepth   = 10,
-  parameter  bit          Flat       = 1'b0,
-  parameter  bit          Light      = 1'b0,
-  parameter  bit          Mirrors    = 1'b0,
-  localparam int unsigned Width      = pixel_bits(MaxDepth, Light, Mirrors),
-  localparam int unsigned LightBits  = light_bits(MaxDepth)
+  parameter int unsigned Lanes    = 1,
+  parameter int unsigned MaxDepth = 10,
+  parameter bit          Flat     = 1'b0,
+  parameter bit          Light    = 1'b0,
+  parameter bit          Mirrors  = 1'b0
 ) (
-  input  logic                         clk_i,
-  input  logic                         rst_ni,
+  input  logic                                            clk_i,
+  input  logic                                            rst_ni,
   // Frame.
-  input  logic                         start_i,
-  input  logic                         corner_i,
-  input  logic signed [  ScanBits-1:0] line_step_i[3],
-  input  logic signed [CameraBits-1:0] right_i   [3],
-  input  logic        [  SizeBits-1:0] width_i,
-  input  logic        [  SizeBits-1:0] height_i,
-  input  logic        [    MaxDepth:0] world_i,
-  input  logic signed [ LightBits-1:0] light_i   [3],
-  input  logic                         flat_i,
-  input  logic        [           7:0] ambient_i,
-  // Material table.
-  input  logic                         table_write_i,
-  input  material_t                    table_material_i,
-  input  colour_t                      table_colour_i,
-  // From the tracks.
-  input  logic        [     Lanes-1:0] valid_i,
-  output logic        [     Lanes-1:0] ready_o,
-  input  logic        [     Lanes-1:0] lit_i,
-  input  logic        [     Width-1:0] pixel_i   [Lanes],
+  input  raster_t                                         raster_i,
+  input  logic            [MaxDepth:0]                    side_i,
+  input  logic            [2:0][31:0]                     light_i,
+  input  shading_t                                        shading_i,
+  input  material_write_t                                 material_write_i,
+  // From the lanes.
+  input  logic            [Lanes-1:0]                     valid_i,
+  output logic            [Lanes-1:0]                     ready_o,
+  input  logic            [Lanes-1:0]                     lit_i,
+  input  logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] pixel_i          [Lanes],
   // Out.
-  output logic                         out_valid_o,
-  input  logic                         out_ready_i,
-  output colour_t                      out_colour_o,
-  output pixel_t                       out_pixel_o,
-  output logic                         out_first_o,
-  output logic                         out_line_end_o,
-  output logic                         out_last_o
+  output logic                                            pixel_valid_o,
+  input  logic                                            pixel_ready_i,
+  output shaded_pixel_t                                   pixel_o
 );
   localparam bit Given = Light || Mirrors;
+  localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
   localparam int unsigned MergeBits = Width + (Light ? 1 : 0);
 
-  logic    [MergeBits-1:0] tracks[Lanes];
-  logic    [MergeBits-1:0] merged;
-  logic    [MergeBits-1:0] chosen;
-  logic                    chosen_valid, chosen_ready, merged_valid, merged_ready, shaded_valid, shaded_ready;
-  pixel_t                  shaded;
+  logic    [MergeBits-1:0] lane_pixel[Lanes];
+  logic    [MergeBits-1:0] merged, registered;
+  logic                    merged_valid, merged_ready, registered_valid, registered_ready, bright_valid, bright_ready;
+  pixel_t                  bright_pixel;
   brightness_t             brightness;
+
+  always_comb for (int unsigned i = 0; i < Lanes; i++) lane_pixel[i] = MergeBits'({lit_i[i], pixel_i[i]});
 
   voxrt_merge #(
     .Lanes(Lanes),
@@ -57,13 +44,13 @@ module voxrt_pixels
   ) u_merge (
     .clk_i,
     .rst_ni,
-    .start_i,
+    .start_i(raster_i.start),
     .valid_i,
     .ready_o,
-    .pixel_i(tracks),
-    .valid_o(chosen_valid),
-    .ready_i(chosen_ready),
-    .pixel_o(chosen)
+    .pixel_i(lane_pixel),
+    .valid_o(merged_valid),
+    .ready_i(merged_ready),
+    .pixel_o(merged)
   );
 
   voxrt_stream_register #(
@@ -71,15 +58,13 @@ module voxrt_pixels
   ) u_merged (
     .clk_i,
     .rst_ni,
-    .valid_i(chosen_valid),
-    .ready_o(chosen_ready),
-    .data_i (chosen),
-    .valid_o(merged_valid),
-    .ready_i(merged_ready),
-    .data_o (merged)
+    .valid_i(merged_valid),
+    .ready_o(merged_ready),
+    .data_i (merged),
+    .valid_o(registered_valid),
+    .ready_i(registered_ready),
+    .data_o (registered)
   );
-
-  always_comb for (int unsigned i = 0; i < Lanes; i++) tracks[i] = MergeBits'({lit_i[i], pixel_i[i]});
 
   if (Given) begin : gen_given
     voxrt_brightness #(
@@ -89,27 +74,26 @@ module voxrt_pixels
     ) u_brightness (
       .clk_i,
       .rst_ni,
-      .world_i,
+      .side_i,
       .light_i,
-      .flat_i      (flat_i),
-      .ambient_i   (ambient_i),
-      .valid_i     (merged_valid),
-      .ready_o     (merged_ready),
-      .pixel_i     (pixel_t'(merged[$bits(pixel_t)-1:0])),
-      .lit_i       (Light && merged[MergeBits-1]),
-      .detail_i    (merged[Width-1:$bits(pixel_t)]),
-      .valid_o     (shaded_valid),
-      .ready_i     (shaded_ready),
-      .pixel_o     (shaded),
+      .shading_i,
+      .valid_i     (registered_valid),
+      .ready_o     (registered_ready),
+      .pixel_i     (pixel_t'(registered[$bits(pixel_t)-1:0])),
+      .lit_i       (Light && registered[MergeBits-1]),
+      .detail_i    (registered[Width-1:$bits(pixel_t)]),
+      .valid_o     (bright_valid),
+      .ready_i     (bright_ready),
+      .pixel_o     (bright_pixel),
       .brightness_o(brightness)
     );
   end else begin : gen_angle
-    logic unused_detail;
-    assign unused_detail = &{world_i, light_i[0], light_i[1], light_i[2], ambient_i};
-    assign shaded       = merged;
-    assign shaded_valid = merged_valid;
-    assign merged_ready = shaded_ready;
-    assign brightness   = '0;
+    logic unused_light;
+    assign unused_light     = &{side_i, light_i};
+    assign bright_pixel     = registered;
+    assign bright_valid     = registered_valid;
+    assign registered_ready = bright_ready;
+    assign brightness       = '0;
   end
 
   voxrt_shader #(
@@ -118,26 +102,15 @@ module voxrt_pixels
   ) u_shader (
     .clk_i,
     .rst_ni,
-    .start_i,
-    .corner_i,
-    .line_step_i,
-    .right_i,
-    .width_i,
-    .height_i,
-    .table_write_i,
-    .table_material_i,
-    .table_colour_i,
-    .valid_i       (shaded_valid),
-    .ready_o       (shaded_ready),
-    .pixel_i       (shaded),
-    .brightness_i  (brightness),
-    .flat_i        (flat_i),
-    .valid_o       (out_valid_o),
-    .ready_i       (out_ready_i),
-    .colour_o      (out_colour_o),
-    .pixel_o       (out_pixel_o),
-    .first_o       (out_first_o),
-    .line_end_o    (out_line_end_o),
-    .last_o        (out_last_o)
+    .raster_i,
+    .flat_i      (shading_i.flat),
+    .material_write_i,
+    .valid_i     (bright_valid),
+    .ready_o     (bright_ready),
+    .pixel_i     (bright_pixel),
+    .brightness_i(brightness),
+    .pixel_valid_o,
+    .pixel_ready_i,
+    .pixel_o
   );
 endmodule

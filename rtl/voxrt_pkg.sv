@@ -1,8 +1,15 @@
-// Types and numbers that every module of the ray tracer shares.
+// Types and constants that the modules of the ray tracer share.
 //
-// Frames: grid axes, x = 0, y = 1, z = 2. Positions count 1/16 voxel. A ray is traced in the mirrored grid, in which
-// all components of its direction are >= 0.
+// Frames of reference: the axes of the grid, x = 0, y = 1, z = 2. Positions count 1/16 voxel. A ray is traced in the
+// mirrored grid, in which all components of its direction are >= 0.
+//
+// Structs are as wide as the largest configuration needs (DepthLimit, PositionLimit). A module uses the low bits of a
+// field, as many as its parameters say; synthesis removes the others. Fields marked "signed" are to be read so.
 package voxrt_pkg;
+
+  // The largest values of the parameters MaxDepth and PositionBits.
+  localparam int unsigned DepthLimit = 16;
+  localparam int unsigned PositionLimit = 32;
 
   // 1/16 voxel.
   localparam int unsigned FractionBits = 4;
@@ -27,6 +34,73 @@ package voxrt_pkg;
   // What the narrower side of a DSP48 takes of a number without sign.
   localparam int unsigned MultiplierSide = 17;
 
+  // Entries of a lane's reorder buffer. A tag is the number of an entry and, above it, the buffer's phase bit.
+  localparam int unsigned PixelDepth = 256;
+  localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
+
+  // Shadow rays count positions in 1/32 voxel.
+  localparam int unsigned ShadowFractionBits = FractionBits + 1;
+  // Reflections are at most 2**BounceBits - 1.
+  localparam int unsigned BounceBits = 4;
+
+  function automatic int larger(int a, int b);
+    return a > b ? a : b;
+  endfunction
+
+  // T = (plane - origin) * weight needs the distance of any plane of the world from any position.
+  function automatic int distance_bits(int max_depth, int position_bits);
+    return larger(position_bits, max_depth + FractionBits + 1) + 1;
+  endfunction
+
+  // The same where each reflection moves the origin by less than the world's side.
+  function automatic int reflected_distance_bits(int max_depth, int position_bits);
+    return $clog2(64'd2 ** (position_bits - 1) +
+                  (64'd2 ** BounceBits + 1) * 64'd2 ** (max_depth + FractionBits) + 1) + 1;
+  endfunction
+
+  // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in
+  // it.
+  function automatic int key_bits(int max_depth, bit light);
+    return WeightBits + max_depth + (light ? ShadowFractionBits : FractionBits) + 1;
+  endfunction
+
+  // Corners and sizes of cells count voxels; with light, 1/16 voxel.
+  function automatic int cell_bits(int max_depth, bit light);
+    return max_depth + (light ? FractionBits : 0);
+  endfunction
+
+  // The light, in 1/16 voxel, signed: farther ones are farther than 2**DirectionBits from all of the world.
+  function automatic int light_bits(int max_depth);
+    return larger(max_depth + FractionBits + 1, DirectionBits) + 1;
+  endfunction
+
+  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block.
+  function automatic int payload_bits(int block_bits);
+    return larger(block_bits, 9);
+  endfunction
+
+  // From an address of the octree memory to its word.
+  function automatic int memory_clocks(bit banked);
+    return banked ? 5 : 2;
+  endfunction
+
+  // Rays in the ring of a lane.
+  function automatic int lane_slots(int clocks);
+    return 10 + clocks;
+  endfunction
+
+  // Bits of the number of a row of weights: each ray of a lane has a row, in its slot or in the queue.
+  function automatic int row_bits(bit light);
+    return light ? 6 : 5;
+  endfunction
+
+  // Widths of the structs below.
+  localparam int unsigned DistanceLimit = distance_bits(DepthLimit, PositionLimit);
+  localparam int unsigned KeyLimit = key_bits(DepthLimit, 1'b1);
+  localparam int unsigned PointLimit = DepthLimit + FractionBits;
+  localparam int unsigned ShadowPointLimit = DepthLimit + ShadowFractionBits + 2;
+  localparam int unsigned RowLimit = row_bits(1'b1);
+
   typedef logic [7:0] material_t;
 
   // The axis of a plane; FaceNone where none was crossed. The order of the codes is the order of planes that are
@@ -43,34 +117,26 @@ package voxrt_pkg;
     face_e     face;
   } pixel_t;
 
-  // What a ray does with the word of its cell.
-  typedef enum logic [1:0] {
-    Retry,    // No word came.
-    Descend,  // Into the block of a pointer.
-    Leave,    // An empty leaf, through one of its faces.
-    Finish    // The ray has ended: hit or error.
-  } action_e;
-
   typedef struct packed {
     logic [7:0] red;
     logic [7:0] green;
     logic [7:0] blue;
   } colour_t;
 
-  // A row of the material table.
+  // An entry of the material table.
   typedef struct packed {
     logic    mirror;
     colour_t colour;
-  } row_t;
+  } material_entry_t;
 
-  // Shading, beyond the angle that the ray meets the face in: docs/shading.md.
+  // A write to the material table.
+  typedef struct packed {
+    logic            valid;
+    material_t       material;
+    material_entry_t entry;
+  } material_write_t;
 
-  // Shadow rays count positions in 1/32 voxel.
-  localparam int unsigned LitFractionBits = FractionBits + 1;
-  // Reflections are at most 2**BounceBits - 1.
-  localparam int unsigned BounceBits = 4;
-
-  // The shader's features that a frame uses.
+  // The shader's features that a frame uses: docs/shading.md.
   typedef struct packed {
     logic                  flat;
     logic                  light;
@@ -78,93 +144,199 @@ package voxrt_pkg;
     logic [BounceBits-1:0] bounces;  // 0: mirrors are like all others.
   } shading_t;
 
-  // What a pixel's colour is made of; its detail in the pixel buffer is a payload below this.
+  // A frame, as the registers describe it. Camera and light: grid frame, signed, 1/16 voxel; look, right, up: signed.
+  typedef struct packed {
+    logic [2:0][31:0]           position;
+    logic [2:0][CameraBits-1:0] look;
+    logic [2:0][CameraBits-1:0] right;
+    logic [2:0][CameraBits-1:0] up;
+    logic [SizeBits-1:0]        width;
+    logic [SizeBits-1:0]        height;
+    logic [4:0]                 depth;
+    logic [31:0]                root;      // Word address.
+    shading_t                   shading;
+    logic [2:0][31:0]           light;
+  } frame_t;
+
+  // The world of a frame; held during it.
+  typedef struct packed {
+    logic [2:0][DistanceLimit-1:0] origin;           // Of the camera's rays, signed.
+    logic [2:0][DistanceLimit-1:0] mirrored_origin;  // 16 * side - origin, signed.
+    logic [4:0]                    depth;
+    logic [DepthLimit:0]           side;             // Voxels, one-hot.
+    logic [DepthLimit-1:0]         outside_mask;     // Bits of a voxel's coordinate that are 0 in the world.
+  } world_t;
+
+  // What the ray generators of a frame need. Right, width and height are held during the frame.
+  typedef struct packed {
+    logic                       start;
+    logic                       corner;     // line_step is the direction of the top left pixel; later it is -up.
+    logic [2:0][ScanBits-1:0]   line_step;  // Signed.
+    logic [2:0][CameraBits-1:0] right;      // Signed.
+    logic [SizeBits-1:0]        width;
+    logic [SizeBits-1:0]        height;
+  } raster_t;
+
+  // Where the light is among the planes of each axis, in the grid's frame ([0]) and mirrored ([1]).
+  typedef struct packed {
+    logic [1:0][2:0][DepthLimit:0] occluder;  // A plane of lower number is between a point and the light.
+    logic [1:0][2:0][DepthLimit:0] backface;  // A face in a plane of lower number is turned away from the light.
+  } light_planes_t;
+
+  typedef logic [2:0][WeightBits-1:0] weights_t;
+
+  // A ray that has entered the world, in the mirrored frame. Its weights travel apart.
+  typedef struct packed {
+    logic                          resolved;    // The result is known: nothing to trace.
+    pixel_t                        pixel;       // The result of a camera ray that is resolved ...
+    logic                          lit;         // ... and of a shadow ray.
+    logic                          shadow;
+    logic [TagBits-1:0]            tag;         // Of a shadow ray: the entry of its pixel.
+    logic [2:0]                    mirrored;    // Axes.
+    logic [2:0]                    dead;        // Axes on which the ray does not move.
+    logic [2:0]                    octant;      // Of the root: the first one.
+    logic [KeyLimit-1:0]           entry_time;
+    face_e                         entry_face;
+    logic [2:0][DistanceLimit-1:0] origin;      // Signed; 1/32 voxel for shadow rays.
+  } ray_t;
+
+  // The weights of a ray go to its lane before it does, into a row that is free.
+  typedef struct packed {
+    logic                valid;
+    logic [RowLimit-1:0] row;
+    weights_t            weights;
+  } weights_write_t;
+
+  typedef struct packed {
+    logic                valid;
+    logic [RowLimit-1:0] row;
+  } row_free_t;
+
+  // A hit point that the light may reach: a cell of 1/16 voxel behind a face, mirrored frame.
+  typedef struct packed {
+    logic [TagBits-1:0]         tag;
+    face_e                      face;
+    logic [2:0]                 mirrored;
+    logic [2:0][PointLimit-1:0] point;
+  } hit_point_t;
+
+  // A shadow ray before the ray setup: from a point, 1/32 voxel, in a direction; grid frame, both signed.
+  typedef struct packed {
+    logic [TagBits-1:0]               tag;
+    logic [2:0][ShadowPointLimit-1:0] point;
+    logic [2:0][ScanBits-1:0]         direction;
+  } shadow_ray_t;
+
+  // What a ray does with the word of its cell.
+  typedef enum logic [1:0] {
+    Retry,    // No word came.
+    Descend,  // Into the block of a pointer.
+    Leave,    // An empty leaf, through one of its faces.
+    Finish    // Hit or error.
+  } action_e;
+
+  // A ray at stage 9 of a lane.
+  typedef struct packed {
+    logic                       done;       // It has hit, left the world, or met an error ...
+    logic                       continues;  // ... or not. Both are low where no ray is.
+    material_t                  material;   // Of the word read; 0 without a hit.
+    face_e                      key_face;   // Of the plane crossed last.
+    logic [2:0]                 mirrored;
+    logic [2:0][PointLimit-1:0] corner;     // Of the cell read.
+    logic [2:0]                 set;        // Axes on which the next corner has the bit of the next size.
+    logic                       smallest;   // The next size is the least there is.
+  } step_t;
+
+  // What the slot scheduler decides at stage 9 of a lane.
+  typedef struct packed {
+    logic                       issues;    // The ray that waits gets the slot.
+    logic                       bypasses;  // The ray that waits is resolved: it needs no slot.
+    logic                       reflects;  // The ray of the slot starts again at the root.
+    logic                       keeps;     // The slot keeps its ray.
+    logic signed [DepthLimit+1:0] shift;   // Of a reflected ray's origin: side - 2 * plane, voxels.
+    logic [2:0]                 mirrored;  // Of the slot's ray from now on.
+    logic [2:0]                 set;       // As in step_t, from now on.
+  } decision_t;
+
+  // What rays are, in the stages of a lane that ask.
+  typedef struct packed {
+    logic refines0;  // It has hit, and descends to its hit point.
+    logic refines2;
+    logic refines3;
+    logic shadow1;
+    logic shadow2;
+  } ray_modes_t;
+
+  // What a lane tells its reorder buffer of a pixel.
+  typedef struct packed {
+    logic               complete;  // Nothing more comes; the pixel is stored now or was before.
+    logic               store;
+    logic [TagBits-1:0] tag;
+    logic               lit;       // With complete.
+  } result_t;
+
+  // What a pixel's colour is made of. In the reorder buffer, a payload is below it.
   typedef enum logic [1:0] {
     ShadeAngle,  // The material, by the ray's own angle.
-    ShadeMean,   // The mean of mirrors met: a mirrors_t.
-    ShadeLight   // The material, by the light's angle or in shadow: {mirrored, place[2], place[1], place[0]}.
+    ShadeMean,   // The mean of mirrors: a mirrors_t.
+    ShadeLight   // The material, by the light's angle or in shadow: {mirrored, point[2], point[1], point[0]}.
   } shade_e;
 
   // Sums of colours, and of how many.
   localparam int unsigned ColourSumBits = 8 + BounceBits;
   typedef struct packed {
-    logic [2:0][ColourSumBits-1:0] sum;  // Red is 0.
+    logic [2:0][ColourSumBits-1:0] sum;    // Red is 0.
     logic [BounceBits:0]           count;
   } mirrors_t;
 
-  // What the shader shall take in the place of colour * (d_a**2 / |d|**2): sum * part / whole.
+  // What the shader takes instead of colour * (d_a**2 / |d|**2): sum * part / whole.
   localparam int unsigned SquareBits = 2 * DirectionBits;
   typedef struct packed {
-    logic                          part_given;  // part / whole stand here.
-    logic                          sum_given;   // The sums of colours too.
+    logic                          part_given;  // part / whole is valid.
+    logic                          sum_given;   // sum is valid.
     logic [SquareBits-1:0]         part;
     logic [SquareBits+1:0]         whole;
     logic [2:0][ColourSumBits-1:0] sum;
   } brightness_t;
 
-  // Why a pixel may be wrong; sticky in the registers.
+  // A pixel of the picture.
+  typedef struct packed {
+    colour_t colour;
+    pixel_t  pixel;
+    logic    first;     // Of the frame.
+    logic    line_end;
+    logic    last;      // Of the frame.
+  } shaded_pixel_t;
+
+  // Why a pixel may be wrong.
   typedef struct packed {
     // A direction component of 2**20 or more: the ray was not traced.
     logic direction_overflow;
     // A pointer that leads out of the memory or into the middle of a block.
     logic bad_pointer;
     // A pointer below the deepest level: the memory is cyclic, or deeper than the depth register says. Every pointer
-    // read goes a level down and every leaf read goes ahead, so this is the only way a ray could run for ever.
+    // read goes a level down and every leaf read increases the key, so this is the only way a ray could run for ever.
     logic step_limit;
   } error_t;
 
-  // T = (plane - origin) * weight needs the distance of any plane of the world from any position.
-  function automatic int unsigned distance_bits(int unsigned max_depth, int unsigned position_bits);
-    int unsigned world_bits = max_depth + FractionBits + 1;
-    return (position_bits > world_bits ? position_bits : world_bits) + 1;
+  // What a frame has cost.
+  typedef struct packed {
+    logic [31:0] cycles;      // From the start to the last pixel accepted.
+    logic [31:0] rays;        // Pixels accepted.
+    logic [31:0] words_read;
+    logic [31:0] hits;        // Pixels accepted that show a material.
+    logic [31:0] stalls;      // Clocks in which a pixel waited to be accepted.
+  } counters_t;
+
+  // The detail of a pixel between lane and shader: {shade, payload}.
+  function automatic int detail_bits(int max_depth, bit light, bit mirrors);
+    return $bits(shade_e) +
+        larger(light ? 3 + 3 * (max_depth + FractionBits) : 1, mirrors ? $bits(mirrors_t) : 1);
   endfunction
 
-  // The same where each reflection moves the origin by less than the world's side.
-  function automatic int unsigned reflected_distance_bits(int unsigned max_depth, int unsigned position_bits);
-    int unsigned reach = 2 ** (position_bits - 1) + (2 ** BounceBits + 1) * 2 ** (max_depth + FractionBits);
-    return $clog2(reach + 1) + 1;
-  endfunction
-
-  // T as lanes compare it: modulo more than twice the time between any two planes of the world that a ray crosses in it.
-  function automatic int unsigned key_bits(int unsigned max_depth, bit light);
-    return WeightBits + max_depth + (light ? LitFractionBits : FractionBits) + 1;
-  endfunction
-
-  // The light, in 1/16 voxel, signed: farther ones are farther than 2**DirectionBits from all of the world.
-  function automatic int unsigned light_bits(int unsigned max_depth);
-    return (max_depth + FractionBits >= DirectionBits ? max_depth + FractionBits + 1 : DirectionBits) + 1;
-  endfunction
-
-  // A pixel between lane and shader: its detail, {shade, payload}, and a pixel_t below it; or the pixel_t alone.
-  function automatic int unsigned pixel_bits(int unsigned max_depth, bit light, bit mirrors);
+  // A pixel between lane and shader: its detail and a pixel_t below it; or the pixel_t alone.
+  function automatic int pixel_bits(int max_depth, bit light, bit mirrors);
     return (light || mirrors ? detail_bits(max_depth, light, mirrors) : 0) + $bits(pixel_t);
-  endfunction
-
-  function automatic int unsigned detail_bits(int unsigned max_depth, bit light, bit mirrors);
-    int unsigned light_payload = light ? 3 + 3 * (max_depth + FractionBits) : 0;
-    int unsigned mirrors_payload = mirrors ? $bits(mirrors_t) : 0;
-    int unsigned payload = light_payload > mirrors_payload ? light_payload : mirrors_payload;
-    return $bits(shade_e) + (payload == 0 ? 1 : payload);
-  endfunction
-
-  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block.
-  function automatic int unsigned payload_bits(int unsigned block_bits);
-    return block_bits > 9 ? block_bits : 9;
-  endfunction
-
-  // From an octree address to its word.
-  function automatic int unsigned memory_clocks(bit banked);
-    return banked ? 5 : 2;
-  endfunction
-
-  // Rays that go round in a lane.
-  function automatic int unsigned lane_slots(int unsigned clocks);
-    return 10 + clocks;
-  endfunction
-
-  // Bits of the number of a row: a lane's rays and those that wait for it have one each.
-  function automatic int unsigned row_bits(bit light);
-    return light ? 6 : 5;
   endfunction
 
 endpackage

@@ -2,7 +2,7 @@
 //
 // Cut to the multipliers of the part (voxrt_pkg::MultiplierBits). 25 x 18: each half is one DSP slice of a 7-series
 // part, and the sum is the second one's adder, 17 bits up, as the slices are cascaded. 18 x 18: three parts, the
-// upper two a clock later from registers of their own, for the ways to multipliers are long.
+// upper two a clock later from registers of their own, as the paths to multipliers are long.
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(

@@ -1,70 +1,91 @@
-// The octree memory as private copies, for the shortest way from address to word: two lanes share a copy, one at each
+// The octree memory as private copies, for the shortest path from address to word: two lanes share a copy, one at each
 // port of its block RAMs. A word comes two clocks after its address.
 //
-// Address 1 + 8 * block + octant stands in row {block, octant}; word 0, the root, is elsewhere (voxrt_octree_memory).
+// Word 1 + a of the octree is in row a; word 0 is elsewhere (voxrt_octree_memory).
 //
-// The access port writes to all copies and reads the first one, by port A; a lane that reads there at that time gets
-// no ack_o and asks again. So loading while rays are traced harms nothing but the picture.
-module voxrt_private_memory
-  import voxrt_pkg::*;
-#(
-  parameter  int unsigned Lanes       = 1,
-  parameter  int unsigned BlockBits   = 12,
-  parameter  int unsigned PayloadBits = payload_bits(BlockBits),
-  localparam int unsigned RowBits     = BlockBits + 3
+// The access port has port A: of all copies to write, of the first one to read. It never waits. At such a clock, both
+// lanes share port B: a lane that is refused gets no ack_o and asks again. Each lane is preferred for 8 clocks of 16,
+// which are half of the passes of every ray, in a ring of 12 stages as of 15: so each ray keeps at least half of its
+// reads, even if the processor uses the port at every clock.
+module voxrt_private_memory #(
+  parameter int unsigned Lanes       = 1,
+  parameter int unsigned AddressBits = 15,
+  parameter int unsigned PayloadBits = 12
 ) (
-  input  logic                 clk_i,
-  input  logic                 access_i,
-  input  logic                 access_write_i,
-  input  logic [  RowBits-1:0] access_row_i,
-  input  logic [PayloadBits:0] access_word_i,
-  output logic [PayloadBits:0] access_word_o,              // Two clocks later.
-  input  logic [    Lanes-1:0] read_i,
-  input  logic [BlockBits-1:0] block_i            [Lanes],
-  input  logic [          2:0] octant_i           [Lanes],
-  output logic [    Lanes-1:0] ack_o,
-  output logic [PayloadBits:0] word_o             [Lanes]
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   access_i,
+  input  logic                   access_write_i,
+  input  logic [AddressBits-1:0] access_address_i,
+  input  logic [  PayloadBits:0] access_word_i,
+  output logic [  PayloadBits:0] access_word_o,              // Two clocks later.
+  input  logic [      Lanes-1:0] read_i,
+  input  logic [AddressBits-1:0] address_i         [Lanes],
+  output logic [      Lanes-1:0] ack_o,
+  output logic [  PayloadBits:0] word_o            [Lanes]
 );
   localparam int unsigned Copies = (Lanes + 1) / 2;
 
-  logic [Lanes-1:0] read1_q, ack_q;
+  logic [3:0]       count_q;
+  logic             prefers_even;
+  logic [Lanes-1:0] accepted, accepted_q, ack_q;
+
+  assign prefers_even = count_q[3];
 
   always_ff @(posedge clk_i) begin
-    for (int unsigned i = 0; i < Lanes; i++) read1_q[i] <= read_i[i] && !(access_i && i % 2 == 0);
-    ack_q <= read1_q;
+    count_q    <= count_q + 1'b1;
+    accepted_q <= accepted;
+    ack_q      <= accepted_q;
+    if (!rst_ni) begin
+      count_q    <= '0;
+      accepted_q <= '0;
+      ack_q      <= '0;
+    end
   end
 
-  assign ack_o         = ack_q;
-  assign access_word_o = word_o[0];
+  assign ack_o = ack_q;
 
   for (genvar c = 0; c < Copies; c++) begin : gen_copy
-    logic                 b_read;
-    logic [  RowBits-1:0] b_row;
-    logic [PayloadBits:0] b_word;
+    localparam int unsigned Even = 2 * c;
+    localparam bit          Paired = Even + 1 < Lanes;
+    localparam int unsigned Odd = Paired ? Even + 1 : Even;
 
-    if (2 * c + 1 < Lanes) begin : gen_b
-      assign b_read        = read_i[2*c+1];
-      assign b_row         = {block_i[2*c+1], octant_i[2*c+1]};
-      assign word_o[2*c+1] = b_word;
-    end else begin : gen_no_b
-      logic unused_b_word;
-      assign b_read        = 1'b0;
-      assign b_row         = '0;
-      assign unused_b_word = ^b_word;
+    logic                 accessed, odd_reads, swaps, swapped1_q, swapped2_q;
+    logic [PayloadBits:0] a_word, b_word;
+
+    assign accessed  = access_i && (access_write_i || c == 0);
+    assign odd_reads = Paired && read_i[Odd];
+
+    // Port B serves the even lane.
+    assign swaps          = accessed && read_i[Even] && (prefers_even || !odd_reads);
+    assign accepted[Even] = read_i[Even] && (!accessed || swaps);
+    assign word_o[Even]   = swapped2_q ? b_word : a_word;
+
+    always_ff @(posedge clk_i) begin
+      swapped1_q <= swaps;
+      swapped2_q <= swapped1_q;
+    end
+
+    if (Paired) begin : gen_odd
+      assign accepted[Odd] = odd_reads && !swaps;
+      assign word_o[Odd]   = b_word;
+    end
+    if (c == 0) begin : gen_access
+      assign access_word_o = a_word;
     end
 
     voxrt_block_ram #(
       .Width(PayloadBits + 1),
-      .Depth(2 ** RowBits)
+      .Depth(2 ** AddressBits)
     ) u_ram (
       .clk_i,
-      .a_read_i (read_i[2*c] || access_i),
-      .a_write_i(access_i && access_write_i),
-      .a_row_i  (access_i ? access_row_i : {block_i[2*c], octant_i[2*c]}),
+      .a_read_i (read_i[Even] || accessed),
+      .a_write_i(accessed && access_write_i),
+      .a_row_i  (accessed ? access_address_i : address_i[Even]),
       .a_data_i (access_word_i),
-      .a_data_o (word_o[2*c]),
-      .b_read_i (b_read),
-      .b_row_i  (b_row),
+      .a_data_o (a_word),
+      .b_read_i (odd_reads || swaps),
+      .b_row_i  (swaps ? address_i[Even] : address_i[Odd]),
       .b_data_o (b_word)
     );
   end

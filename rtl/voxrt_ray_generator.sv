@@ -1,65 +1,61 @@
 // Directions of a frame's pixels, row by row from the top left, by additions alone:
 //   direction(column, row) = look + right * (column - width/2) + up * (height/2 - row)
 //
-// corner_i and line_step_i are those of voxrt_scan, which start_i starts as well. Right, width and height must hold
-// while valid_o may still rise. Directions come from two clocks after corner_i on, one every clock that ready_i is high.
+// raster_i.start starts voxrt_scan too, which gives corner and line_step. Right, width and height must hold while
+// valid_o may still rise. Directions come from two clocks after the corner on, one at every clock that ready_i is high.
 module voxrt_ray_generator
   import voxrt_pkg::*;
 (
-  input  logic                         clk_i,
-  input  logic                         rst_ni,
-  input  logic                         start_i,
-  input  logic                         corner_i,
-  input  logic signed [  ScanBits-1:0] line_step_i [3],
-  input  logic signed [CameraBits-1:0] right_i     [3],
-  input  logic        [  SizeBits-1:0] width_i,
-  input  logic        [  SizeBits-1:0] height_i,
-  output logic                         valid_o,
-  input  logic                         ready_i,
-  output logic signed [  ScanBits-1:0] direction_o [3],
-  output logic                         first_o,          // First pixel of the frame.
-  output logic                         line_end_o,       // Last pixel of its line.
-  output logic                         last_o            // Last pixel of the frame.
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
+  input  raster_t                    raster_i,
+  output logic                       valid_o,
+  input  logic                       ready_i,
+  output logic signed [ScanBits-1:0] direction_o [3],
+  output logic                       first_o,          // First pixel of the frame.
+  output logic                       line_end_o,       // Last pixel of its line.
+  output logic                       last_o            // Last pixel of the frame.
 );
   logic                       corner_q, valid_q, first_q, line_end_q, last_line_q;
   logic        [SizeBits-1:0] column_q, row_q;  // From 1 on.
   logic signed [ScanBits-1:0] direction_q[3], line_q[3], next[3];
-  logic                       advances, turns, last;
+  logic                       advances, new_line, last;
 
   assign last     = line_end_q && last_line_q;
-  assign advances = corner_i || (valid_q && ready_i);
-  // The first line is a step from nothing.
-  assign turns    = corner_i || line_end_q;
+  assign advances = raster_i.corner || (valid_q && ready_i);
+  // The first line is a step from 0.
+  assign new_line = raster_i.corner || line_end_q;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      next[a] = (turns ? line_q[a] : direction_q[a]) + (turns ? line_step_i[a] : ScanBits'(right_i[a]));
+      next[a] = (new_line ? line_q[a] : direction_q[a]) +
+          (new_line ? $signed(raster_i.line_step[a]) : ScanBits'($signed(raster_i.right[a])));
     end
   end
 
   always_ff @(posedge clk_i) begin
-    corner_q <= corner_i && rst_ni;
+    corner_q <= raster_i.corner && rst_ni;
     if (corner_q) valid_q <= 1'b1;
     if (advances) begin
-      first_q     <= corner_i;
+      first_q     <= raster_i.corner;
       direction_q <= next;
       column_q    <= column_q + 1'b1;
-      line_end_q  <= column_q + 1'b1 == width_i;
-      if (turns) begin
+      line_end_q  <= column_q + 1'b1 == raster_i.width;
+      if (new_line) begin
         line_q      <= next;
         column_q    <= SizeBits'(1);
-        line_end_q  <= width_i == SizeBits'(1);
+        line_end_q  <= raster_i.width == SizeBits'(1);
         row_q       <= row_q + 1'b1;
-        last_line_q <= row_q + 1'b1 == height_i;
+        last_line_q <= row_q + 1'b1 == raster_i.height;
       end
       if (last) valid_q <= 1'b0;
     end
-    if (start_i) begin
+    if (raster_i.start) begin
       line_q     <= '{default: '0};
       row_q      <= '0;
       line_end_q <= 1'b0;
     end
-    if (!rst_ni || start_i) valid_q <= 1'b0;
+    if (!rst_ni || raster_i.start) valid_q <= 1'b0;
   end
 
   assign valid_o     = valid_q;

@@ -1,9 +1,8 @@
 // Two queues in one memory, whose depth distributed memory has anyway: rays of the camera, and shadow rays, which
-// leave first. A ray comes in when its queue has a place: both queues' writers count places, so none is refused.
+// leave first. A ray comes only when its queue has a place: both queues' writers hold credits, so none is refused.
 module voxrt_ray_queue #(
-  parameter  int unsigned Width     = 8,
-  parameter  int unsigned Depth     = 16,  // Of each queue; a power of two.
-  localparam int unsigned IndexBits = $clog2(Depth)
+  parameter int unsigned Width = 8,
+  parameter int unsigned Depth = 16  // Of each queue; a power of two.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -15,6 +14,8 @@ module voxrt_ray_queue #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
+  localparam int unsigned IndexBits = $clog2(Depth);
+
   logic [Width-1:0]   data_q [2*Depth];
   logic [IndexBits:0] write_q[2], read_q[2];
   logic [1:0]         filled;
@@ -36,4 +37,18 @@ module voxrt_ray_queue #(
       read_q  <= '{default: '0};
     end
   end
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  for (genvar i = 0; i < 2; i++) begin : gen_check
+    logic [IndexBits:0] count;
+    assign count = write_q[i] - read_q[i];
+    always_ff @(posedge clk_i) begin
+      if (rst_ni && reset_seen_q) assert (count <= (IndexBits + 1)'(Depth)) else $error("a queue of rays overflows");
+    end
+  end
+`endif
 endmodule

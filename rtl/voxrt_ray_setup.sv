@@ -1,4 +1,4 @@
-// From a direction to a ray that a lane can follow: mirrored, weighed, and entered into the world. One ray a clock.
+// From a direction to a ray that a lane can trace: mirrored, weighed, and entered into the world. One ray per clock.
 //
 // The weight of an axis is the product of the other two components (0 counts as 1), so that the plane p is crossed at
 // T = (16 p - origin) * weight, an integer. Planes are ordered by (T, axis). The entry key is the last of the world's
@@ -8,63 +8,63 @@
 // An axis on which the ray does not move is dead: its planes are crossed before the start or never. Its origin counts
 // as above the plane that it is on, so that the sign of T alone tells which: planes up to the origin have T < 0.
 //
-// Shadow rays share the pipeline (Light): each has an origin of its own, in 1/32 voxel and in the world, and its entry key
-// is (0, FaceNone). Lanes read a dozen words a ray: one setup has time for both kinds.
+// Shadow rays share the pipeline (Light): each has an origin of its own, in 1/32 voxel and in the world, and its entry
+// key is (0, FaceNone). Lanes read a dozen words per ray: one setup has time for both kinds.
 //
-// Pipeline: sign and size | multiply | weight | plane 0: three clocks | compare | entry key | key - plane 0, half of the
-// world's time | compare | out.
+// Pipeline: sign and size | multiply | weight | plane 0: three clocks | compare | entry key | key - plane 0, half of
+// the world's time | compare | out.
 module voxrt_ray_setup
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned MaxDepth     = 10,
-  parameter  int unsigned PositionBits = 17,
-  parameter  int unsigned Lanes        = 1,
-  parameter  int unsigned TagBits      = 8,
-  parameter  bit          Light        = 1'b0,
-  localparam int unsigned LitBits      = MaxDepth + LitFractionBits + 2,
-  localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits),
-  localparam int unsigned TimeBits     = DistanceBits + WeightBits,
-  localparam int unsigned KeyBits      = key_bits(MaxDepth, Light),
-  localparam int unsigned DepthBits    = $clog2(MaxDepth + 1)
+  parameter int unsigned MaxDepth     = 10,
+  parameter int unsigned PositionBits = 17,
+  parameter int unsigned Lanes        = 1,
+  parameter bit          Light        = 1'b0
 ) (
-  input  logic                           clk_i,
-  input  logic                           rst_ni,
+  input  logic                                    clk_i,
+  input  logic                                    rst_ni,
   // Held during a frame.
-  input  logic signed [DistanceBits-1:0] origin_i          [3],
-  input  logic signed [DistanceBits-1:0] mirrored_origin_i [3],  // 16 * side - origin.
-  input  logic        [   DepthBits-1:0] depth_i,
-  input  logic        [      MaxDepth:0] world_i,                // One-hot: the world's side.
-  input  logic                           root_leaf_i,            // The whole world is one leaf ...
-  input  material_t                      root_material_i,        // ... of this material.
-  // Directions, each for one lane (one-hot).
-  input  logic                           valid_i,
-  input  logic        [       Lanes-1:0] lane_i,
-  input  logic signed [    ScanBits-1:0] direction_i       [3],
-  input  logic                           shadow_i,               // A shadow ray, from ...
-  input  logic signed [     LitBits-1:0] lit_i             [3],  // ... this point, 1/32 voxel, grid frame.
-  input  logic        [     TagBits-1:0] tag_i,
+  input  world_t                                  world_i,
+  input  logic                                    root_leaf_i,      // The whole world is one leaf ...
+  input  material_t                               root_material_i,  // ... of this material.
+  // Directions.
+  input  logic                                    valid_i,
+  input  logic        [Lanes-1:0]                 lane_i,           // One-hot: which lane the ray is for.
+  input  logic signed [ScanBits-1:0]              direction_i [3],
+  input  logic                                    shadow_i,         // A shadow ray, from ...
+  input  logic        [2:0][ShadowPointLimit-1:0] point_i,          // ... this point, 1/32 voxel, grid frame, signed.
+  input  logic        [TagBits-1:0]               tag_i,
   // Rays, in the same order.
-  output logic                           valid_o,
-  output logic        [       Lanes-1:0] lane_o,
-  output logic                           resolved_o,             // pixel_o is the answer; nothing to trace.
-  output pixel_t                         pixel_o,
-  output logic                           overflow_o,             // A component was 2**DirectionBits or more.
-  output logic        [             2:0] mirrored_o,
-  output logic        [             2:0] dead_o,
-  output logic        [             2:0] octant_o,               // First octant of the root, mirrored frame.
-  output logic        [  WeightBits-1:0] weight_o          [3],
-  output logic        [     KeyBits-1:0] entry_time_o,           // As lanes compare it.
-  output face_e                          entry_face_o,
-  output logic signed [DistanceBits-1:0] origin_o          [3],  // Mirrored frame.
-  output logic                           shadow_o,
-  output logic                           lit_o,                  // The answer, of a shadow ray that is resolved.
-  output logic        [     TagBits-1:0] tag_o
+  output logic                                    valid_o,
+  output logic        [Lanes-1:0]                 lane_o,
+  output logic                                    overflow_o,       // A component was 2**DirectionBits or more.
+  output ray_t                                    ray_o,
+  output weights_t                                weights_o
 );
+  localparam int unsigned PointBits = MaxDepth + ShadowFractionBits + 2;
+  localparam int unsigned DistanceBits = distance_bits(MaxDepth, PositionBits);
+  localparam int unsigned TimeBits = DistanceBits + WeightBits;
+  localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
+  localparam int unsigned DepthBits = $clog2(MaxDepth + 1);
   localparam int unsigned Stages = 11;
   // The world's side, in time.
-  localparam int unsigned SpanBits = WeightBits + (Light ? LitFractionBits : FractionBits) + MaxDepth;
+  localparam int unsigned SpanBits = WeightBits + (Light ? ShadowFractionBits : FractionBits) + MaxDepth;
   // Between any two of the times compared.
   localparam int unsigned GapBits = TimeBits + 1;
+
+  // Frame.
+  logic signed [DistanceBits-1:0] world_origin[3], mirrored_world_origin[3];
+  logic        [   DepthBits-1:0] depth;
+  logic        [      MaxDepth:0] side;
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      world_origin[a]          = world_i.origin[a][DistanceBits-1:0];
+      mirrored_world_origin[a] = world_i.mirrored_origin[a][DistanceBits-1:0];
+    end
+    depth = world_i.depth[DepthBits-1:0];
+    side  = world_i.side[MaxDepth:0];
+  end
 
   // What travels along unchanged.
   logic [Stages:1]            valid_q;
@@ -118,17 +118,17 @@ module voxrt_ray_setup
     end
   end
 
-  // Shadow rays, in stages 2 and 7: from where, in the mirrored frame.
+  // Shadow rays, in stages 2 and 7: their origin, in the mirrored frame.
   logic                           shadow2, shadow7;
-  logic signed [DistanceBits-1:0] lit2[3];
+  logic signed [DistanceBits-1:0] point2[3];
 
   // 2, 3: weights; from the origin to the near plane, as voxrt_lane does it.
   logic signed [DistanceBits-1:0] distance_q[3], origin[3], other_origin[3];
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
-      origin[a]       = mirrored_q[2][a] ? mirrored_origin_i[a] : origin_i[a];
-      other_origin[a] = mirrored_q[2][a] ? origin_i[a] : mirrored_origin_i[a];
+      origin[a]       = mirrored_q[2][a] ? mirrored_world_origin[a] : world_origin[a];
+      other_origin[a] = mirrored_q[2][a] ? world_origin[a] : mirrored_world_origin[a];
     end
   end
 
@@ -150,53 +150,56 @@ module voxrt_ray_setup
       for (int unsigned a = 0; a < 3; a++) begin
         distance_q[a][FractionBits-1:0] <= other_origin[a][FractionBits-1:0];
         distance_q[a][DistanceBits-1:FractionBits] <= ~origin[a][DistanceBits-1:FractionBits] +
-            (DistanceBits - FractionBits)'(origin_i[a][FractionBits-1:0] == '0 && !dead_q[2][a]);
-        // Those of shadow rays are on no plane of a dead axis.
-        if (shadow2) distance_q[a] <= -lit2[a];
+            (DistanceBits - FractionBits)'(world_origin[a][FractionBits-1:0] == '0 && !dead_q[2][a]);
+        // The origin of a shadow ray is on no plane of a dead axis.
+        if (shadow2) distance_q[a] <= -point2[a];
       end
     end
   end
 
   // Shadow rays.
+  logic                           shadow11;
+  logic        [     TagBits-1:0] tag11;
+  logic signed [DistanceBits-1:0] point11[3];
+
   if (Light) begin : gen_light
-    logic        [  Stages:1] shadow_q;
-    logic        [TagBits-1:0] tag_q[1:Stages];
-    logic signed [LitBits-1:0] lit_q[1:Stages][3];
+    logic        [   Stages:1] shadow_q;
+    logic        [TagBits-1:0] tag_q  [1:Stages];
+    logic signed [PointBits-1:0] point_q[1:Stages][3];
 
     always_ff @(posedge clk_i) begin
       shadow_q <= {shadow_q[Stages-1:1], shadow_i};
       tag_q[1] <= tag_i;
-      lit_q[1] <= lit_i;
+      for (int unsigned a = 0; a < 3; a++) point_q[1][a] <= point_i[a][PointBits-1:0];
       for (int unsigned s = 2; s <= Stages; s++) begin
-        tag_q[s] <= tag_q[s-1];
-        lit_q[s] <= lit_q[s-1];
+        tag_q[s]   <= tag_q[s-1];
+        point_q[s] <= point_q[s-1];
       end
       // Mirrored from here on.
-      for (int unsigned a = 0; a < 3; a++) lit_q[3][a] <= LitBits'(lit2[a]);
+      for (int unsigned a = 0; a < 3; a++) point_q[3][a] <= PointBits'(point2[a]);
     end
 
     always_comb begin
       for (int unsigned a = 0; a < 3; a++) begin
-        lit2[a] = DistanceBits'(lit_q[2][a]);
-        if (mirrored_q[2][a]) lit2[a] = DistanceBits'({world_i, LitFractionBits'(0)}) - DistanceBits'(lit_q[2][a]);
-        origin_o[a] = mirrored_q[11][a] ? mirrored_origin_i[a] : origin_i[a];
-        if (shadow_q[11]) origin_o[a] = DistanceBits'(lit_q[11][a]);
+        point2[a] = DistanceBits'(point_q[2][a]);
+        if (mirrored_q[2][a]) begin
+          point2[a] = DistanceBits'({side, ShadowFractionBits'(0)}) - DistanceBits'(point_q[2][a]);
+        end
+        point11[a] = DistanceBits'(point_q[11][a]);
       end
     end
 
     assign shadow2  = shadow_q[2];
     assign shadow7  = shadow_q[7];
-    assign shadow_o = shadow_q[11];
-    assign tag_o    = tag_q[11];
+    assign shadow11 = shadow_q[11];
+    assign tag11    = tag_q[11];
   end else begin : gen_no_light
     logic unused_light;
-    assign unused_light = &{shadow_i, tag_i, lit_i[0], lit_i[1], lit_i[2], world_i};
-    always_comb begin
-      for (int unsigned a = 0; a < 3; a++) origin_o[a] = mirrored_q[11][a] ? mirrored_origin_i[a] : origin_i[a];
-    end
-    assign {shadow2, shadow7, shadow_o} = '0;
-    assign lit2  = '{default: '0};
-    assign tag_o = '0;
+    assign unused_light = &{shadow_i, tag_i, point_i, side};
+    assign {shadow2, shadow7, shadow11} = '0;
+    assign point2  = '{default: '0};
+    assign point11 = '{default: '0};
+    assign tag11   = '0;
   end
 
   // 4, 5, 6: plane 0.
@@ -256,18 +259,18 @@ module voxrt_ray_setup
     end
   end
 
-  // 9: near plane - key - 1, where a dead axis has the key 0; how long the ray takes through half of the world, which is
-  // 16 * weight * side / 2.
+  // 9: near plane - key - 1, where a dead axis has the key 0; how long the ray takes through half of the world, which
+  // is 16 * weight * side / 2.
   logic signed [GapBits-1:0] gap_q[3];
   logic [SpanBits-2:0]       half_span8_q[3], half_span_q[3];
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
       if (valid_q[7]) begin
-        half_span8_q[a] <= (SpanBits - 1)'(weight_q[7][a]) << {1'b0, depth_i[0]} << (FractionBits - 1) << shadow7;
+        half_span8_q[a] <= (SpanBits - 1)'(weight_q[7][a]) << {1'b0, depth[0]} << (FractionBits - 1) << shadow7;
       end
       if (valid_q[8]) begin
-        half_span_q[a] <= half_span8_q[a] << {depth_i[DepthBits-1:1], 1'b0};
+        half_span_q[a] <= half_span8_q[a] << {depth[DepthBits-1:1], 1'b0};
         gap_q[a]       <= GapBits'(near_q[8][a]) + ~(dead_q[8][a] ? '0 : GapBits'(entry_time_q));
       end
     end
@@ -314,20 +317,28 @@ module voxrt_ray_setup
     end
   end
 
-  assign valid_o      = valid_q[11];
-  assign lane_o       = lane_q[11];
-  assign resolved_o   = outside_q[11] || root_leaf_i;
-  assign overflow_o   = overflow_q[11];
-  assign mirrored_o   = mirrored_q[11];
-  assign dead_o       = dead_q[11];
-  assign octant_o     = past_middle_q[11];
-  assign weight_o     = weight_q[11];
-  assign entry_time_o = entry_time_key_q[11];
-  assign entry_face_o = entry_face_q[11];
-  assign lit_o        = !overflow_q[11];
+  assign valid_o    = valid_q[11];
+  assign lane_o     = lane_q[11];
+  assign overflow_o = overflow_q[11];
 
   always_comb begin
-    pixel_o = '{material: '0, face: FaceNone};
-    if (!outside_q[11] && root_material_i != '0) pixel_o = '{material: root_material_i, face: entry_face_q[11]};
+    ray_o.resolved = outside_q[11] || root_leaf_i;
+    ray_o.pixel    = '{material: '0, face: FaceNone};
+    if (!outside_q[11] && root_material_i != '0) begin
+      ray_o.pixel = '{material: root_material_i, face: entry_face_q[11]};
+    end
+    ray_o.lit        = !overflow_q[11];
+    ray_o.shadow     = shadow11;
+    ray_o.tag        = tag11;
+    ray_o.mirrored   = mirrored_q[11];
+    ray_o.dead       = dead_q[11];
+    ray_o.octant     = past_middle_q[11];
+    ray_o.entry_time = KeyLimit'(entry_time_key_q[11]);
+    ray_o.entry_face = entry_face_q[11];
+    for (int unsigned a = 0; a < 3; a++) begin
+      weights_o[a]    = weight_q[11][a];
+      ray_o.origin[a] = DistanceLimit'(mirrored_q[11][a] ? mirrored_world_origin[a] : world_origin[a]);
+      if (shadow11) ray_o.origin[a] = DistanceLimit'(point11[a]);
+    end
   end
 endmodule

@@ -1,63 +1,63 @@
-// Where a frame's octree starts: the root word, from word 0, which stands in a register, or from anywhere else in the
-// memory, by way of lane 0's read port, which has nothing to do before the frame.
+// The root word of a frame: from word 0, which is in a register, or from anywhere else in the memory, by the read port
+// of lane 0, which is idle before the frame.
 //
-// start_i takes the address and starts the search; done_o is high for one clock, with root_o from then on. An address
-// beyond the memory gives a leaf with an error, as a bad pointer does.
+// start_i takes the address; valid_o is high for one clock, with root_o from then on. An address beyond the memory
+// gives a leaf with an error, as a bad pointer does.
 module voxrt_root
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned BlockBits    = 12,
-  parameter  int unsigned MemoryClocks = 2,
-  localparam int unsigned PayloadBits  = payload_bits(BlockBits)
+  parameter int unsigned BlockBits    = 12,
+  parameter int unsigned MemoryClocks = 2
 ) (
-  input  logic                 clk_i,
-  input  logic                 rst_ni,
-  input  logic                 start_i,
-  input  logic [         31:0] address_i,  // Of a word.
-  input  logic [PayloadBits:0] first_i,    // Word 0.
-  output logic                 done_o,
-  output logic [PayloadBits:0] root_o,
-  // Lane 0's port, as voxrt_octree_memory has it: an address while reads_o is high; what comes before done_o is not lane 0's.
-  output logic                 reads_o,
-  output logic [BlockBits-1:0] block_o,
-  output logic [          2:0] octant_o,
-  input  logic                 ack_i,
-  input  logic [PayloadBits:0] word_i
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  logic                             start_i,
+  input  logic [31:0]                      address_i,       // Of a word.
+  input  logic [payload_bits(BlockBits):0] first_word_i,    // Word 0.
+  output logic                             valid_o,
+  output logic [payload_bits(BlockBits):0] root_o,
+  // Lane 0's port, as voxrt_octree_memory has it. Words that come before valid_o are not lane 0's.
+  output logic                             read_o,
+  output logic [BlockBits+2:0]             read_address_o,
+  input  logic                             ack_i,
+  input  logic [payload_bits(BlockBits):0] word_i
 );
-  localparam int unsigned RowBits = BlockBits + 3;
+  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned AddressBits = BlockBits + 3;
 
-  logic                    reads_q, done_q;
-  logic [MemoryClocks-1:0] under_way_q;
-  logic [         31:0] row;
-  logic [  RowBits-1:0] row_q;
-  logic [PayloadBits:0] root_q;
+  logic                    read_q, valid_q, beyond;
+  logic [MemoryClocks-1:0] pending_q;
+  logic [            31:0] offset;
+  logic [ AddressBits-1:0] address_q;
+  logic [   PayloadBits:0] root_q;
 
-  assign row = address_i - 32'd1;
+  assign offset = address_i - 32'd1;
+  assign beyond = offset[31:AddressBits] != '0;  // True of word 0 too.
 
   always_ff @(posedge clk_i) begin
-    done_q      <= 1'b0;
-    reads_q     <= 1'b0;
-    under_way_q <= {under_way_q[MemoryClocks-2:0], reads_q};
-    if (under_way_q[MemoryClocks-1]) begin
-      reads_q <= !ack_i;
-      done_q  <= ack_i;
+    valid_q   <= 1'b0;
+    read_q    <= 1'b0;
+    pending_q <= {pending_q[MemoryClocks-2:0], read_q};
+    if (pending_q[MemoryClocks-1]) begin
+      read_q  <= !ack_i;
+      valid_q <= ack_i;
       root_q  <= word_i;
     end
     if (start_i) begin
-      row_q   <= row[RowBits-1:0];
-      reads_q <= address_i != '0 && row[31:RowBits] == '0;
-      done_q  <= address_i == '0 || row[31:RowBits] != '0;
-      root_q  <= address_i == '0 ? first_i : {1'b1, PayloadBits'(9'h100)};
+      address_q <= offset[AddressBits-1:0];
+      read_q    <= !beyond;
+      valid_q   <= beyond;
+      root_q    <= address_i == '0 ? first_word_i : {1'b1, PayloadBits'(9'h100)};
     end
     if (!rst_ni) begin
-      reads_q     <= 1'b0;
-      done_q      <= 1'b0;
-      under_way_q <= '0;
+      read_q    <= 1'b0;
+      valid_q   <= 1'b0;
+      pending_q <= '0;
     end
   end
 
-  assign done_o              = done_q;
-  assign root_o              = root_q;
-  assign reads_o             = reads_q;
-  assign {block_o, octant_o} = row_q;
+  assign valid_o        = valid_q;
+  assign root_o         = root_q;
+  assign read_o         = read_q;
+  assign read_address_o = address_q;
 endmodule

@@ -1,47 +1,36 @@
-// From materials and faces to colours, exact to the last bit, one pixel a clock:
+// From materials and faces to colours, exact to the last bit, one pixel per clock:
 //   colour = round half up (c * d_a**2 / |d|**2), a the axis crossed, d the ray's direction
 // which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour; so have
-// all when Flat is built in and asked for. With Given, voxrt_brightness may say otherwise for a pixel: another factor, and
-// sums of colours in the place of the material's.
+// all when Flat is built in and asked for. With Given, voxrt_brightness may give a pixel another factor, and sums of
+// colours instead of the material's.
 //
-// Directions are made again by a second ray generator, in pixel order: nothing of the ray but material and face need
-// come through the lanes. The pipeline never stops; a pixel enters when the FIFO behind has a place for it.
+// A second ray generator computes the directions again, in pixel order: of a ray, only material and face need come
+// through the lanes. The pipeline never stops; a pixel enters when there is a credit for the FIFO behind.
 //
 // Pipeline: direction, material | sizes | squares: two clocks | sums | colour x square: two clocks | dividend |
-// 8 digits | FIFO.
+// 8 bits of the quotient | FIFO.
 module voxrt_shader
   import voxrt_pkg::*;
 #(
   parameter bit Flat  = 1'b0,
   parameter bit Given = 1'b0
 ) (
-  input  logic                         clk_i,
-  input  logic                         rst_ni,
-  // Frame, as voxrt_ray_generator wants it.
-  input  logic                         start_i,
-  input  logic                         corner_i,
-  input  logic signed [  ScanBits-1:0] line_step_i       [3],
-  input  logic signed [CameraBits-1:0] right_i           [3],
-  input  logic        [  SizeBits-1:0] width_i,
-  input  logic        [  SizeBits-1:0] height_i,
-  // Material table; row 0 is the background.
-  input  logic                         table_write_i,
-  input  material_t                    table_material_i,
-  input  colour_t                      table_colour_i,
+  input  logic            clk_i,
+  input  logic            rst_ni,
+  // Frame.
+  input  raster_t         raster_i,
+  input  logic            flat_i,            // Held during a frame.
+  // Material table; entry 0 is the background.
+  input  material_write_t material_write_i,
   // Pixels in.
-  input  logic                         valid_i,
-  output logic                         ready_o,
-  input  pixel_t                       pixel_i,
-  input  brightness_t                  brightness_i,
-  input  logic                         flat_i,                 // Held during a frame.
+  input  logic            valid_i,
+  output logic            ready_o,
+  input  pixel_t          pixel_i,
+  input  brightness_t     brightness_i,
   // Pixels out.
-  output logic                         valid_o,
-  input  logic                         ready_i,
-  output colour_t                      colour_o,
-  output pixel_t                       pixel_o,
-  output logic                         first_o,                // Of the frame.
-  output logic                         line_end_o,
-  output logic                         last_o                  // Of the frame.
+  output logic            pixel_valid_o,
+  input  logic            pixel_ready_i,
+  output shaded_pixel_t   pixel_o
 );
   localparam int unsigned SumBits = SquareBits + 2;
   localparam int unsigned Setup = 8;
@@ -53,7 +42,7 @@ module voxrt_shader
     logic   first;
     logic   line_end;
     logic   last;
-  } place_t;
+  } info_t;
 
   // Directions.
   logic                       direction_valid, enters, first, line_end, last;
@@ -62,12 +51,7 @@ module voxrt_shader
   voxrt_ray_generator u_directions (
     .clk_i,
     .rst_ni,
-    .start_i,
-    .corner_i,
-    .line_step_i,
-    .right_i,
-    .width_i,
-    .height_i,
+    .raster_i,
     .valid_o    (direction_valid),
     .ready_i    (enters),
     .direction_o(direction),
@@ -76,31 +60,31 @@ module voxrt_shader
     .last_o     (last)
   );
 
-  // Places in the FIFO that are not promised to a pixel under way.
-  localparam int unsigned CreditBits = $clog2(FifoDepth) + 1;
-  logic [CreditBits-1:0] credit_q;
-  logic                  leaves, has_credit_q;
+  // Credits: places in the FIFO that are not reserved for a pixel under way.
+  localparam int unsigned CountBits = $clog2(FifoDepth) + 1;
+  logic [CountBits-1:0] credits_q;
+  logic                  leaves, ready_q;
 
-  assign ready_o = has_credit_q && direction_valid;
+  assign ready_o = ready_q && direction_valid;
   assign enters  = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
-    credit_q     <= credit_q - CreditBits'(enters) + CreditBits'(leaves);
-    // A clock late, in which a pixel may have entered.
-    has_credit_q <= credit_q > CreditBits'(1);
+    credits_q     <= credits_q - CountBits'(enters) + CountBits'(leaves);
+    // One clock late: a pixel may have entered since.
+    ready_q <= credits_q > CountBits'(1);
     if (!rst_ni) begin
-      credit_q     <= CreditBits'(FifoDepth);
-      has_credit_q <= 1'b0;
+      credits_q     <= CountBits'(FifoDepth);
+      ready_q <= 1'b0;
     end
   end
 
   logic [Stages:1] valid_q;
-  place_t          place_q[1:Stages];
+  info_t          info_q[1:Stages];
 
   always_ff @(posedge clk_i) begin
     valid_q    <= rst_ni ? {valid_q[Stages-1:1], enters} : '0;
-    place_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
-    for (int unsigned s = 2; s <= Stages; s++) if (valid_q[s-1]) place_q[s] <= place_q[s-1];
+    info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
+    for (int unsigned s = 2; s <= Stages; s++) if (valid_q[s-1]) info_q[s] <= info_q[s-1];
   end
 
   // 1 direction, material.
@@ -116,7 +100,7 @@ module voxrt_shader
   logic signed [ScanBits-1:0] direction1_q[3];
 
   always_ff @(posedge clk_i) begin
-    if (table_write_i) table_q[table_material_i] <= table_colour_i;
+    if (material_write_i.valid) table_q[material_write_i.material] <= material_write_i.entry.colour;
     if (enters) begin
       colour1_q       <= table_q[pixel_i.material];
       brightness_q[1] <= Given ? brightness_i : '0;
@@ -156,7 +140,7 @@ module voxrt_shader
     end
     if (valid_q[4]) begin
       sum5_q <= SumBits'(square4[0]) + SumBits'(square4[1]) + SumBits'(square4[2]);
-      unique case (place_q[4].pixel.face)
+      unique case (info_q[4].pixel.face)
         FaceX:   square5_q <= square4[0];
         FaceY:   square5_q <= square4[1];
         FaceZ:   square5_q <= square4[2];
@@ -180,7 +164,7 @@ module voxrt_shader
     if (valid_q[7]) sum8_q <= sum7_q;
   end
 
-  // 6 and 7 colour x square, 8 dividend, then the digits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
+  // 6 and 7 colour x square, 8 dividend, then the bits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
   logic [7:0] quotient[3];
 
   for (genvar c = 0; c < 3; c++) begin : gen_channel
@@ -216,27 +200,46 @@ module voxrt_shader
   end
 
   // Out.
-  localparam int unsigned OutBits = $bits(colour_t) + $bits(place_t);
-  logic   unused_ready;
-  place_t place;
+  logic          fifo_ready;
+  shaded_pixel_t shaded;
+
+  always_comb begin
+    shaded.colour   = '{red: quotient[0], green: quotient[1], blue: quotient[2]};
+    shaded.pixel    = info_q[Stages].pixel;
+    shaded.first    = info_q[Stages].first;
+    shaded.line_end = info_q[Stages].line_end;
+    shaded.last     = info_q[Stages].last;
+  end
 
   voxrt_fifo #(
-    .Width(OutBits),
+    .Width($bits(shaded_pixel_t)),
     .Depth(FifoDepth)
   ) u_out (
     .clk_i,
     .rst_ni,
     .valid_i(valid_q[Stages]),
-    .ready_o(unused_ready),
-    .data_i ({quotient[0], quotient[1], quotient[2], place_q[Stages]}),
-    .valid_o,
-    .ready_i,
-    .data_o ({colour_o, place})
+    .ready_o(fifo_ready),
+    .data_i (shaded),
+    .valid_o(pixel_valid_o),
+    .ready_i(pixel_ready_i),
+    .data_o (pixel_o)
   );
 
-  assign leaves     = valid_o && ready_i;
-  assign pixel_o    = place.pixel;
-  assign first_o    = place.first;
-  assign line_end_o = place.line_end;
-  assign last_o     = place.last;
+  assign leaves = pixel_valid_o && pixel_ready_i;
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && reset_seen_q) begin
+      assert (!valid_q[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
+      assert (credits_q <= CountBits'(FifoDepth)) else $error("more credits than places");
+    end
+  end
+`else
+  logic unused_ready;
+  assign unused_ready = fifo_ready;
+`endif
 endmodule

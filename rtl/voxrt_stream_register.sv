@@ -1,5 +1,5 @@
-// A register in a stream: what is offered behind it comes from flip-flops. One transfer a clock; ready_o looks through to
-// ready_i.
+// A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock; ready_o depends on ready_i
+// in the same clock.
 module voxrt_stream_register #(
   parameter int unsigned Width = 8
 ) (
@@ -26,4 +26,15 @@ module voxrt_stream_register #(
     end
     if (!rst_ni) valid_q <= 1'b0;
   end
+
+`ifndef SYNTHESIS
+  logic             stalled_q = 1'b0;
+  logic [Width-1:0] offer_q;
+
+  always_ff @(posedge clk_i) begin
+    stalled_q <= rst_ni && valid_o && !ready_i;
+    offer_q   <= data_o;
+    if (rst_ni && stalled_q) assert (valid_o && data_o == offer_q) else $error("an offer changed before it was taken");
+  end
+`endif
 endmodule

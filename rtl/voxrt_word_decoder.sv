@@ -3,12 +3,13 @@
 module voxrt_word_decoder
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned BlockBits   = 12,
-  localparam int unsigned PayloadBits = payload_bits(BlockBits)
+  parameter int unsigned BlockBits = 12
 ) (
-  input  logic [PayloadBits:0] word_i,
-  output logic [         31:0] word_o
+  input  logic [payload_bits(BlockBits):0] word_i,
+  output logic [31:0]                      word_o
 );
+  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+
   always_comb begin
     if (!word_i[PayloadBits]) word_o = 32'({word_i[BlockBits-1:0], 3'd1});
     else if (word_i[8]) word_o = 32'h7FFF_FFFF;

@@ -3,12 +3,13 @@
 module voxrt_word_encoder
   import voxrt_pkg::*;
 #(
-  parameter  int unsigned BlockBits   = 12,
-  localparam int unsigned PayloadBits = payload_bits(BlockBits)
+  parameter int unsigned BlockBits = 12
 ) (
-  input  logic [         31:0] word_i,
-  output logic [PayloadBits:0] word_o
+  input  logic [31:0]                      word_i,
+  output logic [payload_bits(BlockBits):0] word_o
 );
+  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+
   always_comb begin
     word_o = '0;
     if (word_i[31]) begin

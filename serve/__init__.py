@@ -1,5 +1,5 @@
-"""The frame server: sessions, uploads, the browser page, a client, the original's protocol.
+"""The frame server: session, uploads, browser page, client library, legacy protocol.
 
-Needs Python 3.10, NumPy and websockets: ``board/pyproject.toml`` packages this folder together with ``board/`` as
-``voxrt-board``. Inside voxrt it is :mod:`voxrt.serve`.
+It needs Python 3.10, NumPy and websockets. ``board/pyproject.toml`` packages it together with ``board/`` as
+``voxrt-board``. Inside voxrt the package is :mod:`voxrt.serve`.
 """

@@ -1,4 +1,4 @@
-"""A scene from a blob: everything in one file. ``docs/blob.md`` describes it byte by byte."""
+"""A scene from a blob, one file that holds all of a scene. ``docs/blob.md`` documents every byte."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 MAGIC = b"VOXRTBLB"
 VERSION = 1
 
-_HEADER = struct.Struct("<8sIIII")  # magic, version, sections, bytes of the file, CRC-32 of the table
+_HEADER = struct.Struct("<8sIIII")  # magic, version, number of sections, bytes of the file, CRC-32 of the table
 _ENTRY = struct.Struct("<4sIII")  # name, offset, bytes, CRC-32
-_DEPTH = struct.Struct("<I")  # the rest of the section places the world in the scene, which a board need not know
+_DEPTH = struct.Struct("<I")  # the rest of the section places the grid in the scene; boards do not use it
 _MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
 _VIEW = struct.Struct("<12i")  # position, look, right, up
 _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
@@ -35,7 +35,7 @@ def read_blob(data: bytes) -> Scene:
     Raises
     ------
     Refused
-        It is no blob, of another version, or damaged: names the section.
+        The bytes are no blob, or a blob of another version, or damaged; the message names the section.
     """
     sections = _sections(data)
     try:
@@ -48,25 +48,28 @@ def read_blob(data: bytes) -> Scene:
     except KeyError as error:
         raise Refused(f"the blob has no section {error.args[0].decode()}; write it again") from None
     except (struct.error, ValueError) as error:
-        raise Refused(f"the blob's sections have another layout than version {VERSION}'s ({error})") from None
+        raise Refused(
+            f"the sections of the blob do not have the layout of version {VERSION} ({error}); write it again"
+        ) from None
     return Scene(name, depth, words, colours, mirrors, camera, lighting)
 
 
 def _sections(data: bytes) -> dict[bytes, bytes]:
     if len(data) < _HEADER.size or not data.startswith(MAGIC):
-        raise Refused(f"the file does not start with {MAGIC.decode()}: it is no blob")
+        raise Refused(f"the file does not start with {MAGIC.decode()}: it is no blob; write one with voxrt convert")
     _, version, count, size, crc32 = _HEADER.unpack_from(data)
     if version != VERSION:
-        raise Refused(f"blob version {version} is not known to this board ({VERSION}); upgrade voxrt-board")
+        raise Refused(f"blob version {version} is not supported, only {VERSION}; upgrade voxrt-board")
     table = data[_HEADER.size : _HEADER.size + _ENTRY.size * min(count, len(data))]
     if size != len(data) or len(table) != _ENTRY.size * count or zlib.crc32(table) != crc32:
-        raise Refused("the blob's header is damaged or the file is cut short; write it again")
+        raise Refused("the header of the blob is damaged, or the file is incomplete; write it again")
     sections = {}
     for name, offset, length, section_crc32 in _ENTRY.iter_unpack(table):
         section = data[offset : offset + length]
         if len(section) != length or zlib.crc32(section) != section_crc32:
             raise Refused(
-                f"section {name.decode('latin-1').encode('unicode_escape').decode()} of the blob is damaged (CRC-32)"
+                f"section {name.decode('latin-1').encode('unicode_escape').decode()} of the blob is damaged (CRC-32); "
+                "write it again"
             )
         sections[name] = section
     return sections

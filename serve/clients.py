@@ -1,4 +1,7 @@
-"""The viewers: each gets the newest of everything as fast as it takes it, and none waits for another."""
+"""The connected clients, and what waits to be sent to each.
+
+Every client receives at its own speed. A slow one misses frames and states, and no other client waits for it.
+"""
 
 from __future__ import annotations
 
@@ -14,138 +17,138 @@ if TYPE_CHECKING:
 
     from .packets import FramePacket
 
-_ANSWERS = 256  # that a viewer may leave unread
+_BACKLOG_LIMIT = 256  # answers that a client may leave unread
 
 
-class Line(Protocol):
-    """The connection to a viewer."""
+class Connection(Protocol):
+    """The connection to a client."""
 
     async def send(self, message: str | bytes) -> None:
-        """Send a message and wait until the line takes more."""
+        """Send a message, and wait until the connection accepts another."""
 
 
-class Viewer:
-    """What waits to be sent to one viewer: its answers, the state of the show, the newest frame.
+class Client:
+    """The output queue of one client: its answers, a flag for a changed state, and the newest frame.
 
     Parameters
     ----------
     number
-        Which viewer of the server it is, from 1.
-    took_frame
-        Called when it begins to send a frame and could take another.
-    describe
-        Gives the state of the show as it is now.
+        The client's number, counted from 1.
+    on_ready
+        Called when the queued frame is sent and another may follow.
+    describe_state
+        Returns the present state of the session.
     """
 
-    def __init__(self, number: int, took_frame: Callable[[], None], describe: Callable[[], dict[str, Any]]) -> None:
+    def __init__(self, number: int, on_ready: Callable[[], None], describe_state: Callable[[], dict[str, Any]]) -> None:
         self.number = number
-        self.dropped = 0
-        self.overrun = False
-        self._took_frame = took_frame
-        self._describe = describe
+        self.dropped_frames = 0
+        self.backlog_exceeded = False
+        self._on_ready = on_ready
+        self._describe_state = describe_state
         self._answers: deque[str] = deque()
-        self._state_is_old = False
+        self._state_changed = False
         self._frame: bytes | None = None
-        self._news = asyncio.Event()
+        self._work = asyncio.Event()
 
     @property
-    def wants_frame(self) -> bool:
-        """Whether no frame waits for it."""
+    def ready(self) -> bool:
+        """Whether it can take a frame: none is queued."""
         return self._frame is None
 
-    def show(self, frame: bytes) -> None:
-        """Let it see this frame next, and no older one."""
+    def queue_frame(self, frame: bytes) -> None:
+        """Send this frame next; it replaces a queued one."""
         if self._frame is not None:
-            self.dropped += 1
+            self.dropped_frames += 1
         self._frame = frame
-        self._news.set()
+        self._work.set()
 
-    def answer(self, message: dict[str, Any]) -> None:
-        """Let it read a message, in order with other answers."""
-        if len(self._answers) >= _ANSWERS:
-            self.overrun = True
+    def queue_answer(self, message: dict[str, Any]) -> None:
+        """Send a message after all queued answers."""
+        if len(self._answers) >= _BACKLOG_LIMIT:
+            self.backlog_exceeded = True
         else:
             self._answers.append(json.dumps(message, separators=(",", ":")))
-        self._news.set()
+        self._work.set()
 
-    def refresh(self) -> None:
-        """Let it know that the state of the show has changed."""
-        self._state_is_old = True
-        self._news.set()
+    def queue_state(self) -> None:
+        """Send the state of the session, as it is when its turn comes."""
+        self._state_changed = True
+        self._work.set()
 
-    async def send_all(self, line: Line) -> None:
-        """Send what there is, for ever; returns when the viewer has left too many answers unread."""
-        while not self.overrun:
+    async def send_all(self, connection: Connection) -> None:
+        """Send what is queued, without end; return when too many answers are unread."""
+        while not self.backlog_exceeded:
             if self._answers:
-                await line.send(self._answers.popleft())
-            elif self._state_is_old:
-                self._state_is_old = False
-                await line.send(json.dumps(self._describe(), separators=(",", ":")))
+                await connection.send(self._answers.popleft())
+            elif self._state_changed:
+                self._state_changed = False
+                await connection.send(json.dumps(self._describe_state(), separators=(",", ":")))
             elif self._frame is not None:
                 frame, self._frame = self._frame, None
-                self._took_frame()
-                await line.send(frame)
+                self._on_ready()
+                await connection.send(frame)
             else:
-                self._news.clear()
-                await self._news.wait()
+                self._work.clear()
+                await self._work.wait()
 
 
-class Audience:
-    """All viewers of a server.
+class Clients:
+    """All connected clients of a server.
 
     Parameters
     ----------
-    describe
-        Gives the state of the show as it is now.
+    describe_state
+        Returns the present state of the session.
     """
 
-    def __init__(self, describe: Callable[[], dict[str, Any]]) -> None:
-        self._describe = describe
-        self._viewers: dict[int, Viewer] = {}
-        self._joined = 0
-        self._newest: bytes | None = None
-        self._hungry = asyncio.Event()
-        self.dropped_by_leavers = 0
+    def __init__(self, describe_state: Callable[[], dict[str, Any]]) -> None:
+        self._describe_state = describe_state
+        self._clients: dict[int, Client] = {}
+        self._added = 0
+        self._newest_frame: bytes | None = None
+        self._client_ready = asyncio.Event()
+        self._dropped_for_removed = 0
 
     def __len__(self) -> int:
-        return len(self._viewers)
+        return len(self._clients)
 
     @property
-    def dropped(self) -> int:
-        """Frames that viewers were too slow for."""
-        return self.dropped_by_leavers + sum(viewer.dropped for viewer in self._viewers.values())
+    def dropped_frames(self) -> int:
+        """Frames that were not sent because a client was too slow, summed over all clients."""
+        return self._dropped_for_removed + sum(client.dropped_frames for client in self._clients.values())
 
-    def join(self) -> Viewer:
-        """Admit a viewer; it gets the state and the newest frame at once."""
-        self._joined += 1
-        viewer = Viewer(self._joined, self._hungry.set, self._describe)
-        self._viewers[viewer.number] = viewer
-        if self._newest is not None:
-            viewer.show(self._newest)
+    def add(self) -> Client:
+        """Add a client; it gets the state and the newest frame at once."""
+        self._added += 1
+        client = Client(self._added, self._client_ready.set, self._describe_state)
+        self._clients[client.number] = client
+        if self._newest_frame is not None:
+            client.queue_frame(self._newest_frame)
         else:
-            self._hungry.set()
-        self.refresh()
-        return viewer
+            self._client_ready.set()
+        self.queue_state()
+        return client
 
-    def leave(self, viewer: Viewer) -> None:
-        """Forget a viewer."""
-        del self._viewers[viewer.number]
-        self.dropped_by_leavers += viewer.dropped
-        self.refresh()
+    def remove(self, client: Client) -> None:
+        """Remove a client."""
+        del self._clients[client.number]
+        self._dropped_for_removed += client.dropped_frames
+        self.queue_state()
 
-    def refresh(self) -> None:
-        """Let all know that the state of the show has changed."""
-        for viewer in self._viewers.values():
-            viewer.refresh()
+    def queue_state(self) -> None:
+        """Send the changed state of the session to all clients."""
+        for client in self._clients.values():
+            client.queue_state()
 
-    def show(self, packet: FramePacket) -> None:
-        """Let all see a frame."""
-        self._newest = pack_frame(packet)
-        for viewer in self._viewers.values():
-            viewer.show(self._newest)
+    def queue_frame(self, packet: FramePacket) -> None:
+        """Send a frame to all clients."""
+        self._newest_frame = pack_frame(packet)
+        for client in self._clients.values():
+            client.queue_frame(self._newest_frame)
 
-    async def hunger(self) -> None:
-        """Wait until some viewer has no frame waiting, so that another is worth rendering."""
-        while not any(viewer.wants_frame for viewer in self._viewers.values()):
-            self._hungry.clear()
-            await self._hungry.wait()
+    async def wait_until_ready(self) -> None:
+        """Wait until some client can take a frame."""
+        while not any(client.ready for client in self._clients.values()):
+            self._client_ready.clear()
+            await self._client_ready.wait()

@@ -1,4 +1,4 @@
-"""A scene from ``NAME.mem`` and the manifest ``NAME.json`` beside it."""
+"""A scene from ``NAME.mem`` and its manifest ``NAME.json``."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _DIALECT_TAGS = {"report": 0xFFFFFF00, "seed-rtl": 0xFFFFFFF0, "msb": 0x80000000
 
 
 def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
-    """Read the pair that ``voxrt build`` writes.
+    """Read the two files that ``voxrt build`` writes.
 
     Parameters
     ----------
     name
-        The scene's name.
+        Name of the scene.
     mem, manifest
-        The bytes of the two files.
+        Bytes of the two files.
 
     Raises
     ------
     Refused
-        One is not what it should be, or they do not belong together.
+        A file is malformed, or the manifest describes another memory.
     """
     described = _manifest(manifest)
     try:
@@ -47,7 +47,7 @@ def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
         raise Refused(f"{name}.json describes another {name}.mem; build both again")
     tokens = _COMMENT.sub(b" ", mem).split()
     if not all(_WORD.fullmatch(token) for token in tokens):
-        raise Refused(f"{name}.mem holds something that is no word of 8 hex digits; build the scene again")
+        raise Refused(f"{name}.mem has a word that is not 8 hex digits; build the scene again")
     words = np.array([int(token, 16) for token in tokens], dtype=np.uint32)
     tag = _DIALECT_TAGS[dialect]
     leaf = words >> 31 == 1
@@ -61,5 +61,5 @@ def _manifest(data: bytes) -> dict[str, Any]:
     except (ValueError, RecursionError):
         described = None
     if not isinstance(described, dict):
-        raise Refused("the .json beside the memory is no manifest; build the scene again")
+        raise Refused("the .json of the memory is no manifest; build the scene again")
     return described

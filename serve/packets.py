@@ -1,4 +1,4 @@
-"""The binary messages: frames to viewers, chunks of files from them. ``docs/protocol.md`` is their manual."""
+"""The binary messages: frames to clients, chunks of files from clients. ``docs/protocol.md`` documents them."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from ..board.errors import Refused
 if TYPE_CHECKING:
     from typing import Final
 
+PROTOCOL_VERSION: Final = 1
+"""Version of the protocol, JSON messages included. A client refuses a server with another version."""
+
 FRAME_MAGIC: Final = b"VXFR"
 CHUNK_MAGIC: Final = b"VXCH"
 CHUNK_LIMIT: Final = 1 << 18
-"""Bytes of a file that one message may carry."""
+"""Bytes of a file that one message may contain."""
 
 _NOT_COUNTED = (1 << 64) - 1
-# magic, header's length, width, height, sequence, pixels' length, scene, viewer, request, rays, microseconds, cycles,
-# words read
+# magic, bytes of the header, width, height, sequence, bytes of the pixels, scene, client, request, rays, microseconds,
+# cycles, words read
 _FRAME = struct.Struct("<4sHHH2xIIIIIIIQQ")
 _CHUNK = struct.Struct("<4sIII")
 
@@ -32,30 +35,31 @@ CHUNK_HEADER: Final = _CHUNK.size
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FramePacket:
-    """A frame on its way.
+    """A frame with its numbers.
 
     Attributes
     ----------
     sequence
-        Counts the frames of a server, from 1; viewers that miss some see it.
+        The number of the frame, counted from 1; a client that misses frames sees a gap.
     scene
-        Counts the scenes that a server has run; which of them this frame shows.
-    viewer, request
-        The newest request that this frame honours, and whose it was; 0 and 0 where there was none.
+        The number of the scene, counted from 1; 0 before the first scene was loaded.
+    client, request
+        The newest change of the view that the frame shows: number of the client and of its request; 0 and 0 where
+        there was none.
     frame
-        The picture and its cost.
+        The pixels and their cost.
     """
 
     sequence: int
     scene: int
-    viewer: int
+    client: int
     request: int
     frame: Frame
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Chunk:
-    """A piece of the files of an upload: which upload, from which byte of all its files on, and the bytes."""
+    """A part of an upload: number of the upload, offset in all its files together, and the bytes."""
 
     upload: int
     offset: int
@@ -63,7 +67,7 @@ class Chunk:
 
 
 def pack_frame(packet: FramePacket) -> bytes:
-    """Spell a frame as the message that viewers get."""
+    """Encode a frame as the message for clients."""
     height, width, _ = packet.frame.colour.shape
     counters = packet.frame.counters
     pixels = packet.frame.colour.tobytes()
@@ -75,7 +79,7 @@ def pack_frame(packet: FramePacket) -> bytes:
         packet.sequence & 0xFFFFFFFF,
         len(pixels),
         packet.scene & 0xFFFFFFFF,
-        packet.viewer,
+        packet.client,
         packet.request,
         counters.rays,
         min(round(counters.seconds * 1e6), 0xFFFFFFFF),
@@ -86,45 +90,45 @@ def pack_frame(packet: FramePacket) -> bytes:
 
 
 def unpack_frame(message: bytes) -> FramePacket:
-    """Read what :func:`pack_frame` wrote.
+    """Decode the message of :func:`pack_frame`.
 
     Raises
     ------
     Refused
-        It is no frame, or not all of one.
+        The message is no frame, or it is incomplete.
     """
     if len(message) < FRAME_HEADER or not message.startswith(FRAME_MAGIC):
-        raise Refused("the message is no frame; is that a voxrt frame server?")
-    (_, header, width, height, sequence, length, scene, viewer, request, rays, micros, cycles, words_read) = (
+        raise Refused("the message is no frame; check that the address is that of a voxrt frame server")
+    (_, header, width, height, sequence, length, scene, client, request, rays, micros, cycles, words_read) = (
         _FRAME.unpack_from(message)
     )
     if length != width * height * 3 or len(message) != header + length:
-        raise Refused(f"a frame of {width}x{height} pixels came with {len(message) - header} bytes")
+        raise Refused(f"a frame of {width}x{height} pixels has {len(message) - header} bytes; connect again")
     colour = np.frombuffer(message, dtype=np.uint8, offset=header).reshape(height, width, 3)
     words_read, cycles = (None if count == _NOT_COUNTED else count for count in (words_read, cycles))
     counters = Counters(rays, words_read, cycles, micros / 1e6)
-    return FramePacket(sequence, scene, viewer, request, Frame(colour, counters))
+    return FramePacket(sequence, scene, client, request, Frame(colour, counters))
 
 
 def pack_chunk(chunk: Chunk) -> bytes:
-    """Spell a chunk, with the CRC-32 of its bytes."""
+    """Encode a chunk with the CRC-32 of its bytes."""
     return _CHUNK.pack(CHUNK_MAGIC, chunk.upload, chunk.offset, zlib.crc32(chunk.data)) + chunk.data
 
 
 def unpack_chunk(message: bytes) -> Chunk:
-    """Read a chunk and check its bytes.
+    """Decode a chunk and check its bytes.
 
     Raises
     ------
     Refused
-        It is no chunk, it is empty or too long, or its CRC-32 is another.
+        The message is no chunk, the chunk is empty or too long, or its CRC-32 is wrong.
     """
     if len(message) < CHUNK_HEADER or not message.startswith(CHUNK_MAGIC):
-        raise Refused("a binary message is no chunk of an upload")
+        raise Refused("a binary message is no chunk of an upload; upload again")
     _, upload, offset, crc32 = _CHUNK.unpack_from(message)
     data = message[CHUNK_HEADER:]
     if not 1 <= len(data) <= CHUNK_LIMIT:
-        raise Refused(f"a chunk of {len(data)} bytes is not 1 to {CHUNK_LIMIT}")
+        raise Refused(f"a chunk has {len(data)} bytes, which is not 1 to {CHUNK_LIMIT}; upload again")
     if zlib.crc32(data) != crc32:
-        raise Refused(f"the chunk at byte {offset} was damaged on its way (CRC-32); upload again")
+        raise Refused(f"the chunk at byte {offset} was damaged in transit (CRC-32); upload again")
     return Chunk(upload, offset, data)

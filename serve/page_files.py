@@ -1,4 +1,4 @@
-"""The browser page, read once."""
+"""The files of the browser page."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ HEADERS = (
         ),
     ),
 )
-"""What every file is sent with: nothing of it runs, or is framed, anywhere else."""
+"""HTTP headers of every file: the page loads nothing from elsewhere, and no other page may embed it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageFile:
-    """A file's bytes and their media type."""
+    """The bytes of a file and its media type."""
 
     data: bytes
     media_type: str
 
 
 @cache
-def page_files() -> dict[str, PageFile]:
-    """Give the files of the page by their path in URLs."""
+def load_page_files() -> dict[str, PageFile]:
+    """Return the files of the page by their path in URLs; they are read once."""
     folder = Path(__file__).with_name("page")
     files = {
         f"/{path.name}": PageFile(path.read_bytes(), _TYPES[path.suffix])

@@ -1,4 +1,4 @@
-"""The stage: one device, the scene on it, the view of it, and the frames that come of them."""
+"""The renderer: one device, its scene, the view, and the frames of both."""
 
 from __future__ import annotations
 
@@ -11,39 +11,40 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ..board.errors import DeviceError
-from ..board.scene import Scene
+from ..board.scene import EMPTY_LEAF, Scene
 from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
 from ..board.view_check import check_view
 from .packets import FramePacket
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from ..board.device import Device, Frame
     from ..board.scene_memory import Progress
-    from .clients import Audience
-    from .requests import ViewChange
+    from .clients import Clients
+    from .requests import ChangeView
 
     Result = TypeVar("Result")
 
-FIRST_SIZE = (640, 480)
-"""Columns and rows of the frames until somebody asks for others."""
+DEFAULT_SIZE = (640, 480)
+"""Columns and rows of the frames until a client changes the size."""
 
-NOTHING = Scene(
+EMPTY_SCENE = Scene(
     "nothing",
     1,
-    np.array([0xFFFFFF00], dtype=np.uint32),
+    np.array([EMPTY_LEAF], dtype=np.uint32),
     np.full((256, 3), 24, dtype=np.uint8),
     np.zeros(256, dtype=np.bool_),
 )
-"""What runs until there is a scene: empty space, dark grey."""
+"""The scene until another one is loaded: empty space, dark grey."""
 
 
-class Stage:
-    """Renders a frame whenever the view or the scene has changed and somebody can take it, or without end.
+class Renderer:
+    """Renders a frame when the view or the scene has changed and a client is ready for it, or without end.
 
-    All calls of the device come from one thread; scenes change between two frames.
+    All calls of the device come from one thread, and never two at a time. A scene is loaded in steps between frames;
+    :class:`~.scene_memory.SceneMemory` says what frames show meanwhile.
 
     Parameters
     ----------
@@ -53,81 +54,87 @@ class Stage:
 
     def __init__(self, device: Device) -> None:
         columns, rows = device.identity.size
-        size = min(FIRST_SIZE[0], columns), min(FIRST_SIZE[1], rows)
+        size = min(DEFAULT_SIZE[0], columns), min(DEFAULT_SIZE[1], rows)
         self.device = device
-        self.scene = NOTHING
+        self.scene = EMPTY_SCENE
         self.scene_number = 0
-        self.crc32 = NOTHING.crc32
-        self.view = self.first_view = View(frame_world(NOTHING.depth, size), size, NOTHING.background)
+        self.crc32 = EMPTY_SCENE.crc32
+        self.view = self.initial_view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
         self._memory = SceneMemory(device)
         self._thread = ThreadPoolExecutor(1, "device")
-        self._between_frames = asyncio.Lock()
-        self._wanted = asyncio.Event()
+        self._loading = asyncio.Lock()
+        self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
+        self._changed = asyncio.Event()
         self._newest_request = (0, 0)
 
-    def change(self, change: ViewChange, viewer: int, request: int) -> None:
-        """Change the view for `viewer`, whose `request` it is.
+    def change_view(self, change: ChangeView, client: int, request: int) -> None:
+        """Change the view; frames then carry the numbers `client` and `request`.
 
         Raises
         ------
         Refused
-            The device cannot show that; the view stays as it is.
+            The device cannot render the new view; the present one stays.
         """
         view = change.applied_to(self.view)
         check_view(view, self.device.identity)
         self.view = view
         if change.nonstop is not None:
             self.nonstop = change.nonstop
-        self._newest_request = (viewer, request)
-        self._wanted.set()
+        self._newest_request = (client, request)
+        self._changed.set()
 
     def check_scene(self, scene: Scene) -> None:
-        """Refuse a scene that the device cannot hold or show; touches nothing."""
+        """Refuse a scene that the device cannot hold or render; nothing is written."""
         self._memory.check(scene)
         check_view(self._view_of(scene), self.device.identity)
 
-    async def put_on(self, scene: Scene, progress: Progress) -> None:
-        """Run a scene, from a frame boundary on; one that fails leaves the old one running.
+    async def load(self, scene: Scene, progress: Progress) -> None:
+        """Load a scene while frames of the present one are rendered, and show it from the next frame on.
 
         Raises
         ------
         Refused
-            The device cannot hold or show it.
+            The device cannot hold or render it; nothing was written.
         DeviceError
-            The device did not keep it.
+            The device did not keep it; the present scene stays.
         """
         self.check_scene(scene)
-        async with self._between_frames:
-            await self._on_device(partial(self._memory.swap, scene, progress))
-            self.scene, self.crc32 = scene, scene.crc32
-            self.view = self.first_view = self._view_of(scene)
-            self.scene_number += 1
-        self._wanted.set()
+        async with self._loading:
+            steps = self._memory.load_in_steps(scene, progress)
+            complete = False
+            while not complete:
+                async with self._device_lock:
+                    complete = await self._on_device(partial(_finish_step, steps))
+                    if complete:
+                        self.scene, self.crc32 = scene, scene.crc32
+                        self.view = self.initial_view = self._view_of(scene)
+                        self.scene_number += 1
+        self._changed.set()
 
     async def read_registers(self) -> Mapping[str, int]:
-        """Read the device's registers, between two frames."""
-        async with self._between_frames:
+        """Read the registers of the device between two frames."""
+        async with self._device_lock:
             return await self._on_device(self.device.registers)
 
-    async def private_frame(self, view: View) -> Frame:
-        """Render a frame of another view, for one who asks; the show goes on as it was."""
+    async def render_view(self, view: View) -> Frame:
+        """Render one frame of another view; the view of the session stays."""
         check_view(view, self.device.identity)
-        async with self._between_frames:
+        async with self._device_lock:
             return await self._on_device(partial(self.device.frame, view))
 
-    async def run(self, audience: Audience) -> None:
-        """Render for `audience`, for ever."""
-        self._wanted.set()
+    async def run(self, clients: Clients) -> None:
+        """Render frames for `clients`, without end."""
+        self._changed.set()
         while True:
             if not self.nonstop:
-                await self._wanted.wait()
-            await audience.hunger()
-            self._wanted.clear()
-            async with self._between_frames:
-                view, scene_number, (viewer, request) = self.view, self.scene_number, self._newest_request
+                await self._changed.wait()
+            await clients.wait_until_ready()
+            self._changed.clear()
+            async with self._device_lock:
+                view, scene_number, (client, request) = self.view, self.scene_number, self._newest_request
                 trouble = None
                 try:
                     frame = await self._on_device(partial(self.device.frame, view))
@@ -135,24 +142,25 @@ class Stage:
                     trouble, self.nonstop = str(error), False
             if trouble is None:
                 self.frames += 1
-                audience.show(FramePacket(self.frames, scene_number, viewer, request, frame))
+                clients.queue_frame(FramePacket(self.frames, scene_number, client, request, frame))
             if trouble != self.trouble:
                 self.trouble = trouble
-                audience.refresh()
+                clients.queue_state()
 
     def close(self) -> None:
-        """Let go of the device, after the frame under way."""
+        """Close the device after the present frame."""
         self._thread.submit(self.device.close)
         self._thread.shutdown()
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
-        # Shielded: a caller that is cancelled leaves the device at work, and the next one must wait for its end.
+        # A call of the device goes on when its caller is cancelled, so it is shielded. The next call waits in the same
+        # thread.
         work = asyncio.get_running_loop().run_in_executor(self._thread, call)
         return await asyncio.shield(work)
 
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
-        camera = refit(scene.camera, FIRST_SIZE, size) if scene.camera else frame_world(scene.depth, size)
+        camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
         view = replace(self.view, camera=camera, background=scene.background)
         lighting = scene.lighting
         if lighting is None:
@@ -169,3 +177,8 @@ class Stage:
                 bounces=lighting.bounces if "mirrors" in built_in else 0,
             ),
         )
+
+
+def _finish_step(steps: Iterator[None]) -> bool:
+    """Do the next step; True when there are no more."""
+    return next(steps, "complete") is not None

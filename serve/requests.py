@@ -1,4 +1,4 @@
-"""What viewers ask for: JSON messages, read with nothing taken on trust. ``docs/protocol.md`` lists them."""
+"""The requests of clients: JSON messages, with every field checked. ``docs/protocol.md`` documents them."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ _BOUNCES = 4  # of mirrors that are turned on without a number
 
 
 @dataclass(frozen=True, slots=True)
-class Take:
-    """Let me steer."""
+class TakeControl:
+    """Get control."""
 
 
 @dataclass(frozen=True, slots=True)
-class Release:
-    """Let somebody else steer."""
+class ReleaseControl:
+    """Give control to the next client that waits for it."""
 
 
 @dataclass(frozen=True, slots=True)
-class ViewChange:
-    """Show this instead: what is None stays as it is."""
+class ChangeView:
+    """Change the view; a field that is None stays as it is."""
 
     camera: Camera | None = None
     size: tuple[int, int] | None = None
@@ -61,15 +61,15 @@ class ViewChange:
 
 
 @dataclass(frozen=True, slots=True)
-class ShowScene:
-    """Run the scene of this name from the server's own list."""
+class LoadScene:
+    """Load the server's own scene with this name."""
 
     scene: str
 
 
 @dataclass(frozen=True, slots=True)
 class UploadedFile:
-    """A file that will come in chunks."""
+    """A file that follows in chunks."""
 
     name: str
     size: int
@@ -77,58 +77,61 @@ class UploadedFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Upload:
-    """Run a scene made of these files; `check_only` stops before the first word is written."""
+class StartUpload:
+    """Load a scene that is made from these files; with `check_only` nothing is written to the device."""
 
     files: tuple[UploadedFile, ...]
     check_only: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Cancel:
-    """Forget the upload under way."""
+class CancelUpload:
+    """Discard the upload in progress."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReadRegisters:
-    """Tell me all registers."""
+    """Get all registers of the device."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReadCounters:
-    """Tell me what the server has counted."""
+    """Get the counters of the server."""
 
 
-Request = Take | Release | ViewChange | ShowScene | Upload | Cancel | ReadRegisters | ReadCounters
+Request = (
+    TakeControl | ReleaseControl | ChangeView | LoadScene | StartUpload | CancelUpload | ReadRegisters | ReadCounters
+)
 
 
 def read_request(text: str) -> tuple[int, Request]:
-    """Read a message: its number, 0 where it has none, and what is asked.
+    """Read a message: return its number, 0 where it has none, and the request.
 
     Raises
     ------
     Refused
-        It is no JSON object, its type is unknown, or a field is missing, of another kind, out of range, or unknown.
+        The message is no JSON object, its type is unknown, or a field is missing, unknown, out of range, or has the
+        wrong type.
     """
     try:
         message = json.loads(text)
     except (ValueError, RecursionError):
-        raise Refused("a text message is no JSON") from None
+        raise Refused("a text message is no JSON; send a JSON object") from None
     if not isinstance(message, dict):
-        raise Refused("a text message is no JSON object")
+        raise Refused("a text message is no JSON object; send one with a type")
     number = _whole("request", message.pop("request", 0), 0, _REQUEST_LIMIT)
     kind = message.pop("type", None)
     reader = _READERS.get(kind) if isinstance(kind, str) else None
     if reader is None:
-        raise Refused(f"{_shown(kind)} is no type of message; there are {', '.join(sorted(_READERS))}")
+        raise Refused(f"{_shown(kind)} is no type of request; there are {', '.join(sorted(_READERS))}")
     request = reader(message)
     if message:
-        raise Refused(f"{kind} has no field {_shown(next(iter(message)))}")
+        raise Refused(f"the request {kind} has no field {_shown(next(iter(message)))}; leave it out")
     return number, request
 
 
 def request_number(text: str) -> int:
-    """Give the number of a message that :func:`read_request` refused, 0 where even that cannot be told."""
+    """Return the number of a message, malformed ones included; 0 where it has none."""
     try:
         number = json.loads(text)["request"]
     except (ValueError, RecursionError, TypeError, KeyError):
@@ -136,11 +139,11 @@ def request_number(text: str) -> int:
     return number if type(number) is int and 0 <= number <= _REQUEST_LIMIT else 0
 
 
-def _view_change(message: dict[str, Any]) -> ViewChange:
+def _change_view(message: dict[str, Any]) -> ChangeView:
     def optional(field: str, read: Callable[[str, Any], Any]) -> Any:  # noqa: ANN401 - as the field is
         return read(field, message.pop(field)) if field in message else None
 
-    return ViewChange(
+    return ChangeView(
         camera=optional("camera", _camera),
         size=optional("size", _size),
         background=optional("background", lambda name, value: _triple(name, value, 0, 255)),
@@ -152,12 +155,12 @@ def _view_change(message: dict[str, Any]) -> ViewChange:
     )
 
 
-def _upload(message: dict[str, Any]) -> Upload:
+def _start_upload(message: dict[str, Any]) -> StartUpload:
     files = message.pop("files", None)
     if not isinstance(files, list) or not 1 <= len(files) <= _FILES:
         raise Refused(f"files is not a list of 1 to {_FILES} files")
     check_only = _truth("check_only", message.pop("check_only", False))
-    return Upload(tuple(_file(entry) for entry in files), check_only)
+    return StartUpload(tuple(_file(entry) for entry in files), check_only)
 
 
 def _file(entry: object) -> UploadedFile:
@@ -170,17 +173,17 @@ def _file(entry: object) -> UploadedFile:
     )
 
 
-def _show(message: dict[str, Any]) -> ShowScene:
-    return ShowScene(_name("scene", message.pop("scene", None)))
+def _load_scene(message: dict[str, Any]) -> LoadScene:
+    return LoadScene(_name("scene", message.pop("scene", None)))
 
 
 _READERS: dict[str, Callable[[dict[str, Any]], Request]] = {
-    "take": lambda _: Take(),
-    "release": lambda _: Release(),
-    "view": _view_change,
-    "show": _show,
-    "upload": _upload,
-    "cancel": lambda _: Cancel(),
+    "take": lambda _: TakeControl(),
+    "release": lambda _: ReleaseControl(),
+    "view": _change_view,
+    "show": _load_scene,
+    "upload": _start_upload,
+    "cancel": lambda _: CancelUpload(),
     "registers": lambda _: ReadRegisters(),
     "counters": lambda _: ReadCounters(),
 }

@@ -1,4 +1,4 @@
-"""Scenes from uploaded files: what a board reads by itself."""
+"""Readers of uploaded files; this one reads octree memories."""
 
 from __future__ import annotations
 
@@ -18,23 +18,35 @@ if TYPE_CHECKING:
 
 
 class SceneReader(Protocol):
-    """What turns uploaded files into a scene; called in a thread of its own, may take long."""
+    """Makes scenes from uploaded files. It is called in a thread of its own and may take long."""
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of the files that it begins with, such as ``.mem``."""
+        """Suffixes of the files that hold a scene, such as ``.mem``."""
 
     def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make the scene, or raise :class:`~.errors.Refused`."""
+        """Make a scene from files, given by name.
+
+        Raises
+        ------
+        Refused
+            The files are no scene.
+        """
 
 
-class BoardReader:
-    """Reads what needs no building: a blob, or a ``.mem`` with its ``.json``."""
+class MemoryReader:
+    """Reads a blob, or a ``.mem`` with its ``.json``: all that a board can read without the rest of voxrt."""
 
     suffixes: tuple[str, ...] = (".blob", ".mem")
 
     def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make the scene, or raise :class:`~.errors.Refused`."""
+        """Make a scene from files, given by name.
+
+        Raises
+        ------
+        Refused
+            The files are no scene.
+        """
         progress("read", 0, 1)
         if len(files) == 1 and (blob := next(iter(files.values()))).startswith(BLOB_MAGIC):
             return read_blob(blob)
@@ -42,4 +54,4 @@ class BoardReader:
         if suffixes.keys() == {".mem", ".json"} and len(files) == 2:
             mem = suffixes[".mem"]
             return read_mem_files(PurePosixPath(mem).stem, files[mem], files[suffixes[".json"]])
-        raise Refused(f"{', '.join(files)}: no blob, and not a .mem with the .json beside it; give both together")
+        raise Refused(f"{', '.join(files)}: neither a blob nor a .mem with its .json; upload one of them")

@@ -1,150 +1,155 @@
-"""One viewer's visit: what it asks, and what it is told."""
+"""The session that all clients of a server share: renderer, clients, control, scene library."""
 
 from __future__ import annotations
 
 import asyncio
 import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..board.errors import DeviceError, Refused
-from .packets import unpack_chunk
-from .receiving import Receiving
-from .requests import (
-    Cancel,
-    ReadCounters,
-    ReadRegisters,
-    Release,
-    ShowScene,
-    Take,
-    Upload,
-    ViewChange,
-    read_request,
-    request_number,
-)
+from ..board.errors import Refused
+from .clients import Clients
+from .control_transfer import ControlTransfer
+from .packets import CHUNK_LIMIT, PROTOCOL_VERSION
+from .renderer import Renderer
+from .upload import UPLOAD_LIMIT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Coroutine
+    from collections.abc import Callable, Mapping
 
+    from ..board.device import Device
     from ..board.scene import Scene
     from ..board.scene_memory import Progress
-    from .clients import Viewer
-    from .requests import Request
-    from .show import Show
-
-_PROGRESS_SECONDS = 0.05
+    from .scene_library import SceneLibrary
 
 
 class Session:
-    """Answers one viewer.
+    """One device, and everything that its clients share.
 
     Parameters
     ----------
-    show
-        What it watches.
-    viewer
-        The viewer, as the audience knows it.
-    start
-        Starts a task that outlives the visit.
+    device
+        The ray tracer; :meth:`close` closes it.
+    library
+        The scenes that can be loaded.
     """
 
-    def __init__(self, show: Show, viewer: Viewer, start: Callable[[Coroutine[Any, Any, None]], None]) -> None:
-        self._show = show
-        self._viewer = viewer
-        self._start = start
-        self._receiving: Receiving | None = None
+    def __init__(self, device: Device, library: SceneLibrary) -> None:
+        self.renderer = Renderer(device)
+        self.clients = Clients(self.state)
+        self.control = ControlTransfer(time.monotonic)
+        self._library = library
+        self._reader_thread = ThreadPoolExecutor(1, "reader")
+        self._scene_change = asyncio.Lock()
+        self._started = time.monotonic()
 
-    async def hear(self, message: str | bytes) -> None:
-        """Do what a message asks and answer it; nothing that it may hold raises."""
-        number = 0
-        try:
-            if isinstance(message, bytes):
-                number = self._receiving.number if self._receiving else 0
-                self._hear_chunk(message)
-            else:
-                number = request_number(message)
-                number, request = read_request(message)
-                await self._do(number, request)
-        except (Refused, DeviceError) as error:
-            self._viewer.answer({"type": "refused", "request": number, "problem": str(error)})
+    async def run(self) -> None:
+        """Render frames for the clients, without end."""
+        await self.renderer.run(self.clients)
 
-    def leave(self) -> None:
-        """End the visit: an unfinished upload is forgotten, control passes on."""
-        self._receiving = None
-        self._show.handover.leave(self._viewer.number)
+    def hello(self, client: int) -> dict[str, Any]:
+        """Return the first message to a client."""
+        identity = self.renderer.device.identity
+        return {
+            "type": "hello",
+            "protocol": PROTOCOL_VERSION,
+            "viewer": client,
+            "device": {
+                "name": identity.name,
+                "version": identity.version,
+                "capacity": identity.capacity,
+                "depth": identity.depth,
+                "size": identity.size,
+                "width_step": identity.width_step,
+                "position_limit": identity.position_limit,
+                "features": sorted(identity.features),
+                "clock": identity.clock,
+            },
+            "scenes": sorted(self._library.scenes),
+            "suffixes": self._library.reader.suffixes,
+            "limits": {"chunk": CHUNK_LIMIT, "upload": UPLOAD_LIMIT},
+        }
 
-    async def _do(self, number: int, request: Request) -> None:
-        show, viewer = self._show, self._viewer
-        answer: dict[str, Any] = {"type": "done", "request": number}
-        match request:
-            case Take():
-                answer["granted"] = show.handover.take(viewer.number)
-                show.audience.refresh()
-            case Release():
-                show.handover.leave(viewer.number)
-                show.audience.refresh()
-            case ReadRegisters():
-                answer["registers"] = dict(await show.stage.read_registers())
-            case ReadCounters():
-                answer["counters"] = show.counters()
-            case Cancel():
-                self._receiving = None
-            case ViewChange():
-                self._steer()
-                show.stage.change(request, viewer.number, number)
-                show.audience.refresh()
-            case ShowScene():
-                self._steer()
-                self._start(self._put_on(number, partial(show.put_on_listed, request.scene)))
-                return
-            case Upload():
-                self._steer()
-                self._receiving = Receiving(number, request)
-                answer = {"type": "ready", "request": number, "upload": number}
-        viewer.answer(answer)
+    def state(self) -> dict[str, Any]:
+        """Return the message that describes the present state."""
+        renderer, scene = self.renderer, self.renderer.scene
+        return {
+            "type": "state",
+            "viewers": len(self.clients),
+            "controller": self.control.controller,
+            "waiting": self.control.waiting,
+            "scene": {
+                "number": renderer.scene_number,
+                "name": scene.name,
+                "depth": scene.depth,
+                "words": len(scene.words),
+                "crc32": renderer.crc32,
+                "camera": asdict(renderer.initial_view.camera),
+                "size": renderer.initial_view.size,
+            },
+            "view": {
+                "camera": asdict(renderer.view.camera),
+                "size": renderer.view.size,
+                "background": renderer.view.background,
+                "light": renderer.view.lighting.position,
+                "ambient": renderer.view.lighting.ambient,
+                "features": sorted(renderer.view.lighting.features),
+                "bounces": renderer.view.lighting.bounces,
+                "nonstop": renderer.nonstop,
+            },
+            "trouble": renderer.trouble,
+        }
 
-    def _hear_chunk(self, message: bytes) -> None:
-        receiving = self._receiving
-        if receiving is None:
-            raise Refused("a chunk came and no upload is under way; announce it first")
-        try:
-            self._steer()
-            receiving.add(unpack_chunk(message))
-            files = receiving.files() if receiving.complete else None
-        except Refused:
-            self._receiving = None
-            raise
-        self._viewer.answer({"type": "received", "request": receiving.number, "bytes": receiving.received})
-        if files is not None:
-            self._receiving = None
-            put_on = partial(self._show.put_on_files, files, check_only=receiving.upload.check_only)
-            self._start(self._put_on(receiving.number, put_on))
+    def counters(self) -> dict[str, int | float]:
+        """Return the counters of the server since its start."""
+        return {
+            "seconds": round(time.monotonic() - self._started, 3),
+            "frames": self.renderer.frames,
+            "dropped": self.clients.dropped_frames,
+            "viewers": len(self.clients),
+            "scenes": self.renderer.scene_number,
+        }
 
-    def _steer(self) -> None:
-        if not self._show.handover.use(self._viewer.number):
-            raise Refused("another viewer steers, or nobody; take control first")
+    async def load_files(
+        self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool, allowed: Callable[[], bool]
+    ) -> Scene:
+        """Make a scene from files and load it; with `check_only` nothing is written to the device.
 
-    async def _put_on(self, number: int, put_on: Callable[..., Coroutine[Any, Any, Scene]]) -> None:
-        steers = partial(self._show.handover.use, self._viewer.number)
-        try:
-            scene = await put_on(progress=self._progress(number), allowed=steers)
-        except (Refused, DeviceError) as error:
-            self._viewer.answer({"type": "refused", "request": number, "problem": str(error)})
-            return
-        described = {"name": scene.name, "depth": scene.depth, "words": len(scene.words), "crc32": scene.crc32}
-        self._viewer.answer({"type": "done", "request": number, "scene": described})
+        Raises
+        ------
+        Refused
+            The files are no scene, it does not fit, another scene is being loaded, or `allowed` returns False when the
+            scene has been made.
+        DeviceError
+            The device did not keep the scene; the present one stays.
+        """
+        return await self._load(
+            partial(self._library.reader, files, progress), progress, check_only=check_only, allowed=allowed
+        )
 
-    def _progress(self, number: int) -> Progress:
-        """Make what the threads that read and write call: tells the viewer, now and then and each new stage."""
-        loop = asyncio.get_running_loop()
-        last_stage, last_time = "", 0.0
+    async def load_named(self, name: str, progress: Progress, *, allowed: Callable[[], bool]) -> Scene:
+        """Load a scene of the library. Raises what :meth:`load_files` raises."""
+        return await self._load(self._library.find(name), progress, check_only=False, allowed=allowed)
 
-        def tell(stage: str, done: int, total: int) -> None:
-            nonlocal last_stage, last_time
-            now = time.monotonic()
-            if stage != last_stage or done == total or now - last_time >= _PROGRESS_SECONDS:
-                last_stage, last_time = stage, now
-                message = {"type": "progress", "request": number, "stage": stage, "done": done, "total": total}
-                loop.call_soon_threadsafe(self._viewer.answer, message)
+    def close(self) -> None:
+        """Close the device."""
+        self._reader_thread.shutdown(wait=False, cancel_futures=True)
+        self.renderer.close()
 
-        return tell
+    async def _load(
+        self, make_scene: Callable[[], Scene], progress: Progress, *, check_only: bool, allowed: Callable[[], bool]
+    ) -> Scene:
+        if self._scene_change.locked():
+            raise Refused("another scene is being loaded; try again when it is shown")
+        async with self._scene_change:
+            scene = await asyncio.get_running_loop().run_in_executor(self._reader_thread, make_scene)
+            self.renderer.check_scene(scene)
+            if check_only:
+                return scene
+            if not allowed():
+                raise Refused("another viewer took control meanwhile; the scene was not changed")
+            await self.renderer.load(scene, progress)
+        self.clients.queue_state()
+        return scene

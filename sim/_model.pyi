@@ -1,28 +1,36 @@
 # The exact model, native; src/model/module.cpp documents it.
-from typing import TypedDict
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 INSTRUCTION_SETS: tuple[str, ...]
 
-class RenderedPixels(TypedDict):
+class RenderedPixels(NamedTuple):
     colour: NDArray[np.uint8]
     material: NDArray[np.uint8]
     face: NDArray[np.uint8]
     words_read: int
 
-class TracedRays(TypedDict):
+class TracedRays(NamedTuple):
     material: NDArray[np.uint8]
     face: NDArray[np.uint8]
     cell: NDArray[np.int32]
     words_read: int
 
-class FollowedRay(TypedDict):
+class Reading(NamedTuple):
+    address: int
+    word: int
+    level: int
+    corner: tuple[int, int, int]
+    axis: int
+    time: int
+
+class FollowedRay(NamedTuple):
     material: int
     face: int
     cell: tuple[int, int, int]
-    readings: list[tuple[int, int, int, tuple[int, int, int], int, int]]
+    readings: list[Reading]
 
 class Memory:
     def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...

@@ -17,7 +17,7 @@ from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE
 from voxrt.sim.rendering import palette_of
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
-from voxrt.voxelize.colour.paint import sample
+from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera
-    from voxrt.voxelize import Coat, Grid, Scene
+    from voxrt.voxelize import Grid, Scene, SurfaceAppearance
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -161,7 +161,7 @@ def _view_meshes(
 ) -> View:
     open3d = _open3d()
     caster = open3d.t.geometry.RaycastingScene()
-    first_triangle, colours, coats = [], [], []
+    first_triangle, colours, appearances = [], [], []
     count = 0
     palette = np.array([material.colour for material in scene.materials], dtype=np.float64)
     for item in scene.objects:
@@ -175,7 +175,7 @@ def _view_meshes(
         )
         first_triangle.append(count)
         colours.append(palette[mesh.materials])
-        coats.append(mesh.coat)
+        appearances.append(mesh.appearance)
         count += len(mesh.triangles)
 
     length = np.linalg.norm(directions, axis=-1)
@@ -195,26 +195,26 @@ def _view_meshes(
     if np.any(seen):
         part, triangle = cast["geometry_ids"].numpy()[seen], cast["primitive_ids"].numpy()[seen].astype(np.intp)
         own = np.concatenate(colours)[np.array(first_triangle)[part] + triangle]
-        _paint(own, coats, part, triangle, cast["primitive_uvs"].numpy()[seen].astype(np.float64))
+        _paint(own, appearances, part, triangle, cast["primitive_uvs"].numpy()[seen].astype(np.float64))
         colour[seen] = np.floor(own * cosine[seen][:, None] ** 2 + 0.5).astype(np.uint8)
     return View(colour, depth, normal)
 
 
 def _paint(
     colours: NDArray[np.float64],
-    coats: list[Coat | None],
+    appearances: list[SurfaceAppearance | None],
     part: NDArray[np.uint32],
     triangle: NDArray[np.intp],
     shares: NDArray[np.float64],
 ) -> None:
     """Replace the colours of hits on painted triangles; `shares` are those of the triangles' other two corners."""
-    for number, coat in enumerate(coats):
-        if coat is None:
+    for number, appearance in enumerate(appearances):
+        if appearance is None:
             continue
         here = np.flatnonzero(part == number)
-        here = here[coat.rows[triangle[here]] >= 0]
+        here = here[appearance.rows[triangle[here]] >= 0]
         weights = np.column_stack([1 - shares[here].sum(axis=1), shares[here]])
-        colours[here] = srgb_from_linear(sample(coat, triangle[here], weights)[:, :3])
+        colours[here] = srgb_from_linear(sample(appearance, triangle[here], weights)[:, :3])
 
 
 def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> View:
@@ -224,17 +224,17 @@ def _view_voxels(rom: Rom, camera: Camera, directions: NDArray[np.float64]) -> V
     memory = _model.Memory(rom.octree.words, rom.octree.depth)
     registers = np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
     hits = memory.trace(np.ascontiguousarray(origins), flat.astype(np.int32))
-    axis = np.minimum(hits["face"], 2)[:, None].astype(np.int64)
+    axis = np.minimum(hits.face, 2)[:, None].astype(np.int64)
     lateral = np.take_along_axis(flat, axis, 1)[:, 0]
     # The plane crossed is the near one of the cell hit.
-    plane = np.take_along_axis(hits["cell"], axis, 1)[:, 0] + (lateral < 0)
+    plane = np.take_along_axis(hits.cell, axis, 1)[:, 0] + (lateral < 0)
     start = np.array(camera.position)[axis[:, 0]] / POSITION_UNITS
-    crossed = hits["face"] != FACE_NONE
+    crossed = hits.face != FACE_NONE
     parameter = np.where(crossed, (plane - start) / np.where(crossed, lateral, 1), 0)
-    depth = np.where(hits["material"] > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
+    depth = np.where(hits.material > 0, parameter * np.linalg.norm(flat, axis=1), np.inf)
     normal = np.zeros_like(flat)
     np.put_along_axis(normal, axis, np.where(crossed, -np.sign(lateral), 0)[:, None], 1)
-    colour = memory.render(palette_of(rom), registers, width, height)["colour"]
+    colour = memory.render(palette_of(rom), registers, width, height).colour
     return View(colour, depth.reshape(height, width), normal.reshape(height, width, 3))
 
 

@@ -202,15 +202,15 @@ def follow_ray(octree: Octree, origin: ArrayLike, direction: ArrayLike) -> RayPa
     if max(map(abs, way)) >= DIRECTION_LIMIT:
         raise SimulatorError(f"the ray's direction {way} is not below 2**20; scale it down")
     followed = _model.Memory(octree.words, octree.depth).follow(_int32(start), _int32(way))
-    material = followed["material"]
+    material = followed.material
     return RayPath(
         origin=start,
         direction=way,
         root=int(octree.words[0]),
-        readings=tuple(Reading(*reading) for reading in followed["readings"]),
+        readings=tuple(Reading(**reading._asdict()) for reading in followed.readings),
         material=material,
-        face=followed["face"],
-        cell=followed["cell"] if material else None,
+        face=followed.face,
+        cell=followed.cell if material else None,
     )
 
 

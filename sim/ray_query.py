@@ -101,7 +101,7 @@ def cast_rays(octree: Octree, origins: ArrayLike, directions: ArrayLike, *, thre
         some = slice(first, min(first + _CHUNK, count))
         places, (steps, doublings) = _places(starts[some], first), _steps(ways[some], first)
         traced = memory.trace(places, steps, threads)
-        material[some], face[some], voxel[some] = traced["material"], traced["face"], traced["cell"]
+        material[some], face[some], voxel[some] = traced.material, traced.face, traced.cell
         in_steps = _parameters(places, steps, material[some], face[some], voxel[some])
         parameter[some] = np.ldexp(in_steps, doublings)
         distance[some] = in_steps * np.linalg.norm(steps.astype(np.float64), axis=1)

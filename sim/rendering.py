@@ -167,9 +167,9 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lig
         **_shading_of(rom, lighting),
     )
     return Frame(
-        colour=pixels["colour"],
-        material=pixels["material"],
-        face=pixels["face"],
+        colour=pixels.colour,
+        material=pixels.material,
+        face=pixels.face,
         cost=RenderCost(size[0] * size[1], None, None, time.perf_counter() - started),
     )
 

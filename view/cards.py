@@ -21,7 +21,7 @@ from voxrt.view.errors import ViewerError
 from voxrt.view.pane import Pane
 from voxrt.view.pictures import picture
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
-from voxrt.voxelize import EMPTY, AssetError, Material, Scene, fit_grid, tint, voxelize
+from voxrt.voxelize import EMPTY, AssetError, Material, Scene, assign_colours, fit_grid, voxelize
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -132,8 +132,8 @@ def _scene_png(scene: Scene) -> bytes | None:
         grid = fit_grid(scene, depth=_SCENE_DEPTH)
     except AssetError:
         return None
-    tinted = tint(scene, grid)
-    return rom_png(Rom(scene.name, build(voxelize(tinted, grid).voxels), tinted.materials, grid), "material")
+    coloured = assign_colours(scene, grid)
+    return rom_png(Rom(scene.name, build(voxelize(coloured, grid).voxels), coloured.materials, grid), "material")
 
 
 def _path_html(path: RayPath) -> str:

@@ -53,7 +53,10 @@ def find_owners(scene: Scene, grid: Grid) -> Owners:
         replace(
             item,
             mesh=replace(
-                item.mesh, materials=np.full(len(item.mesh.triangles), number, np.uint8), coat=None, tints=None
+                item.mesh,
+                materials=np.full(len(item.mesh.triangles), number, np.uint8),
+                appearance=None,
+                material_map=None,
             ),
             collider_material=number,
         )

@@ -1,38 +1,38 @@
 # The manual of these functions is their docstrings, in src/module.cpp.
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Arrays: TypeAlias = tuple[
-    NDArray[np.uint64],
-    NDArray[np.uint64],
-    NDArray[np.uint8],
-    NDArray[np.int32],
-    NDArray[np.uint8],
-    NDArray[np.uint64],
-    NDArray[np.uint8],
-    NDArray[np.uint8],
-    NDArray[np.int64],
-    NDArray[np.uint8],
-    NDArray[np.int64],
-    dict[str, float],
-]
+OBJECT_MODES: tuple[str, ...]
 
-class OutOfReachError(ValueError): ...
+class OutOfRangeError(ValueError): ...
+
+class MeshArrays(NamedTuple):
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    materials: NDArray[np.uint8]
+    raster_sizes: NDArray[np.int32]
+    raster_coordinates: NDArray[np.float32]
+    raster_materials: NDArray[np.uint8]
+
+class Voxelized(NamedTuple):
+    brick_codes: NDArray[np.uint64]
+    brick_masks: NDArray[np.uint64]
+    brick_materials: NDArray[np.uint8]
+    brick_rows: NDArray[np.int32]
+    cells: NDArray[np.uint8]
+    octant_codes: NDArray[np.uint64]
+    octant_levels: NDArray[np.uint8]
+    octant_materials: NDArray[np.uint8]
+    object_voxels: NDArray[np.int64]
+    object_modes: NDArray[np.uint8]
+    object_flipped: NDArray[np.int64]
+    seconds: dict[str, float]
 
 def voxelize(
     depth: int,
-    meshes: list[
-        tuple[
-            NDArray[np.float64],
-            NDArray[np.int32],
-            NDArray[np.uint8],
-            NDArray[np.int32],
-            NDArray[np.float32],
-            NDArray[np.uint8],
-        ]
-    ],
+    meshes: list[MeshArrays],
     kinds: NDArray[np.uint8],
     mesh_of: NDArray[np.int32],
     frames: NDArray[np.float64],
@@ -41,5 +41,5 @@ def voxelize(
     objects: int,
     fill: bool,
     threads: int,
-) -> Arrays: ...
+) -> Voxelized: ...
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...

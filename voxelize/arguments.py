@@ -319,6 +319,9 @@ def whole_array(
     ValueError: materials[1] must be an integer 1 … 255, not 300
     """
     given = _shaped(name, value, shape, "integers")
+    limits = np.iinfo(dtype)
+    if given.dtype == dtype and low <= limits.min and high >= limits.max:
+        return given
     if not given.size or (given.dtype.kind in "iu" and given.min() >= low and given.max() <= high):
         return given.astype(dtype, copy=False)
     allowed = (given >= low) & (given <= high)  # NaN compares false

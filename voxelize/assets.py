@@ -1,4 +1,4 @@
-"""One door for asset files: the suffix picks the loader, and every loader ends in the same :class:`Scene`."""
+"""Loading asset files: the suffix selects the loader, and every loader returns a :class:`Scene`."""
 
 from __future__ import annotations
 
@@ -7,15 +7,20 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from voxrt.voxelize import arguments
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from voxrt.voxelize.scene import Scene
 
 UpAxis: TypeAlias = Literal["x", "y", "z"]
 
-# Loaders are imported when a file asks for them: USD alone takes longer to import than a small scene to build. Each
-# stands with what it can be told.
+UP_AXES: tuple[UpAxis, ...] = ("x", "y", "z")
+
+# Module, function and options of each loader. Loaders are imported when needed, for importing USD takes longer than
+# building a small scene.
 _LOADERS = {
     ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
     ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
@@ -30,13 +35,13 @@ _LOADERS = {
 }
 
 SUFFIXES = tuple(_LOADERS)
-"""The suffixes :func:`load` knows, in lower case."""
+"""The suffixes that :func:`load` reads, in lower case."""
 
 _WHY_IGNORED = {
-    "up": "the up axis was ignored: {} files say it themselves",
-    "unit": "the unit was ignored: {} files say it themselves",
+    "up": "the up axis was ignored: {} files define it",
+    "unit": "the unit was ignored: {} files define it",
     "time": "the time was ignored: {} files have no animation",
-    "animation": "the animation's name was ignored: {} files have none to choose from",
+    "animation": "the animation's name was ignored: {} files have no named animations",
     "variants": "variants were ignored: {} files have none",
 }
 
@@ -48,64 +53,66 @@ def load(
     unit: float | None = None,
     time: float | None = None,
     animation: str | None = None,
-    variants: tuple[str, ...] = (),
+    variants: Sequence[str] = (),
     allow_outside: bool = False,
 ) -> Scene:
-    """Read an asset file into a scene (right-handed, metres, y up).
+    r"""Read an asset file into a scene (right-handed, metres, y up).
+
+    A format ignores the options that do not apply to it, with a warning.
 
     Parameters
     ----------
     path
         A ``.gltf``, ``.glb``, ``.obj``, ``.stl``, ``.ply``, ``.usd``, ``.usda``, ``.usdc`` or ``.usdz`` file, or a
-        scene written by hand, ``.toml``; the case of the suffix does not matter.
+        ``.toml`` scene file. The case of the suffix does not matter.
     up
-        The file's up axis, for formats that do not say (OBJ, STL, PLY).
+        The file's up axis, for formats that do not define it (OBJ, STL, PLY); None for y.
     unit
-        Metres per unit of the file, for formats that do not say.
+        Metres per unit of the file, for the same formats; None for 1.
     time
-        The second of its animation at which the file is shown, for formats that have some (glTF, USD).
+        Seconds into the animation, for formats with animations (glTF, USD); None for the pose at rest.
     animation
-        Which of its animations, by name or by number counted from 0 (glTF); the first where this is not given.
+        An animation's name or its index, counted from 0 (glTF); None for the first.
     variants
-        What to show of what the file has in several ways: the name of one material variant (glTF), or
-        ``/prim/path:set=variant`` any number of times (USD).
+        The name of one material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
     allow_outside
-        Whether files that the asset names may stand outside its folder and the folders in it.
+        Whether files that the asset names may stand outside its folder and the folders below.
 
-    Formats ignore what is not for them, with a warning.
+    Returns
+    -------
+    Scene
+        The file's objects, materials, viewpoint and light, with warnings about what was ignored or replaced.
 
     Raises
     ------
+    TypeError, ValueError
+        An option of the wrong kind or range.
     AssetError
-        The file cannot be read, is malformed, or says something that cannot be honoured.
+        The file cannot be read, is malformed, or asks for something that is not supported.
     DoesNotFitError
         More than 255 materials.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "sail.obj")
+    ...     _ = path.write_text("v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n")
+    ...     scene = load(path, unit=0.01)
+    >>> scene
+    Scene(name='sail', objects=1, triangles=1, materials=2, warnings=1)
+    >>> scene.warnings[0].message
+    'faces without a material got the default one'
     """
+    if not isinstance(path, (str, Path)):
+        raise TypeError(f"path must be a string or a Path, not {arguments.shown(path)}")
     path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"give one of {', '.join(SUFFIXES)}")
-    try:
-        is_file, is_folder = path.is_file(), path.is_dir()
-    except OSError:  # a name longer than any file's
-        is_file = is_folder = False
-    if not is_file:
-        problem = "is a folder, not a file" if is_folder else "no such file"
-        raise AssetError(path, problem, fix="check the path")
-    module, name, understood = _LOADERS[suffix]
-    told = {
-        option: value
-        for option, value in (
-            ("up", up),
-            ("unit", unit),
-            ("time", time),
-            ("animation", animation),
-            ("variants", variants),
-        )
-        if value not in (None, ())
-    }
-    options: dict[str, object] = {option: value for option, value in told.items() if option in understood}
-    if "allow_outside" in understood:
+    given = _checked(up=up, unit=unit, time=time, animation=animation, variants=variants)
+    allow_outside = arguments.flag("allow_outside", allow_outside)
+    suffix = _suffix(path)
+    module, name, options_of = _LOADERS[suffix]
+    options: dict[str, object] = {option: value for option, value in given.items() if option in options_of}
+    if "allow_outside" in options_of:
         options["allow_outside"] = allow_outside
     try:
         scene: Scene = getattr(import_module(module), name)(path, **options)
@@ -113,7 +120,42 @@ def load(
         raise DoesNotFitError(f"{path}: {error}") from None
     ignored = tuple(
         SceneWarning("ignored-option", _WHY_IGNORED[option].format(suffix[1:]))
-        for option in told
-        if option not in understood
+        for option in given
+        if option not in options_of
     )
-    return replace(scene, warnings=scene.warnings + ignored)
+    return replace(scene, warnings=scene.warnings + ignored) if ignored else scene
+
+
+def _checked(
+    *, up: object, unit: object, time: object, animation: object, variants: Sequence[str]
+) -> dict[str, object]:
+    """Return the options that are given, checked and converted."""
+    given: dict[str, object] = {}
+    if up is not None:
+        given["up"] = arguments.choice("up", up, UP_AXES)
+    if unit is not None:
+        given["unit"] = arguments.real("unit", unit, above=0)
+    if time is not None:
+        given["time"] = arguments.real("time", time)
+    if animation is not None:
+        given["animation"] = arguments.text("animation", animation)
+    if isinstance(variants, str):
+        raise TypeError(f"variants must be a sequence of strings, not a string: pass ({variants!r},)")
+    if variants:
+        given["variants"] = tuple(arguments.text(f"variants[{index}]", one) for index, one in enumerate(variants))
+    return given
+
+
+def _suffix(path: Path) -> str:
+    """Return the suffix of a file that can be loaded, in lower case."""
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"use one of {', '.join(SUFFIXES)}")
+    try:
+        is_file, is_folder = path.is_file(), path.is_dir()
+    except OSError:  # the name is longer than any file's
+        is_file = is_folder = False
+    if not is_file:
+        problem = "is a folder, not a file" if is_folder else "no such file"
+        raise AssetError(path, problem, fix="check the path")
+    return suffix

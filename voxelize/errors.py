@@ -1,4 +1,4 @@
-"""What voxelize says to a person whose input it cannot honour."""
+"""Errors and warnings about input."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 class AssetError(Exception):
-    """An asset file that cannot be honoured, in one line: file, place in it, what is wrong, how to fix it.
+    """An asset file that cannot be loaded. The message is one line: file, place in it, what is wrong, how to fix it.
 
     Parameters
     ----------
@@ -15,9 +15,14 @@ class AssetError(Exception):
     problem
         What is wrong, starting in lower case, without a full stop.
     place
-        Where in the file: a JSON path, a prim path, a line number. Empty where the file as a whole is meant.
+        Where in the file: a JSON path, a prim path, a line number. Empty for the file as a whole.
     fix
         What the user can do about it.
+
+    Examples
+    --------
+    >>> print(AssetError("house.obj", "a vertex needs three numbers", place="line 7", fix="repair the vertex"))
+    house.obj: line 7: a vertex needs three numbers; repair the vertex
     """
 
     def __init__(self, path: object, problem: str, *, place: str = "", fix: str = "") -> None:
@@ -30,21 +35,26 @@ class AssetError(Exception):
 
 
 class DoesNotFitError(Exception):
-    """Input that is sound but larger than something holds: too many materials, too deep, too many words."""
+    """Valid input that exceeds a limit: too many materials, too many voxels per side, too many words."""
 
 
 @dataclass(frozen=True, slots=True)
 class SceneWarning:
-    """Something the input said that was not honoured as it stands, counted.
+    """Something in the input that was ignored or replaced.
 
     Attributes
     ----------
     kind
         A stable kebab-case name, for programs: ``"default-material"``.
     message
-        One line for people, saying what was done instead.
+        One line for people: what was done instead.
     count
         How many times it happened.
+
+    Examples
+    --------
+    >>> SceneWarning("default-material", "faces without a material got the default one", 12).count
+    12
     """
 
     kind: str

@@ -6,141 +6,24 @@ Scene frame: right-handed, metres, y up. A material's id is its index in :attr:`
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from voxrt.voxelize import arguments
+from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
+from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
+from voxrt.voxelize.mesh import Mesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.colour.paint import Coat
     from voxrt.voxelize.errors import SceneWarning
-
-
-@dataclass(frozen=True, slots=True)
-class Material:
-    """A named uniform material.
-
-    Attributes
-    ----------
-    name
-        The author's name for it, unique in its scene.
-    colour
-        sRGB, 8 bits a channel.
-    mirror
-        Reflects instead of showing its own shade, where the hardware has mirrors.
-    authored
-        False for the default material that stands in where the author gave none.
-    """
-
-    name: str
-    colour: tuple[int, int, int]
-    mirror: bool = False
-    authored: bool = True
-
-
-EMPTY = Material("empty", (24, 28, 36))
-"""Entry 0 of every material table: empty space; its colour is the background's, dark for faces to stand out from it,
-and not black for shaded edges to stand out too."""
-
-DEFAULT_COLOUR = (200, 200, 200)
-"""The sRGB colour of the default material."""
-
-MATERIAL_LIMIT = 255
-"""How many materials a memory word can tell apart, empty space not counted."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Tints:
-    """Materials that vary over triangles, made for a grid by :func:`voxrt.voxelize.tint`.
-
-    Each tinted triangle lies in a raster of materials. Place (u, v) of a raster is in column floor(u) and row floor(v);
-    a triangle's point is at the place that its corners' places give it.
-
-    Attributes
-    ----------
-    sizes
-        int32, shape (T, 2): columns and rows of each triangle's raster, 1 … 65536; 0 and 0 where it has one material.
-    places
-        float32, shape (T, 3, 2): the places of its corners.
-    materials
-        uint8, shape (sum of columns times rows,): material ids, raster by raster, row by row; 0 where the surface is
-        cut away.
-    """
-
-    sizes: NDArray[np.int32]
-    places: NDArray[np.float32]
-    materials: NDArray[np.uint8]
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Mesh:
-    """Triangles in their object's frame. Instances share one mesh.
-
-    Attributes
-    ----------
-    positions
-        float32 or float64, as the file has them, shape (V, 3); finite where a triangle uses them.
-    triangles
-        int32, shape (T, 3): rows of `positions`, counter-clockwise seen from outside.
-    materials
-        uint8, shape (T,): material ids, 1 … 255. Painted triangles have that of their paint, and
-        once they are tinted that of most of the mesh's paint.
-    coat
-        The paint on its triangles, to be sampled point by point; None where materials alone give their colour.
-    tints
-        Materials that vary over its painted triangles, which the voxelizer prefers to `materials`; None before it is
-        tinted.
-    """
-
-    positions: NDArray[np.floating]
-    triangles: NDArray[np.int32]
-    materials: NDArray[np.uint8]
-    coat: Coat | None = None
-    tints: Tints | None = None
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class BoxCollider:
-    """A box in its object's frame, from `minimum` to `maximum` (float64, shape (3,)).
-
-    `pow2` says whether its sides are rounded up to powers of two voxels when the user asks for no rule of their own.
-    """
-
-    minimum: NDArray[np.float64]
-    maximum: NDArray[np.float64]
-    pow2: bool = True
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class SphereCollider:
-    """A ball in its object's frame: `centre` (float64, shape (3,)), `radius`; an ellipsoid where the frame scales."""
-
-    centre: NDArray[np.float64]
-    radius: float
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class HullCollider:
-    """The convex hull of `positions` (float64, shape (V, 3)), in its object's frame."""
-
-    positions: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class MeshCollider:
-    """Triangles that stand in for the rendered ones: `positions` and `triangles` as those of a :class:`Mesh`."""
-
-    positions: NDArray[np.floating]
-    triangles: NDArray[np.int32]
-
-
-Collider: TypeAlias = BoxCollider | SphereCollider | HullCollider | MeshCollider
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SceneObject:
-    """One object of the scene, in authored order.
+    """One object of the scene.
 
     Attributes
     ----------
@@ -151,9 +34,20 @@ class SceneObject:
     transform
         float64, shape (4, 4), affine, column vectors: object frame to scene frame. May mirror.
     colliders
-        The authored stand-ins, filled with `collider_material`; empty where the author gave none.
+        The colliders that its author gave it; they are filled with `collider_material`.
     collider_material
-        Material id 1 … 255 that colliders take.
+        Material id 1 … 255.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of the wrong kind or range, or a transform that is not affine and finite.
+
+    Examples
+    --------
+    >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
+    >>> SceneObject("sail", mesh)
+    SceneObject(name='sail', mesh=Mesh(vertices=3, triangles=1), colliders=0)
     """
 
     name: str
@@ -162,49 +56,126 @@ class SceneObject:
     colliders: tuple[Collider, ...] = ()
     collider_material: int = 1
 
+    def __post_init__(self) -> None:
+        arguments.text("SceneObject.name", self.name)
+        arguments.instance("SceneObject.mesh", self.mesh, Mesh)
+        transform = arguments.real_array("SceneObject.transform", self.transform, (4, 4))
+        if np.abs(transform[3] - (0, 0, 0, 1)).max() > _AFFINE_TOLERANCE:
+            raise ValueError(f"SceneObject.transform must be affine: its last row is {transform[3].tolist()}")
+        colliders = tuple(self.colliders)
+        for index, one in enumerate(colliders):
+            if not isinstance(one, (BoxCollider, SphereCollider, HullCollider, MeshCollider)):
+                raise TypeError(f"SceneObject.colliders[{index}] must be a collider, not {type(one).__name__}")
+        material = arguments.whole("SceneObject.collider_material", self.collider_material, 1, MATERIAL_LIMIT)
+        object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
+        object.__setattr__(self, "colliders", colliders)
+        object.__setattr__(self, "collider_material", material)
+
+    def __repr__(self) -> str:
+        return f"SceneObject(name={self.name!r}, mesh={self.mesh!r}, colliders={len(self.colliders)})"
+
+
+_AFFINE_TOLERANCE = 1e-6
+
 
 @dataclass(frozen=True, slots=True)
 class Viewpoint:
-    """Where an author wants the scene seen from.
+    """The camera that an author gave a scene.
 
     Attributes
     ----------
     eye, target
-        Metres, scene frame: where the camera stands and what is in the middle of its picture.
+        Metres, scene frame: the camera's position and the point in the middle of its picture.
     field_of_view
-        Degrees from the picture's top to its bottom; None where the author does not say.
+        Degrees from the picture's top to its bottom, between 0 and 180; None where the author does not say.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A point that is not three finite numbers, an eye at the target, or a field of view out of range.
+
+    Examples
+    --------
+    >>> Viewpoint([6, 4, 9], [0, 1, 0], 45)
+    Viewpoint(eye=(6.0, 4.0, 9.0), target=(0.0, 1.0, 0.0), field_of_view=45.0)
     """
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
     field_of_view: float | None = None
 
+    def __post_init__(self) -> None:
+        eye = arguments.vector("Viewpoint.eye", self.eye)
+        target = arguments.vector("Viewpoint.target", self.target)
+        if eye == target:
+            raise ValueError(f"Viewpoint.eye and Viewpoint.target must differ; both are {eye}")
+        object.__setattr__(self, "eye", eye)
+        object.__setattr__(self, "target", target)
+        if self.field_of_view is not None:
+            angle = arguments.real("Viewpoint.field_of_view", self.field_of_view, above=0, below=180)
+            object.__setattr__(self, "field_of_view", angle)
+
 
 @dataclass(frozen=True, slots=True)
 class PointLight:
-    """Where an author wants light to come from: `position` in metres, scene frame."""
+    """The light that an author gave a scene.
+
+    Attributes
+    ----------
+    position
+        Metres, scene frame.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A position that is not three finite numbers.
+
+    Examples
+    --------
+    >>> PointLight([3, 8, 4])
+    PointLight(position=(3.0, 8.0, 4.0))
+    """
 
     position: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "position", arguments.vector("PointLight.position", self.position))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
-    """Everything an asset file said, in the scene frame.
+    """The content of an asset file, in the scene frame.
 
     Attributes
     ----------
     name
         The asset's name without folder and suffix.
     objects
-        In authored order: where they compete for a voxel, the first wins.
+        In authored order: where objects compete for a voxel, the first wins.
     materials
         Indexed by material id; entry 0 is :data:`EMPTY`; at most 256 entries.
     warnings
-        What was said by the file and not honoured as it stands.
+        What the loader ignored or replaced.
     viewpoint
-        The author's camera, for pictures for which no other is asked; None where the author gave none.
+        The author's camera, used where no other is given; None where the author gave none.
     light
         The author's light, likewise.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of the wrong kind, more than 256 materials, or an object whose material is not declared.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
+    >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
+    >>> Scene("boat", [SceneObject("sail", mesh)], [EMPTY, Material("cloth", (240, 240, 230))])
+    Scene(name='boat', objects=1, triangles=1, materials=2, warnings=0)
+    >>> Scene("boat", [SceneObject("sail", mesh)], [EMPTY])
+    Traceback (most recent call last):
+        ...
+    ValueError: object 'sail' uses material 1, and Scene.materials ends at 0: declare the material
     """
 
     name: str
@@ -213,3 +184,45 @@ class Scene:
     warnings: tuple[SceneWarning, ...] = ()
     viewpoint: Viewpoint | None = None
     light: PointLight | None = None
+
+    def __post_init__(self) -> None:
+        arguments.text("Scene.name", self.name)
+        object.__setattr__(self, "objects", tuple(self.objects))
+        object.__setattr__(self, "materials", tuple(self.materials))
+        object.__setattr__(self, "warnings", tuple(self.warnings))
+        for index, one in enumerate(self.objects):
+            arguments.instance(f"Scene.objects[{index}]", one, SceneObject)
+        for index, material in enumerate(self.materials):
+            arguments.instance(f"Scene.materials[{index}]", material, Material)
+        if self.viewpoint is not None:
+            arguments.instance("Scene.viewpoint", self.viewpoint, Viewpoint)
+        if self.light is not None:
+            arguments.instance("Scene.light", self.light, PointLight)
+        if not 1 <= len(self.materials) <= MATERIAL_LIMIT + 1:
+            raise ValueError(f"Scene.materials must have 1 … {MATERIAL_LIMIT + 1} entries, not {len(self.materials)}")
+        self._refuse_undeclared_materials()
+
+    def _refuse_undeclared_materials(self) -> None:
+        highest: dict[int, int] = {}
+        for one in self.objects:
+            key = id(one.mesh)
+            if key not in highest:
+                highest[key] = _highest_material(one.mesh)
+            used = max(highest[key], one.collider_material if one.colliders else 0)
+            if used >= len(self.materials):
+                raise ValueError(
+                    f"object {one.name!r} uses material {used}, and Scene.materials ends at {len(self.materials) - 1}: "
+                    "declare the material"
+                )
+
+    def __repr__(self) -> str:
+        triangles = sum(len(one.mesh.triangles) for one in self.objects)
+        return (
+            f"Scene(name={self.name!r}, objects={len(self.objects)}, triangles={triangles}, "
+            f"materials={len(self.materials)}, warnings={len(self.warnings)})"
+        )
+
+
+def _highest_material(mesh: Mesh) -> int:
+    mapped = 0 if mesh.material_map is None else int(mesh.material_map.materials.max(initial=0))
+    return max(mapped, int(mesh.materials.max(initial=0)))

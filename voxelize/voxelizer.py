@@ -1,13 +1,12 @@
-"""From a scene to its voxels: the front of the native voxelizer.
+"""The front of the native voxelizer: a scene becomes voxels.
 
-Each object becomes parts in grid space: its mesh, or a part for each of its colliders. Vertices are snapped to 1/4096
-voxel; from there on coverage is exact (see src/triangle_coverage.h), inside is told by winding numbers
-(src/solid_fill.h), and the first object keeps a voxel.
+Each object becomes parts in grid space: its mesh, or one part per collider. Vertices are snapped to 1/4096 voxel; from
+there on coverage is exact. Winding numbers tell inside from outside. The first object that covers a voxel keeps it.
 
-Materials: a shell voxel takes the material of the first triangle, in authored order, that covers it; where the triangle
-is tinted, the one of its point nearest to the voxel's centre. The inside, which no ray from outside can see, takes that
-of its object's first triangle. Surface that is cut away is still surface to the inside: it ends there, and the voxels
-that only such surface is in are empty.
+Materials: a voxel of the shell takes the material of the first triangle, in authored order, that covers it. Where that
+triangle has a material map, it takes the material at the triangle's point nearest to the voxel's centre. The inside,
+which no ray from outside can see, takes the material of its object's first triangle. A surface that is cut away still
+bounds the inside; voxels that only such a surface covers are empty.
 """
 
 from __future__ import annotations
@@ -16,43 +15,29 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from voxrt.voxelize import _native
-from voxrt.voxelize.colliders import (
-    BOX_TRIANGLES,
-    UNITS_PER_VOXEL,
-    box_corners,
-    box_in_voxels,
-    keeps_axes,
-    keeps_shape,
-    round_box,
-    stand_ins,
-)
+from voxrt.voxelize import _native, arguments
+from voxrt.voxelize.box_rounding import POW2_CHOICES, UNITS_PER_VOXEL, box_in_voxels, keeps_axes, keeps_shape, round_box
+from voxrt.voxelize.collider_shapes import BOX_TRIANGLES, BoxCollider, HullCollider, SphereCollider, box_corners
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
-from voxrt.voxelize.grid import DEPTH_LIMIT
-from voxrt.voxelize.scene import BoxCollider, HullCollider, SphereCollider, Tints
-from voxrt.voxelize.voxels import ObjectReport, Voxelization, Voxels
+from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.mesh import MaterialMap
+from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
+from voxrt.voxelize.scene import Scene
+from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.colliders import Geometry, Pow2
-    from voxrt.voxelize.grid import Grid
-    from voxrt.voxelize.scene import Collider, Scene, SceneObject
-
-    _NativeMesh = tuple[
-        NDArray[np.float64],
-        NDArray[np.int32],
-        NDArray[np.uint8],
-        NDArray[np.int32],
-        NDArray[np.float32],
-        NDArray[np.uint8],
-    ]
+    from voxrt.voxelize.box_rounding import Pow2
+    from voxrt.voxelize.collider_shapes import Collider
+    from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.scene import SceneObject
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
-_MODES = ("surface", "exact", "winding", "open", "turned")
+_MOST_THREADS = 1024
 _ZERO = (0.0, 0.0, 0.0)
-_ONE_MATERIAL = np.empty(0, np.uint8)  # no materials by triangle: the part has one
-_NO_TINTS = Tints(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
+_ONE_MATERIAL = np.empty(0, np.uint8)  # no material per triangle: the part has one
+_NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
 
 
 def voxelize(
@@ -69,69 +54,86 @@ def voxelize(
     Parameters
     ----------
     scene, grid
-        What to voxelize and where. Whatever lies outside the grid is cut off.
+        The scene, and the grid to voxelize it on. What lies outside the grid is cut off.
     fill
-        ``"solid"`` fills what surfaces enclose, holes or not and whichever way each closed piece faces, but not what
-        stands open: a connected piece of an object of which one opening is larger than 15 % of its area, unless other
-        pieces close it. ``"surface"`` keeps shells alone.
+        ``"solid"`` fills what surfaces enclose, small holes or not and whichever way each closed piece faces. It does
+        not fill open pieces: those with an opening larger than 15 % of their area that other pieces do not close.
+        ``"surface"`` keeps the shells alone.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
-        ``"collider"``: always colliders, the box of the mesh where the author gave none (with a warning).
+        ``"collider"``: always colliders, and the box of the mesh where the author gave none (with a warning).
     pow2
         ``"box"`` rounds box colliders that ask for it up to powers of two voxels; ``"none"`` never.
     threads
-        0 takes as many as the machine has. The result does not depend on it.
+        The number of threads, 0 … 1024; 0 for as many as the machine has. The result does not depend on it.
+
+    Returns
+    -------
+    Voxelization
+        The voxels, a report per object, and warnings.
 
     Raises
     ------
-    ValueError
-        An argument out of range.
+    TypeError, ValueError
+        An argument of the wrong kind or range.
     AssetError
-        A coordinate that is not a number.
+        A coordinate that is not finite.
     DoesNotFitError
         An object that reaches into the grid from more than 2**18 voxels away.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import Grid, authoring, voxelize
+    >>> yard = authoring.Author("yard")
+    >>> _ = yard.material("stone", "#9a9aa0")
+    >>> yard.add("block", authoring.box((4, 4, 4), centre=(2, 2, 2)), material="stone")
+    >>> result = voxelize(yard.build(), Grid(3, (0, 0, 0), 1.0))
+    >>> [(one.name, str(one.mode), one.voxels) for one in result.objects]
+    [('block', 'exact', 64)]
     """
-    _check(grid, fill, geometry, pow2, threads)
+    arguments.instance("scene", scene, Scene)
+    arguments.instance("grid", grid, Grid)
+    arguments.choice("fill", fill, ("solid", "surface"))
+    arguments.choice("geometry", geometry, GEOMETRIES)
+    arguments.choice("pow2", pow2, POW2_CHOICES)
+    threads = arguments.whole("threads", threads, 0, _MOST_THREADS)
     parts = _Parts(grid)
     reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
     try:
         result = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
-    except _native.OutOfReachError as error:
+    except _native.OutOfRangeError as error:
         raise _unreachable(scene, int(error.args[0])) from None
     objects = tuple(
-        ObjectReport(item.name, source, _MODES[mode], int(count), moved, grown)
-        for item, (source, moved, grown), mode, count in zip(scene.objects, reports, result[9], result[8], strict=True)
+        ObjectReport(item.name, source, ObjectMode(_native.OBJECT_MODES[mode]), int(count), moved, grown)
+        for item, (source, moved, grown), mode, count in zip(
+            scene.objects, reports, result.object_modes, result.object_voxels, strict=True
+        )
     )
-    standing_open = sum(report.mode == "open" for report in objects)
+    standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
     if standing_open:
         parts.warn(
             "open-surface",
-            "objects that stand open, like a room without a front, were not filled: close them or give them colliders",
+            "open objects, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
         )
-    if pieces := int(result[10].sum()):
+    if pieces := int(result.object_flipped.sum()):
         parts.warn(
             "turned-pieces",
-            "closed pieces that were inside out beside others of their object were turned: recalculate their normals",
+            "closed pieces that face inwards, unlike others of their object, were turned: recalculate their normals",
             pieces,
         )
-    return Voxelization(Voxels(grid.depth, *result[:8]), objects, tuple(parts.warnings()), result[11])
-
-
-def _check(grid: Grid, fill: str, geometry: str, pow2: str, threads: int) -> None:
-    if not 1 <= grid.depth <= DEPTH_LIMIT:
-        raise ValueError(f"grid.depth must be 1 … {DEPTH_LIMIT}, not {grid.depth}")
-    if not (np.isfinite(grid.voxel_size) and grid.voxel_size > 0 and np.isfinite(grid.origin).all()):
-        raise ValueError("grid.voxel_size must be a positive number, grid.origin three numbers")
-    for name, value, choices in (
-        ("fill", fill, ("solid", "surface")),
-        ("geometry", geometry, ("auto", "render", "collider")),
-        ("pow2", pow2, ("box", "none")),
-    ):
-        if value not in choices:
-            raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
-    if not 0 <= threads <= 1024:
-        raise ValueError(f"threads must be 0 … 1024, not {threads}")
+    voxels = Voxels(
+        depth=grid.depth,
+        brick_codes=result.brick_codes,
+        brick_masks=result.brick_masks,
+        brick_materials=result.brick_materials,
+        brick_rows=result.brick_rows,
+        cells=result.cells,
+        octant_codes=result.octant_codes,
+        octant_levels=result.octant_levels,
+        octant_materials=result.octant_materials,
+    )
+    return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
 
 
 class _Parts:
@@ -140,7 +142,7 @@ class _Parts:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self._scale = UNITS_PER_VOXEL / grid.voxel_size
-        self._meshes: list[_NativeMesh] = []
+        self._meshes: list[_native.MeshArrays] = []
         self._mesh_index: dict[int, int] = {}
         self._keys: list[object] = []
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
@@ -158,7 +160,7 @@ class _Parts:
         return [SceneWarning(kind, message, count) for (kind, message), count in self._counts.items()]
 
     def to_grid(self, transform: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Compose an object's transform with the way to grid space, in 1/4096 voxel: shape (3, 4)."""
+        """Return the transform from an object's frame to grid space, in 1/4096 voxel: float64, shape (3, 4)."""
         frame = transform[:3].astype(np.float64)
         frame[:, 3] -= self.grid.origin
         with np.errstate(over="ignore", invalid="ignore"):
@@ -176,27 +178,27 @@ class _Parts:
         mesh: tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8]],
         transform: NDArray[np.float64],
         material: int,
-        tints: Tints = _NO_TINTS,
+        material_map: MaterialMap = _NO_MAP,
     ) -> None:
-        """Add a mesh part: positions, triangles, materials. Parts whose `key` is one and the same object share them."""
+        """Add a mesh part: positions, triangles, materials. Parts with the same object as `key` share their arrays."""
         if len(mesh[1]) == 0:
             return
         if id(key) not in self._mesh_index:
             self._keys.append(key)  # an id is unique only while its object lives
             self._mesh_index[id(key)] = len(self._meshes)
             self._meshes.append(
-                (
-                    _vertices(mesh[0], mesh[1]),
-                    np.ascontiguousarray(mesh[1], dtype=np.int32),
-                    np.ascontiguousarray(mesh[2], dtype=np.uint8),
-                    np.ascontiguousarray(tints.sizes, dtype=np.int32),
-                    np.ascontiguousarray(tints.places, dtype=np.float32),
-                    np.ascontiguousarray(tints.materials, dtype=np.uint8),
+                _native.MeshArrays(
+                    positions=_vertices(mesh[0], mesh[1]),
+                    triangles=np.ascontiguousarray(mesh[1], dtype=np.int32),
+                    materials=np.ascontiguousarray(mesh[2], dtype=np.uint8),
+                    raster_sizes=np.ascontiguousarray(material_map.sizes, dtype=np.int32),
+                    raster_coordinates=np.ascontiguousarray(material_map.corners, dtype=np.float32),
+                    raster_materials=np.ascontiguousarray(material_map.materials, dtype=np.uint8),
                 )
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Arrays:
+    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Voxelized:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,
@@ -213,7 +215,7 @@ class _Parts:
 
 
 def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return vertices as the native voxelizer takes them: those that no triangle uses brought in from wherever."""
+    """Return vertices for the native voxelizer; those that no triangle uses move to a used one, for they may be far."""
     exact = np.ascontiguousarray(positions, dtype=np.float64)
     if triangles.min() < 0 or triangles.max() >= len(exact):
         return exact  # which the native voxelizer refuses
@@ -228,15 +230,15 @@ _Report = tuple[str, tuple[float, float, float], tuple[float, float, float]]
 
 
 def _add_object(parts: _Parts, item: SceneObject, geometry: Geometry, pow2: Pow2) -> _Report:
-    """Add an object's parts; returns its source and how far rounding moved and grew it."""
+    """Add an object's parts. Return its source, and how far rounding moved and grew it."""
     parts.start_object()
-    colliders = stand_ins(item, geometry)
+    colliders = proxies(item, geometry)
     mesh = item.mesh
     if colliders is None:
         materials = np.unique(mesh.materials)
-        only = int(materials[0]) if len(materials) == 1 and mesh.tints is None else 0
+        only = int(materials[0]) if len(materials) == 1 and mesh.material_map is None else 0
         arrays = (mesh.positions, mesh.triangles, mesh.materials)
-        parts.add_mesh(mesh, arrays, item.transform, only, mesh.tints or _NO_TINTS)
+        parts.add_mesh(mesh, arrays, item.transform, only, mesh.material_map or _NO_MAP)
         return "mesh", _ZERO, _ZERO
     material = item.collider_material
     if not item.colliders and colliders:
@@ -280,13 +282,15 @@ def _add_box(parts: _Parts, item: SceneObject, box: BoxCollider, material: int, 
     wants_rounding = pow2 == "box" and box.pow2
     if not keeps_axes(item.transform):
         if wants_rounding:
-            parts.warn("oriented-box", "boxes turned against the grid's axes were not rounded to powers of two")
+            parts.warn(
+                "oriented-box", "boxes that are rotated against the grid's axes were not rounded to powers of two"
+            )
         parts.add_mesh(box, (box_corners(box), BOX_TRIANGLES, _ONE_MATERIAL), item.transform, material)
         return "box", _ZERO, _ZERO
     low, high = box_in_voxels(item, box, parts.grid)
     moved, grown = _ZERO, _ZERO
     if wants_rounding:
-        rounded = round_box(low, high, parts.grid)
+        rounded = round_box(low, high, parts.grid.size)
         low, high = rounded.low.astype(np.float64), rounded.high.astype(np.float64)
         moved, grown = rounded.moved, rounded.grown
     parts.add(_BOX, np.rint(np.concatenate([low, high]) * UNITS_PER_VOXEL), material)

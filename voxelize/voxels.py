@@ -1,12 +1,13 @@
-"""What the voxelizer makes and the octree is built from: sparse bricks and uniform octants in Morton order.
+"""The voxelizer's output: sparse bricks and uniform octants in Morton order.
 
-Nothing here has the size of the volume: bricks stand only where the content is mixed, and a large interior is a few
+No array has the size of the volume: bricks exist only where the content is mixed, and a large interior is a few
 octants.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -21,8 +22,8 @@ class Voxels:
     """The solid voxels of a grid.
 
     Morton code: bit 3k is bit k of x, bit 3k+1 of y, bit 3k+2 of z, so the octant index is {z, y, x}. A brick holds
-    8x8x8 voxels, indexed 0 … 511 by the Morton code of their place in it. Grids of depth below 3 use the first
-    8**depth voxels of the single brick 0. Bricks and octants are disjoint; what neither holds is empty.
+    8x8x8 voxels, indexed 0 … 511 by the Morton code of their position in it. Grids of depth below 3 use the first
+    8**depth voxels of the single brick 0. Bricks and octants are disjoint. A voxel in neither is empty.
 
     Attributes
     ----------
@@ -33,11 +34,11 @@ class Voxels:
     brick_masks
         uint64, shape (B, 8): voxel i is solid when bit i % 64 of word i // 64 is set; never all zero.
     brick_materials
-        uint8, shape (B,): the material of every solid voxel of the brick, or 0 where `brick_rows` tells.
+        uint8, shape (B,): the material of every solid voxel of the brick, or 0 where `cells` holds them.
     brick_rows
         int32, shape (B,): row of `cells` with the brick's materials, or -1 where the brick has one material.
     cells
-        uint8, shape (C, 512): materials voxel by voxel, 0 where empty; consistent with the mask.
+        uint8, shape (C, 512): the material of each voxel, 0 where empty; consistent with the mask.
     octant_codes
         uint64, shape (U,): Morton code of the octant's corner divided by its side (2**level voxels), ascending by the
         corner's Morton code; disjoint.
@@ -57,6 +58,28 @@ class Voxels:
     octant_levels: NDArray[np.uint8]
     octant_materials: NDArray[np.uint8]
 
+    def __repr__(self) -> str:
+        return f"Voxels(depth={self.depth}, bricks={len(self.brick_codes)}, octants={len(self.octant_codes)})"
+
+
+class ObjectMode(StrEnum):
+    """How the inside of an object was told from its outside. ``src/object_mode.h`` decides it."""
+
+    SURFACE = "surface"
+    """It was not filled."""
+
+    EXACT = "exact"
+    """It closes and does not overlap itself, or is an analytic solid: signed crossings."""
+
+    WINDING = "winding"
+    """It has holes or overlaps itself: the generalized winding number."""
+
+    OPEN = "open"
+    """Some of it stands open, like a room without a front, and has a shell alone; the rest is as in `WINDING`."""
+
+    TURNED = "turned"
+    """It closes; connected components that were inside out were flipped, walls of cavities excepted."""
+
 
 @dataclass(frozen=True, slots=True)
 class ObjectReport:
@@ -70,21 +93,18 @@ class ObjectReport:
         What was voxelized: ``"mesh"``, ``"box"``, ``"sphere"``, ``"hull"``; colliders of several kinds are joined by
         ``"+"``.
     mode
-        How inside was told from outside: ``"surface"``, ``"exact"`` (closed: signed crossings or an analytic solid),
-        ``"winding"`` (open or self-intersecting: generalized winding number), ``"open"`` (some of it stands open, like
-        a room without a front, and has a shell alone; the rest as in ``"winding"``), ``"turned"`` (closed; connected
-        pieces that were inside out beside the others were turned, walls of cavities excepted).
+        How its inside was told from its outside.
     voxels
-        Voxels that ended up belonging to it, first object first.
+        Voxels that belong to it; the first object that covers a voxel keeps it.
     moved
-        Voxels by which rounding moved its lowest corner, an axis each (x, y, z).
+        Voxels by which rounding moved its lowest corner, per axis (x, y, z).
     grown
-        Voxels by which rounding grew it, an axis each.
+        Voxels by which rounding grew it, per axis.
     """
 
     name: str
     source: str
-    mode: str
+    mode: ObjectMode
     voxels: int
     moved: tuple[float, float, float] = (0.0, 0.0, 0.0)
     grown: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -92,22 +112,25 @@ class ObjectReport:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Voxelization:
-    """Voxels and how they came about.
+    """Voxels, and how each object was voxelized.
 
     Attributes
     ----------
     voxels
         The solid voxels.
     objects
-        How each object got there, in authored order.
+        One report per object, in authored order.
     warnings
-        What was not honoured as it stands.
+        What was ignored or replaced.
     seconds
-        Wall seconds by stage of the native voxelizer, in order: ``"survey"``, ``"bin"``, ``"coverage"``, ``"fill"``,
-        ``"holes"``, ``"order"``, ``"gather"``; ``src/voxelizer.h`` says what each does and what bounds it.
+        Wall seconds per stage of the native voxelizer, in order: ``"analysis"``, ``"bin"``, ``"coverage"``, ``"fill"``,
+        ``"holes"``, ``"order"``, ``"gather"``; ``src/voxelizer.h`` describes the stages.
     """
 
     voxels: Voxels
     objects: tuple[ObjectReport, ...]
     warnings: tuple[SceneWarning, ...] = ()
     seconds: dict[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"Voxelization(voxels={self.voxels!r}, objects={len(self.objects)}, warnings={len(self.warnings)})"

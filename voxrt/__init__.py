@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 # A checkout's Python and an installed wheel's extension modules make one package.
 __path__ = extend_path(__path__, __name__)
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "BOARDS",
@@ -49,6 +49,7 @@ __all__ = [
     "Scene",
     "SceneWarning",
     "SimulatorError",
+    "ToolError",
     "ViewerError",
     "ViewpointError",
     "aim_camera",
@@ -123,6 +124,7 @@ _HOMES = {
         "build",
         "voxelize_mesh",
     ),
+    "voxrt.plain_verilog": ("ToolError",),
     "voxrt.sim": (
         "Frame",
         "NoSuchConfigurationError",
@@ -172,6 +174,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt.outputs import OutputError
     from voxrt.pictures import Picture, render, save_picture
     from voxrt.pipeline import build, voxelize_mesh
+    from voxrt.plain_verilog import ToolError
     from voxrt.sim import (
         Frame,
         NoSuchConfigurationError,

@@ -43,7 +43,7 @@ class BuildResult:
     budget
         What fitting the budget took; None if there was none.
     seconds
-        Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"tint"``, ``"voxelize"``, ``"octree"``,
+        Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
         ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).

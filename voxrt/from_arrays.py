@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize import DEFAULT_COLOUR, Coat, Paint, Scene, SceneObject
+from voxrt.voxelize import DEFAULT_COLOUR, Appearance, Scene, SceneObject, SurfaceAppearance
 from voxrt.voxelize.arguments import real_array, text, whole_array
-from voxrt.voxelize.colour.material_table import MaterialTable
-from voxrt.voxelize.colour.painted import Unfinished, finish
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -77,13 +77,13 @@ def mesh_scene(
     positions = real_array("vertices", vertices, ("V", 3))
     triangles = triangles_of("faces", faces, len(positions))
     transform = scene_transform(up, unit)
-    table, notes = MaterialTable(), Notes()
-    coat = _coat(text("name", name), positions, triangles, colours, face_colours)
+    table, log = MaterialTable(), WarningLog()
+    appearance = _surface_appearance(text("name", name), positions, triangles, colours, face_colours)
     materials = np.zeros(len(triangles), np.uint8)
-    if coat is None:
+    if appearance is None:
         materials[:] = table.id_of(name, "default", DEFAULT_COLOUR, authored=False)
-    (mesh,) = finish([Unfinished(positions, triangles, materials, coat)], table, notes)
-    return Scene(name, (SceneObject(name, mesh, transform),), table.materials(), notes.warnings())
+    (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
+    return Scene(name, (SceneObject(name, mesh, transform),), table.materials(), log.warnings())
 
 
 def triangles_of(name: str, faces: ArrayLike, vertices: int) -> NDArray[np.int32]:
@@ -95,34 +95,34 @@ def triangles_of(name: str, faces: ArrayLike, vertices: int) -> NDArray[np.int32
     return found
 
 
-def coat_of_corners(name: str, corners: NDArray[np.uint8]) -> Coat:
-    """Return the paint of triangles whose corners have colours: uint8, shape (F, 3, 4), sRGB and opacity."""
+def appearance_of_corners(name: str, corners: NDArray[np.uint8]) -> SurfaceAppearance:
+    """Return the appearance of triangles whose corners have colours: uint8, shape (F, 3, 4), sRGB and opacity."""
     linear = LINEAR_OF_SRGB8.astype(np.float32)[corners]
     linear[:, :, 3] = corners[:, :, 3] / np.float32(255)
     cutoff = OPAQUE_FROM if (corners[:, :, 3] < 255).any() else 0.0
     rows = np.zeros(len(corners), np.int32)
-    return Coat((Paint(name, cutoff=cutoff),), rows, np.zeros((len(corners), 3, 2)), linear)
+    return SurfaceAppearance((Appearance(name, cutoff=cutoff),), rows, np.zeros((len(corners), 3, 2)), linear)
 
 
-def _coat(
+def _surface_appearance(
     name: str,
     positions: NDArray[np.floating],
     triangles: NDArray[np.int32],
     colours: ArrayLike | None,
     face_colours: ArrayLike | None,
-) -> Coat | None:
+) -> SurfaceAppearance | None:
     if colours is not None and face_colours is not None:
         raise ValueError("colours and face_colours exclude each other; give one of them")
     if face_colours is not None:
         by_face = _rgba("face_colours", face_colours, len(triangles), "faces")
-        return coat_of_corners("face colours", np.repeat(by_face[:, None], 3, axis=1))
+        return appearance_of_corners("face colours", np.repeat(by_face[:, None], 3, axis=1))
     if colours is None:
         return None
     if np.ndim(colours) == 1:
         alike = _rgba("colours", np.asarray(colours)[None], 1, "colours")
-        return coat_of_corners(name, np.broadcast_to(alike[0], (len(triangles), 3, 4)))
+        return appearance_of_corners(name, np.broadcast_to(alike[0], (len(triangles), 3, 4)))
     by_vertex = _rgba("colours", colours, len(positions), "vertices (face_colours are per face)")
-    return coat_of_corners("vertex colours", by_vertex[triangles])
+    return appearance_of_corners("vertex colours", by_vertex[triangles])
 
 
 def _rgba(name: str, colours: ArrayLike, count: int, what: str) -> NDArray[np.uint8]:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from voxrt.from_arrays import OPAQUE_FROM, coat_of_corners, triangles_of
-from voxrt.voxelize import DEFAULT_COLOUR, Coat, Paint, Scene, SceneObject, Texture
+from voxrt.from_arrays import OPAQUE_FROM, appearance_of_corners, triangles_of
+from voxrt.voxelize import DEFAULT_COLOUR, Appearance, Scene, SceneObject, SurfaceAppearance, Texture
 from voxrt.voxelize.arguments import real_array
-from voxrt.voxelize.colour.material_table import MaterialTable
-from voxrt.voxelize.colour.painted import Unfinished, finish
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     import trimesh
@@ -80,17 +80,17 @@ def trimesh_scene(
     (200, 30, 30)
     """
     frame = scene_transform(up, unit)
-    table, notes = MaterialTable(), Notes()
-    placed = _placed(value, name, notes)
+    table, log = MaterialTable(), WarningLog()
+    placed = _placed(value, name, log)
     geometries = {key: geometry for key, _, geometry, _ in placed}
-    unfinished = [_unfinished(key or name, geometry, table) for key, geometry in geometries.items()]
-    meshes = dict(zip(geometries, finish(unfinished, table, notes), strict=True))
+    loaded = [_loaded_mesh(key or name, geometry, table) for key, geometry in geometries.items()]
+    meshes = dict(zip(geometries, assign_materials(loaded, table, log), strict=True))
     objects = tuple(SceneObject(node, meshes[key], frame @ transform) for key, node, _, transform in placed)
-    return Scene(name, objects, table.materials(), notes.warnings())
+    return Scene(name, objects, table.materials(), log.warnings())
 
 
 def _placed(
-    value: trimesh.Trimesh | trimesh.Scene, name: str, notes: Notes
+    value: trimesh.Trimesh | trimesh.Scene, name: str, log: WarningLog
 ) -> list[tuple[str, str, trimesh.Trimesh, NDArray[np.float64]]]:
     """Return the instances: the geometry's key, the node's name, the geometry, where it stands (shape (4, 4))."""
     mesh_type = sys.modules["trimesh"].Trimesh
@@ -102,35 +102,35 @@ def _placed(
         transform, key = scene.graph[node]
         geometry = scene.geometry[key]
         if not isinstance(geometry, mesh_type):
-            notes.add("no-triangles", "geometry of trimesh other than triangle meshes was left out")
+            log.add("no-triangles", "geometry of trimesh other than triangle meshes was left out")
             continue
         placed.append((str(key), str(node), geometry, real_array("transform", transform, (4, 4)).astype(np.float64)))
     return placed
 
 
-def _unfinished(name: str, mesh: trimesh.Trimesh, table: MaterialTable) -> Unfinished:
+def _loaded_mesh(name: str, mesh: trimesh.Trimesh, table: MaterialTable) -> LoadedMesh:
     positions = real_array("vertices", mesh.vertices, ("V", 3))
     triangles = triangles_of("faces", mesh.faces, len(positions))
     materials = np.zeros(len(triangles), np.uint8)
-    coat = _coat(name, mesh.visual, triangles)
-    if coat is None:
+    appearance = _surface_appearance(name, mesh.visual, triangles)
+    if appearance is None:
         materials[:] = table.id_of(None, "default", DEFAULT_COLOUR, authored=False)
-    return Unfinished(positions, triangles, materials, coat)
+    return LoadedMesh(positions, triangles, materials, appearance)
 
 
-def _coat(name: str, visual: Any, triangles: NDArray[np.int32]) -> Coat | None:  # noqa: ANN401 - has no types
+def _surface_appearance(name: str, visual: Any, triangles: NDArray[np.int32]) -> SurfaceAppearance | None:  # noqa: ANN401 - has no types
     if visual is None or not len(triangles) or not getattr(visual, "defined", False):
         return None
     if visual.kind == "vertex":
-        return coat_of_corners("vertex colours", np.asarray(visual.vertex_colors, np.uint8)[triangles])
+        return appearance_of_corners("vertex colours", np.asarray(visual.vertex_colors, np.uint8)[triangles])
     if visual.kind == "face":
         by_face = np.asarray(visual.face_colors, np.uint8)
         kind = name if (by_face == by_face[0]).all() else "face colours"
-        return coat_of_corners(kind, np.repeat(by_face[:, None], 3, axis=1))
+        return appearance_of_corners(kind, np.repeat(by_face[:, None], 3, axis=1))
     if visual.kind != "texture":
         return None
     several = getattr(visual.material, "materials", None)
-    paints = tuple(_paint(name, material) for material in (several or [visual.material]))
+    appearances = tuple(_appearance(name, material) for material in (several or [visual.material]))
     rows = np.zeros(len(triangles), np.int32)
     if several and getattr(visual, "face_materials", None) is not None:
         rows = np.asarray(visual.face_materials).astype(np.int32)
@@ -138,10 +138,10 @@ def _coat(name: str, visual: Any, triangles: NDArray[np.int32]) -> Coat | None: 
     if visual.uv is not None:
         uv = np.asarray(visual.uv, np.float64)[:, :2][triangles]
         uv[:, :, 1] = 1.0 - uv[:, :, 1]  # theirs counts from the bottom, a texture's rows from the top
-    return Coat(paints, rows, uv, np.ones((len(triangles), 3, 4), np.float32))
+    return SurfaceAppearance(appearances, rows, uv, np.ones((len(triangles), 3, 4), np.float32))
 
 
-def _paint(name: str, material: Any) -> Paint:  # noqa: ANN401 - has no types
+def _appearance(name: str, material: Any) -> Appearance:  # noqa: ANN401 - has no types
     name = str(getattr(material, "name", None) or name)
     physical = hasattr(material, "baseColorFactor")
     image = material.baseColorTexture if physical else getattr(material, "image", None)
@@ -160,4 +160,4 @@ def _paint(name: str, material: Any) -> Paint:  # noqa: ANN401 - has no types
         cutoff = OPAQUE_FROM if own is None else float(own)
     elif not physical and factor[3] < 1:
         cutoff = OPAQUE_FROM
-    return Paint(name, factor, texture, cutoff)
+    return Appearance(name, factor, texture, cutoff)

@@ -131,6 +131,6 @@ def draw_likeness_curve(curve: tuple[LikenessAtDepth, ...]) -> NDArray[np.uint8]
 
 def _rom(scene: Scene, depth: int, threads: int) -> octree.Rom:
     grid = voxelize.fit_grid(scene, depth=depth)
-    scene = voxelize.tint(scene, grid)
+    scene = voxelize.assign_colours(scene, grid)
     voxels = voxelize.voxelize(scene, grid, threads=threads).voxels
     return octree.Rom(scene.name, octree.build(voxels, threads=threads), scene.materials, grid)

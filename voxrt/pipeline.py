@@ -215,8 +215,8 @@ def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
-    with clock.stage("tint"):
-        scene = voxelize.tint(scene, grid, colours=options.colours, geometry=geometry)
+    with clock.stage("colour"):
+        scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
     with clock.stage("voxelize"):
         voxelization = voxelize.voxelize(
             scene, grid, fill=options.fill, geometry=geometry, pow2=pow2, threads=options.threads

@@ -2,9 +2,9 @@
 Cycles against depth
 ====================
 
-The report's section 6.1.3 expects a ray to cost O(log m + p), m the world's side and p the steps. A stack of the blocks
-on the way down makes a step start at the deepest block that two neighbours share, so that depth is paid once and not at
-each step.
+The report expects a ray to cost O(log m + p), where m is the side of the world and p the number of steps (section
+6.1.3). The ray tracer keeps a stack of the blocks on the way down. So a step starts at the smallest block that
+contains both neighbours, and not at the root.
 """
 
 import sys
@@ -27,11 +27,11 @@ for name in ("courtyard.glb", "planet.glb"):
         cycles.append(cost.cycles / cost.rays)
         words.append(len(rom.octree.words))
     slope = np.polyfit(depths, cycles, 1)[0]
-    print(f"{name:14s} " + " ".join(f"{value:6.2f}" for value in cycles) + f"   {slope:.2f} clocks per pixel and level")
+    print(f"{name:14s} " + " ".join(f"{value:6.2f}" for value in cycles) + f"   {slope:.2f} cycles per pixel and level")
     print(f"{'words':14s} " + " ".join(f"{count:6d}" for count in words))
     plt.plot(depths, cycles, "o-", label=name)
 plt.xlabel("depth of the octree")
-plt.ylabel("clocks per pixel, one lane")
+plt.ylabel("cycles per pixel, one lane")
 plt.ylim(bottom=0)
 plt.legend()
 plt.grid(visible=True, alpha=0.3)

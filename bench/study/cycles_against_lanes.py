@@ -2,9 +2,9 @@
 Cycles against lanes
 ====================
 
-The report's figure 38 shows clocks per frame against ray processors, simulated. The clocks fell as 1/n plus an offset,
-since the pixel buffer polled the processors in turn. Here there is a bound: each lane reads one octree word per clock,
-and one pixel per clock leaves the shader.
+Figure 38 of the report shows clock cycles per frame against ray processors, simulated: 1/n plus a constant, because
+their pixel buffer asked one processor after another. Our design has a clear bound: each lane reads one octree word
+per cycle, and one pixel per cycle leaves the shader.
 """
 
 import sys
@@ -36,7 +36,7 @@ for scene in scenes(Path(), size):
 plt.loglog((1, 2), (338, 169.6), "ks-", label="the original on its house, simulated")
 plt.xticks(lanes, map(str, lanes))
 plt.xlabel("lanes")
-plt.ylabel("clocks per pixel; dotted: the bound")
+plt.ylabel("cycles per pixel; dotted: the bound")
 plt.legend(fontsize=8)
 plt.grid(visible=True, which="major", alpha=0.3)
 plt.tight_layout()

@@ -2,11 +2,11 @@
 Hardware against software
 =========================
 
-The report's figures 46 and 47 put the board's picture beside the C++ program's through a diff checker: they differ in
-shade and along edges. Ours: the picture of the simulated hardware, that of the exact model, and that of the report's
-algorithm. That one steps by whole voxels towards the border of an octant and so leaves the ray a little; and it takes
-the first axis on whose border it stands for the normal, which on a voxel of side one is always x (the report's section
-2.4.1 says so).
+Figures 46 and 47 of the report compare the picture of the board with the picture of its C++ program: they differ in
+shade and along edges. Here are the pictures of our simulated hardware, of our exact model, and of the report's
+algorithm. That algorithm steps by whole voxels towards the border of an octant, so it leaves the ray by a small
+distance. It takes the normal of the first axis on whose border it stands. On a voxel of side one, this is always x
+(section 2.4.1 of the report).
 """
 
 import sys
@@ -36,7 +36,7 @@ with Original(as_published=False) as program:
     _, original = program.render(rom, camera, size)
 
 # %%
-# Lower row: pixels whose colour differs by more than 2 of 255.
+# Lower row, white: pixels whose colour differs from the exact model by more than 2 of 255.
 pictures = {"our hardware": hardware.colour, "our exact model": model.colour, "the report's algorithm": original}
 figure, places = plt.subplots(2, 3, figsize=(9, 6.3))
 for column, (name, picture) in enumerate(pictures.items()):
@@ -53,4 +53,5 @@ plt.tight_layout()
 plt.show()
 
 # %%
-# The original's hardware, simulated from its published sources, has 0.5 to 6.5 % of its pixels wrong on its own scenes.
+# The original hardware was simulated from its published sources. On its own scenes, 0.5 to 6.5 % of its pixels are
+# wrong.

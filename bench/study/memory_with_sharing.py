@@ -2,8 +2,8 @@
 Memory with and without sharing
 ===============================
 
-The report's section 6.5 burns its octree into a ROM, one block for each inner node. Storing equal blocks once changes
-nothing for the hardware, which follows pointers wherever they lead.
+The report stores its octree in a ROM, with one block for each inner node (section 6.5). voxrt stores equal blocks
+once. The hardware needs no change for that, because it follows pointers wherever they lead.
 """
 
 import sys
@@ -28,7 +28,7 @@ for name in ("courtyard.glb", "planet.glb", "dog.usda"):
     print(f"{'  unshared':16s}" + "".join(f"{count:10,}" for count in plain))
     print(f"{'  times':16s}" + "".join(f"{before / after:10.1f}" for before, after in zip(plain, shared, strict=True)))
     (line,) = plt.semilogy(depths, shared, "o-", label=name)
-    plt.semilogy(depths, plain, "o:", color=line.get_color(), label=f"{name}, each block stored")
+    plt.semilogy(depths, plain, "o:", color=line.get_color(), label=f"{name}, not shared")
 plt.axhline(BOARDS["pynq-z1"], color="k", linewidth=0.8)
 plt.text(4, BOARDS["pynq-z1"] * 1.15, "PYNQ-Z1", fontsize=8)
 plt.xlabel("depth of the octree")

@@ -2,9 +2,10 @@
 What pipelining gains
 =====================
 
-The report's section 6.3 expects three stages (generate, step, shade) to take (N + 2) t instead of 3 N t: at most three
-times as fast. Our lane is a ring of eight stages with a ray in each: alone, a ray reads one word every eight clocks.
-A frame of one pixel shows what a ray takes alone, a whole frame what it takes in company.
+The report expects three stages (generate, step, shade) to take (N + 2) t instead of 3 N t, so at most three times the
+speed (section 6.3). Our lane is a ring of pipeline stages, with one ray in each. A ray that is alone reads one word
+per turn of the ring. A frame of one pixel shows the cost of a ray alone. A whole frame shows the cost of a ray among
+others.
 """
 
 import sys
@@ -34,8 +35,8 @@ for column, row in rng.integers(0, size, (80, 2)):
     clocks.append(alone.cycles)
 slope, start = np.polyfit(words, clocks, 1)
 together = whole.cycles / whole.rays
-print(f"a ray alone: {start:.0f} clocks and {slope:.2f} a word, {np.mean(clocks):.1f} on average")
-print(f"in company:  {together:.2f} clocks, {whole.cycles / whole.words_read:.4f} a word")
+print(f"a ray alone: {start:.0f} cycles and {slope:.2f} per word, {np.mean(clocks):.1f} on average")
+print(f"in a frame:  {together:.2f} cycles, {whole.cycles / whole.words_read:.4f} per word")
 print(f"gain: {np.mean(clocks) / together:.1f} times; the report's three stages: at most 3")
 
 # %%
@@ -43,9 +44,9 @@ plt.figure(figsize=(7, 4.5))
 plt.plot(words, clocks, ".", label="one ray alone")
 reach = np.array((0, max(words)))
 plt.plot(reach, start + slope * reach, "-", alpha=0.6, label=f"{start:.0f} + {slope:.2f} words")
-plt.plot(reach, reach * whole.cycles / whole.words_read, "k--", label="in a frame, each ray's share")
+plt.plot(reach, reach * whole.cycles / whole.words_read, "k--", label="in a frame, per ray")
 plt.xlabel("octree words that the ray reads")
-plt.ylabel("clocks")
+plt.ylabel("clock cycles")
 plt.legend()
 plt.grid(visible=True, alpha=0.3)
 plt.tight_layout()

@@ -2,10 +2,10 @@
 Resources
 =========
 
-The report's section 6.4: one core of theirs takes 3,473 LUT and 42 DSP slices of an xc7z020 and none of its block RAM,
-for its octree stands in logic; four cores did not fit beside the video part. Ours, by yosys' estimate before place and
-route (``python rtl/area.py``, tabulated here): a lane more costs some 0.7 k LUT and 6 DSP slices, since ray generator
-and shader serve all lanes.
+Section 6.4 of the report: one of its cores takes 3,473 LUT and 42 DSP slices of an xc7z020. It takes no block RAM,
+because the octree is stored in logic. Four cores did not fit beside the video part. Our numbers are estimates of
+yosys, before place and route (``python rtl/area.py``). One more lane costs little, because ray generator and shader
+serve all lanes.
 """
 
 import sys
@@ -24,7 +24,7 @@ video = {"LUT": 12_446, "DSP48": 18, "BRAM36": 15}  # the report's table 9
 theirs = {"LUT": 3_473, "DSP48": 42, "BRAM36": 0}  # table 8, one core
 
 # %%
-# In per cent of the part, with the report's video part on top.
+# In per cent of the FPGA. Grey: the video part of the report, which is needed besides.
 figure, places = plt.subplots(1, 3, figsize=(9, 3.4))
 names = ["original", *area]
 for place, (kind, whole) in zip(places, part.items(), strict=True):
@@ -40,8 +40,8 @@ plt.tight_layout()
 plt.show()
 
 # %%
-# What the area gives on the published house, where a ray reads 12 words: ours at its bound, theirs as simulated.
+# Area against speed on the published house, where a ray reads 12 words. Ours: the bound. The original: as simulated.
 for name, row in area.items():
     pixels = 1e3 / max(1, 12 / int(row["lanes"]))
-    print(f"{name:8s}{float(row['LUT'].replace(',', '')) / pixels:8.1f} LUT for a pixel in a thousand clocks")
+    print(f"{name:8s}{float(row['LUT'].replace(',', '')) / pixels:8.1f} LUT per pixel in a thousand cycles")
 print(f"{'original':8s}{theirs['LUT'] / (1e3 / 338):8.1f}")

@@ -1,1 +1,1 @@
-"""Devices without a board: the exact model and the verilated core."""
+"""Devices that need no board: the exact model and the verilated core."""

@@ -1,4 +1,4 @@
-"""The verilated core as a device, driven as a board's is: by its registers, its memory port and its video stream."""
+"""The verilated core as a device: the driver of the boards uses its registers, memory port and video stream."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ _PAUSE_CLOCKS = 1 << 15
 
 
 def open_rtl(config: str = "lit") -> RegisterDevice:
-    """Open a simulated core of this configuration.
+    """Open a simulated core with the configuration `config`.
 
     Raises
     ------
     NoSuchConfigurationError
-        The installation has no such core.
+        The installation has no core with this configuration.
     SimulatorError
         The verilated core is not in this installation.
     """
     module = import_verilated("use --device model")
     if config not in module.CORES:
         raise NoSuchConfigurationError(config, module.CORES)
-    core = module.PixelGenerator(config)
+    core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
     return RegisterDevice(f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause)
 
 
 class _MemoryPort:
-    """The words behind the memory port, as a board's processor has them mapped."""
+    """The words of the scene memory, read and written through the memory port."""
 
     def __init__(self, core: Any) -> None:  # noqa: ANN401 - the native module may be absent
         self._core = core
@@ -55,7 +55,7 @@ class _MemoryPort:
 
 
 class _Stream:
-    """The stream's consumer, which takes whatever the core can send."""
+    """The receiver of the video stream; it never stalls the core."""
 
     size = (_FRAME_LIMIT, _FRAME_LIMIT)
     width_step = 1

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError
+from voxrt.board.scene import EMPTY_LEAF
 from voxrt.board.view import FEATURES
 from voxrt.sim import _model
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from voxrt.board.view import View
 
 MODEL_CAPACITY = 1 << 25
-"""Words that the model's memory holds."""
+"""Words of the model's memory."""
 
 _FRAME_LIMIT = 4095
 
@@ -26,7 +27,7 @@ _FRAME_LIMIT = 4095
 class _Memory:
     """Scene memory, material table and selected octree.
 
-    Grows to the highest word written, so that a large capacity costs nothing.
+    Pages that nothing was written to cost no memory.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -34,7 +35,7 @@ class _Memory:
         self.colours = np.zeros((256, 3), dtype=np.uint8)
         self.mirrors = np.zeros(256, dtype=np.uint8)
         self.root, self.depth = 0, 1
-        self._words = np.full(1, 0xFFFFFF00, dtype=np.uint32)
+        self._words = np.full(1, EMPTY_LEAF, dtype=np.uint32)
 
     def write(self, address: int, words: NDArray[np.uint32]) -> None:
         end = self._check(address, len(words))
@@ -52,10 +53,21 @@ class _Memory:
         return found
 
     def octree(self) -> NDArray[np.uint32]:
-        """Give the selected octree as it reads when its root is word 0."""
-        blocks = (len(self._words) - self.root - 1) // 8
-        words = self._words[self.root : self.root + 1 + 8 * blocks]
+        """Return the selected octree, moved so that its root is word 0."""
+        words = self._words[self.root : self._octree_end()]
         return words if self.root == 0 else np.where(words >> 31 == 0, words - np.uint32(self.root), words)
+
+    def _octree_end(self) -> int:
+        """Find the end of the last block that the root leads to, so that the model copies no other scenes."""
+        addresses, end = np.array([self.root]), self.root + 1
+        for _ in range(self.depth):
+            reached = self._words[addresses[addresses < len(self._words)]]
+            pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
+            if len(pointers) == 0:
+                break
+            end = max(end, int(pointers[-1]) + 8)
+            addresses = (pointers[:, None] + np.arange(8)).ravel()
+        return end
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:
@@ -64,12 +76,12 @@ class _Memory:
 
 
 class ModelDevice:
-    """The exact model: every pixel what the hardware shows, without clocks.
+    """The exact model: the pixels of the hardware, without clock cycles.
 
     Parameters
     ----------
     threads
-        Threads of a frame, 0 for one a core.
+        Threads per frame; 0 for one per processor core.
     capacity
         Words of scene memory.
     """
@@ -91,11 +103,11 @@ class ModelDevice:
 
     @property
     def identity(self) -> Identity:
-        """What it is and what it holds."""
+        """What it is and what it can hold."""
         return self._identity
 
     def registers(self) -> Mapping[str, int]:
-        """Give what a ray tracer's registers would hold."""
+        """Return what the registers of the hardware would hold."""
         registers = {"root": self._memory.root, "depth": self._memory.depth}
         if self._view is not None:
             registers["width"], registers["height"] = self._view.size
@@ -106,12 +118,15 @@ class ModelDevice:
             registers["background"] = red << 16 | green << 8 | blue
         return registers
 
+    def hold(self) -> None:
+        """Do nothing: no frame is in progress between two calls."""
+
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
-        """Write words from `address` on."""
+        """Write words from word `address` on."""
         self._memory.write(address, words)
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
-        """Read words from `address` on."""
+        """Read `count` words from word `address` on."""
         return self._memory.read(address, count)
 
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> None:
@@ -119,7 +134,7 @@ class ModelDevice:
         self._memory.colours, self._memory.mirrors = colours.copy(), mirrors.astype(np.uint8)
 
     def select_scene(self, root: int, depth: int) -> None:
-        """Trace the octree at `root` from the next frame on."""
+        """Trace the octree at word `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
         try:
             self._model = _model.Memory(self._memory.octree(), depth)
@@ -127,7 +142,7 @@ class ModelDevice:
             raise DeviceError(f"the model refuses the memory: {error}") from error
 
     def frame(self, view: View) -> Frame:
-        """Render a frame."""
+        """Render one frame of `view`."""
         started = time.perf_counter()
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
         try:
@@ -146,10 +161,10 @@ class ModelDevice:
             raise DeviceError(f"the model refuses the frame: {error}") from error
         self._view = view
         counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
-        return Frame(pixels["colour"], counters)
+        return Frame(pixels.colour, counters)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Do nothing: the model holds no resources."""
 
     def _colours(self, view: View) -> NDArray[np.uint8]:
         colours = self._memory.colours.copy()

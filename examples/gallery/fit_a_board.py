@@ -2,8 +2,8 @@
 Fitting a board
 ===============
 
-A PYNQ-Z1 has room for 32,769 words of octree. A finer world is made to fit by giving up what is seen least, measured
-voxel by voxel; walls never get holes.
+A PYNQ-Z1 holds 32,769 words of octree memory. The scene below needs more. voxrt makes it fit: it simplifies the parts
+of the surface that pictures show least. It never opens a hole in a wall.
 """
 
 import sys
@@ -23,14 +23,15 @@ print(f"{fit.fit.words_before:,} words before, {len(fitted.rom.octree.words):,} 
 print(f"{fit.fit.percent_changed:.1f} % of the surface changed; picture: {fit.psnr:.1f} dB, SSIM {fit.ssim:.4f}")
 
 # %%
-# The plain way to a smaller memory is a coarser world. At equal words it is further from the original.
+# A coarser world is the simple way to a smaller memory. With the same number of words, it changes more of the
+# surface.
 coarse = octree.coarsen(whole.rom.octree, 1)
 equal = octree.fit(whole.rom.octree, len(coarse.words))
 changed = octree.surface_change(whole.rom.octree, coarse).percent
 print(f"{len(coarse.words):,} words: one level less changes {changed:.1f} %, fitting {equal.percent_changed:.1f} %")
 
 # %%
-# Whole, fitted, one level less.
+# From left to right: the whole scene, the fitted one, and one level less.
 size = (320, 320)
 camera = voxrt.aim_camera(whole.rom, size)
 plain = octree.Rom("coarser", coarse, whole.rom.materials)

@@ -2,9 +2,9 @@
 Colliders of a USD scene
 ========================
 
-A box on no particular grid is a skin of small octants. The dog of ``examples/dog.usda`` has a physics collider for
-each of its boxes: their sides are rounded up to powers of two voxels, and their corners moved onto coarser grid lines,
-so that a box is a few large octants. What that moved is said for each object.
+A box that does not lie on the grid of the octree becomes many small octants. Each box of ``examples/dog.usda`` has a
+physics collider. voxrt rounds the sides of these boxes up to powers of two voxels, and moves their corners onto
+coarser grid lines. Then a box is a few large octants. The report of each object says how far it grew and moved.
 """
 
 import sys
@@ -26,7 +26,7 @@ for report in rounded.objects[:4]:
     print(report.name, "grew by", [float(f"{side:.2f}") for side in report.grown], "voxels")
 
 # %%
-# Rounded on the left, exact on the right, from the same place.
+# Rounded on the left, exact on the right, seen by the same camera.
 size = (360, 360)
 camera = voxrt.aim_camera(rounded.rom, size)
 picture = np.concatenate([voxrt.render(built.rom, camera, size=size).colour for built in (rounded, exact)], axis=1)
@@ -37,7 +37,7 @@ plt.tight_layout()
 plt.show()
 
 # %%
-# Why it takes less: the octants that a cut through the body's middle meets, rounded on the left, exact on the right.
+# A cut through the middle of the body shows the octants: few large ones with rounding, many small ones without.
 figure, places = plt.subplots(1, 2, figsize=(7.2, 3.6))
 for place, built in zip(places, (rounded, exact), strict=True):
     low, high = octree.solid_bounds(built.rom.octree)

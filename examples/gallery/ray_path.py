@@ -1,9 +1,10 @@
 """
-A ray's way
-===========
+The path of a ray
+=================
 
-What the hardware reads for one pixel, word by word: pointers on the way down, an empty leaf, the plane by which the ray
-leaves it, and down again from the deepest block that both sides of that plane share.
+The words that the hardware reads for one pixel, in order. Pointers lead down to a leaf. The ray leaves an empty leaf
+by the plane that it crosses first, and goes down again from the smallest block that contains both sides of that
+plane. :doc:`/how-a-ray-walks` explains each step.
 """
 
 import sys
@@ -28,28 +29,24 @@ for number, reading in enumerate(path.readings, 1):
 print(f"hits {rom.materials[path.material].name} at voxel {path.cell}")
 
 # %%
-# Seen from the side: the octants of the leaves that it goes through, and the ray.
-figure, places = plt.subplots(1, 2, figsize=(8, 3.4))
+# The pixel in the picture, and its ray seen from the side: empty leaves are blue, the leaf that it hits is red.
+picture = voxrt.render(rom, camera, size=size).colour.copy()
+column, row = pixel
+picture[row - 6 : row + 7, [column - 6, column + 6]] = 255
+picture[[row - 6, row + 6], column - 6 : column + 7] = 255
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
+left.imshow(picture)
+left.axis("off")
 leaves = [reading for reading in path.readings if reading.is_leaf]
 for reading in leaves:
-    solid = reading.word & 255
-    colour = "#d05030" if solid else "#a8c8e8"
+    colour = "#d05030" if reading.word & 255 else "#a8c8e8"
     side = 1 << reading.level
-    places[0].add_patch(
+    right.add_patch(
         plt.Rectangle(reading.corner[2:0:-1], side, side, facecolor=colour, edgecolor="k", linewidth=0.6, alpha=0.5)
     )
 points = np.array([path.point(reading.time) for reading in leaves])
-places[0].plot(points[:, 2], points[:, 1], "k.-", linewidth=1)
-places[0].set(xlabel="z", ylabel="y", aspect="equal", xlim=(8, 33), ylim=(-1, 18))
-
-# %%
-# The pixel, in the picture.
-picture = voxrt.render(rom, camera, size=size).colour
-column, row = pixel
-picture = picture.copy()
-picture[row - 6 : row + 7, [column - 6, column + 6]] = 255
-picture[[row - 6, row + 6], column - 6 : column + 7] = 255
-places[1].imshow(picture)
-places[1].axis("off")
+right.plot(points[:, 2], points[:, 1], "k.-", linewidth=1)
+right.set(xlabel="z, voxels", ylabel="y, voxels", aspect="equal", xlim=(8, 33), ylim=(-1, 18))
 plt.tight_layout()
 plt.show()

@@ -2,8 +2,8 @@
 A scene written by hand
 =======================
 
-Boxes of several materials, a house and a dog, without a 3D program: ``examples/playground.toml`` says it all, and
-``examples/playground.py`` says the same in Python.
+Boxes of several materials, a house and a dog, without a 3D program. ``examples/playground.toml`` describes the scene,
+and ``examples/playground.py`` makes the same scene in Python.
 """
 
 import sys
@@ -20,14 +20,14 @@ built = voxrt.build(EXAMPLES / "playground.toml", depth=7)
 print(f"{len(built.objects)} objects, {built.solid_voxels:,} voxels, {len(built.rom.octree.words):,} words")
 
 # %%
-# As the hardware shows it, lit from the camera. Every clock is counted.
+# Rendered by the simulated hardware. The light is at the camera. Every clock cycle is counted.
 size = (480, 360)
 camera = sim.look_at((130, 80, 160), (58, 20, 64), size=size)
 plain = sim.render(built.rom, camera, size, engine="rtl")
 print(f"{plain.cost.cycles / plain.cost.rays:.2f} cycles a pixel, {plain.cost.words_read / plain.cost.rays:.2f} words")
 
 # %%
-# With a light that casts shadows, and the ball a mirror: ``docs/shading.md`` says exactly what is computed.
+# With a light that casts shadows. The ball is a mirror. ``docs/shading.md`` defines every colour exactly.
 lighting = sim.Lighting((16 * 96, 16 * 150, 16 * 190), ambient=48, on=True, bounces=4)
 lit = sim.render(built.rom, camera, size, engine="model", lighting=lighting)
 

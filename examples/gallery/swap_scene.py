@@ -2,8 +2,8 @@
 Another scene on a running board
 ================================
 
-The simulated core, driven as a board is: through its registers, its memory port and its video stream. Scenes are
-written between two frames and read back; ``voxrt upload`` does the same over a network.
+The simulated core is driven in the same way as a board: by its registers, its memory port and its video stream. A
+scene is written between two frames and read back for a check. ``voxrt upload`` does the same over a network.
 """
 
 import sys
@@ -16,8 +16,8 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.view import View
+from voxrt.board_scenes import board_scene
 from voxrt.export import Blob
-from voxrt.staging import board_scene
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
 device = open_rtl("tiny")
@@ -26,9 +26,9 @@ print(f"{identity.name}: {identity.capacity:,} words, {identity.depth} levels")
 
 
 # %%
-# Two scenes, one after the other, in one memory.
+# Two scenes, one after the other.
 def report(stage: str, done: int, total: int) -> None:
-    """Say when a stage is through."""
+    """Print when a stage is finished."""
     if done == total:
         print(f"  {stage}: {total:,}")
 
@@ -36,14 +36,14 @@ def report(stage: str, done: int, total: int) -> None:
 memory, size, frames = SceneMemory(device), (240, 180), []
 for name in ("house.obj", "dog.usda"):
     rom = voxrt.build(EXAMPLES / name, depth=6).rom
-    memory.swap(board_scene(Blob(rom)), report)
+    memory.load(board_scene(Blob(rom)), report)
     view = View(voxrt.aim_camera(rom, size), size, background=rom.materials[0].colour)
     frames.append(device.frame(view))
     cost = frames[-1].counters
     print(f"{rom.name}: {cost.cycles / cost.rays:.2f} clocks a pixel, {cost.words_read / cost.rays:.2f} words")
 
 # %%
-# What the registers say of the last frame.
+# The registers after the last frame.
 for register, value in device.registers().items():
     print(f"{register:14s} {value}")
 

@@ -2,8 +2,8 @@
 A textured glTF
 ===============
 
-A globe with an image around it, written as glTF by trimesh. Each voxel of its skin takes the texture's colour where it
-stands; the colours of all of them become a palette of at most 32 (``colours=``).
+A globe with an image around it, written as glTF by trimesh. Each voxel of the surface takes the colour that the
+texture has there. All these colours are then reduced to a palette of at most 32 (``colours=``).
 """
 
 import tempfile
@@ -17,7 +17,7 @@ from PIL import Image
 import voxrt
 
 # %%
-# Land and sea by a few waves, in a picture of longitude by latitude.
+# The image: land, sea and ice, made from a few waves, by longitude and latitude.
 longitude, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, 256), np.linspace(np.pi / 2, -np.pi / 2, 128))
 height = np.sin(3 * longitude) * np.cos(2 * latitude) + 0.7 * np.sin(5 * longitude + 2) * np.cos(7 * latitude)
 image = np.select(
@@ -27,7 +27,7 @@ image = np.select(
 ).astype(np.uint8)
 
 # %%
-# A ball of 64 by 32 quads; the first meridian is there twice, so that the image meets itself.
+# A ball of 64 by 32 quads. The first meridian has two sets of vertices, because the image starts and ends there.
 u, v = np.meshgrid(np.linspace(0, 1, 65), np.linspace(0, 1, 33))
 turn, polar = 2 * np.pi * u.ravel(), np.pi * v.ravel()
 points = np.stack([np.sin(polar) * np.cos(turn), np.cos(polar), -np.sin(polar) * np.sin(turn)], axis=1)

@@ -2,8 +2,8 @@
 MagicaVoxel art
 ===============
 
-Voxel art needs no voxelizing: a ``.vox`` file becomes an octree memory as it stands, in the artist's colours, and so
-does any NumPy array of material numbers.
+A ``.vox`` file is already made of voxels. It becomes an octree memory without a change, in the artist's colours. A
+NumPy array of material numbers becomes one in the same way.
 """
 
 import sys
@@ -21,7 +21,7 @@ names = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in (material.co
 print(f"{art.octree.size} voxels a side, {octree.census(art.octree).solid_voxels:,} solid; colours {', '.join(names)}")
 
 # %%
-# The same memory as a cube of numbers, and a field of copies made of it: equal blocks are stored once.
+# The memory as an array of numbers, and sixteen copies of it in one world. Equal blocks are stored once.
 cube = octree.to_dense(art.octree)
 field = np.tile(cube, (4, 1, 4))
 world = np.zeros((4 * art.octree.size,) * 3, np.uint8)

@@ -12,8 +12,8 @@ struct Step {
     std::uint16_t face; // 256 * (axis + 1)
 };
 
-// The way of a ray through the cube along (1, 1, 1), nearest cell first.
-using Way = std::vector<Step>;
+// The cells that a ray along (1, 1, 1) passes in the cube, nearest first.
+using RayPath = std::vector<Step>;
 
 constexpr unsigned kAxisBits[3] = {0x049, 0x092, 0x124};
 
@@ -25,28 +25,28 @@ unsigned cell_at(const std::array<unsigned, 3>& at) {
     return code;
 }
 
-const std::vector<Way>& ways() {
-    static const std::vector<Way> all = [] {
-        std::vector<Way> result;
+const std::vector<RayPath>& ray_paths() {
+    static const std::vector<RayPath> all = [] {
+        std::vector<RayPath> result;
         for (unsigned entered = 0; entered < 3; ++entered)
             for (unsigned i = 0; i < 64; ++i) {
                 std::array<unsigned, 3> at{};
                 at[(entered + 1) % 3] = i % 8;
                 at[(entered + 2) % 3] = i / 8;
-                Way way;
+                RayPath path;
                 for (unsigned axis = entered; at[0] < 8 && at[1] < 8 && at[2] < 8; ++at[axis]) {
-                    way.push_back(
+                    path.push_back(
                         {static_cast<std::uint16_t>(cell_at(at)), static_cast<std::uint16_t>(256 * (axis + 1))});
                     axis = (axis + 1) % 3;
                 }
-                result.push_back(std::move(way));
+                result.push_back(std::move(path));
             }
         return result;
     }();
     return all;
 }
 
-// The neighbour of every cell in each of the six directions; itself at the brick's sides.
+// The neighbour of every cell in each of the six directions; the cell itself at the brick's sides.
 const std::array<std::array<std::uint16_t, 6>, 512>& neighbours() {
     static const auto all = [] {
         std::array<std::array<std::uint16_t, 6>, 512> result{};
@@ -65,8 +65,8 @@ const std::array<std::array<std::uint16_t, 6>, 512>& neighbours() {
     return all;
 }
 
-// Inline where the baseline of the processor has no instruction for it, which std::popcount is not.
-unsigned ones(std::uint64_t word) {
+// In plain arithmetic: baseline x86-64 has no instruction for it, and std::popcount would call a function.
+unsigned popcount(std::uint64_t word) {
     word -= word >> 1 & 0x5555555555555555u;
     word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
     return static_cast<unsigned>(((word + (word >> 4)) & 0x0F0F0F0F0F0F0F0Fu) * 0x0101010101010101u >> 56);
@@ -74,7 +74,7 @@ unsigned ones(std::uint64_t word) {
 
 } // namespace
 
-Brick::Brick(const Cells512& materials) : cells(materials) {
+BrickAppearance::BrickAppearance(const Cells512& materials) : cells(materials) {
     for (unsigned cell = 0; cell < 512; ++cell) {
         if (cells[cell] == 0)
             continue;
@@ -91,8 +91,8 @@ Brick::Brick(const Cells512& materials) : cells(materials) {
         unsigned flip = 0;
         for (unsigned axis = 0; axis < 3; ++axis)
             flip |= corner >> axis & 1 ? kAxisBits[axis] : 0;
-        for (const Way& way : ways()) {
-            for (const Step& step : way)
+        for (const RayPath& path : ray_paths()) {
+            for (const Step& step : path)
                 if (const std::uint8_t id = cells[step.cell ^ flip]; id != 0) {
                     *ray = static_cast<std::uint16_t>(step.face | id);
                     break;
@@ -102,27 +102,28 @@ Brick::Brick(const Cells512& materials) : cells(materials) {
     }
 }
 
-std::uint64_t sight_change(const Brick& before, const Brick& after, const SightCosts& costs, std::uint64_t most) {
+std::uint64_t appearance_cost(const BrickAppearance& before, const BrickAppearance& after, const AppearanceCosts& costs,
+                              std::uint64_t limit) {
     std::uint64_t cost = 0;
     for (unsigned word = 0; word < 8; ++word)
-        cost += kChanged * ones(before.exposed[word] & ~after.exposed[word]);
-    if (cost >= most)
+        cost += kExposedCellCost * popcount(before.exposed[word] & ~after.exposed[word]);
+    if (cost >= limit)
         return cost;
     for (unsigned word = 0; word < 8; ++word)
         for (std::uint64_t both = before.exposed[word] & after.exposed[word]; both != 0; both &= both - 1) {
             const unsigned cell = 64 * word + static_cast<unsigned>(std::countr_zero(both));
-            cost += before.cells[cell] != after.cells[cell] ? kChanged : 0;
+            cost += before.cells[cell] != after.cells[cell] ? kExposedCellCost : 0;
         }
-    // Most rays see the same: four are compared at once.
-    for (unsigned first = 0; first < Brick::kRays && cost < most; first += 4) {
+    // Most rays see no change: four are compared at once.
+    for (unsigned first = 0; first < BrickAppearance::kRays && cost < limit; first += 4) {
         if (std::memcmp(&before.seen[first], &after.seen[first], 4 * sizeof before.seen[0]) == 0)
             continue;
         for (unsigned ray = first; ray < first + 4; ++ray) {
             const unsigned a = before.seen[ray];
             const unsigned b = after.seen[ray];
             if (a != b)
-                cost += a == 0 ? costs.covering[b & 255]
-                               : (a >> 8 == b >> 8 ? costs.same_face : costs.turned)[a & 255][b & 255];
+                cost += a == 0 ? costs.occlusion[b & 255]
+                               : (a >> 8 == b >> 8 ? costs.same_axis : costs.other_axis)[a & 255][b & 255];
         }
     }
     return cost;

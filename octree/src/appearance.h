@@ -1,4 +1,7 @@
-// What a brick of 8x8x8 cells looks like, and how far apart two looks are.
+// What a brick of 8x8x8 cells looks like, and how much the look changes where another brick takes its place.
+//
+// A brick is seen along the eight diagonals of its cube. One ray enters each cell face on the three near sides, so
+// faces hide each other as in pictures, and all three axes count alike.
 #pragma once
 
 #include <array>
@@ -7,26 +10,27 @@
 namespace voxrt::octree {
 
 using Cells512 = std::array<std::uint8_t, 512>; // materials in Morton order, 0 empty
+using Mask512 = std::array<std::uint64_t, 8>;   // a bit per cell, Morton order
 
-/// Mean squared differences of colour that a change makes to what a ray sees; 256 is that of a grey face that turns.
-struct SightCosts {
-    std::array<std::array<std::uint32_t, 256>, 256> same_face; // material a becomes b
-    std::array<std::array<std::uint32_t, 256>, 256> turned;    // the same, on a face along another axis
-    std::array<std::uint32_t, 256> covering;                   // material b comes before what is seen past the brick
+/// Costs of a change for one ray: mean squared differences of colour. 256 is the cost of a grey face that turns to
+/// another axis.
+struct AppearanceCosts {
+    std::array<std::array<std::uint32_t, 256>, 256> same_axis;  // material a becomes b
+    std::array<std::array<std::uint32_t, 256>, 256> other_axis; // the same, and the face is across another axis
+    std::array<std::uint32_t, 256> occlusion;                   // material b hides what was seen past the brick
 };
 
-/// Prices of an exposed cell that is no longer so or of another material, and of a cell that was empty.
-constexpr std::uint64_t kChanged = 300;
-constexpr std::uint64_t kAppeared = 100;
+/// Cost of an exposed cell that is exposed no longer, or of another material.
+constexpr std::uint64_t kExposedCellCost = 300;
 
-using Mask512 = std::array<std::uint64_t, 8>; // a bit a cell, Morton order
+/// Cost of a solid cell that was empty.
+constexpr std::uint64_t kAddedCellCost = 100;
 
-/// A brick and what is seen of it along the diagonals of its cube: one ray enters each face on the three near sides.
-/// Seen so, faces hide each other as they do in pictures, and all three axes count alike.
-struct Brick {
+/// A brick and what its rays see.
+struct BrickAppearance {
     static constexpr unsigned kRays = 8 * 3 * 64;
 
-    explicit Brick(const Cells512& materials);
+    explicit BrickAppearance(const Cells512& materials);
 
     Cells512 cells;
     Mask512 mask{};    // solid cells
@@ -35,8 +39,9 @@ struct Brick {
     std::array<std::uint16_t, kRays> seen{}; // material + 256 * (axis of the face + 1); 0 where a ray meets nothing
 };
 
-/// What is seen to change where `after` stands for `before`, all of whose solid cells it holds. Counts no further once
-/// it is `most` or more.
-std::uint64_t sight_change(const Brick& before, const Brick& after, const SightCosts& costs, std::uint64_t most);
+/// The cost of showing `after` in place of `before`, all of whose solid cells it holds; kAddedCellCost not included.
+/// May stop, with a lower result, once the cost is `limit` or more.
+std::uint64_t appearance_cost(const BrickAppearance& before, const BrickAppearance& after, const AppearanceCosts& costs,
+                              std::uint64_t limit);
 
 } // namespace voxrt::octree

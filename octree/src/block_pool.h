@@ -1,14 +1,14 @@
-// Blocks stored once: a flat hash table from the eight words of a block to its number.
+// Blocks stored once (hash consing): a flat hash table from the eight words of a block to its number.
 //
-// A node is a word whose pointers are block numbers instead of addresses: `breadth_first_words` turns one into the
-// other. Bounded by the cache: one probe (a line of slots) and one compare (half a line) a block that is already there.
+// A node is a word whose pointers are block numbers instead of addresses; breadth_first_words() turns nodes into words.
+// Cost: for a block that is already there, one probe (a cache line of slots) and one comparison (half a line).
 #pragma once
+
+#include "words.h"
 
 #include <cstring>
 #include <stdexcept>
 #include <vector>
-
-#include "words.h"
 
 namespace voxrt::octree {
 
@@ -24,7 +24,8 @@ public:
         blocks_.reserve(expected_blocks);
     }
 
-    /// The node for eight children: their leaf when all are the same leaf, else the block's number.
+    /// The node for eight children: their leaf where all are the same leaf, else the block's number. Throws
+    /// std::length_error where that would be the block beyond what 31-bit addresses can reach.
     Node intern(const Block& children) {
         if (is_leaf(children[0]) && all_equal(children))
             return children[0];
@@ -35,7 +36,8 @@ public:
             if (slots_[i].hash == hash && same(blocks_[slots_[i].number], children))
                 return slots_[i].number;
         if (blocks_.size() >= kBlockLimit)
-            throw std::length_error("the octree has more blocks than 31-bit addresses can reach");
+            throw std::length_error(
+                "the octree has more than 2**28 - 1 blocks, which 31-bit addresses cannot reach; lower the depth");
         const Word number = static_cast<Word>(blocks_.size());
         slots_[i] = {hash, number};
         blocks_.push_back(children);
@@ -44,7 +46,7 @@ public:
         return number;
     }
 
-    /// Interns the blocks of `other`, which were met children first; element i is the node here of its block i.
+    /// Interns the blocks of `other`, children first; element i of the result is the node here of its block i.
     std::vector<Node> absorb(const BlockPool& other) {
         std::vector<Node> here;
         here.reserve(other.size());

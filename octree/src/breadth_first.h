@@ -1,14 +1,14 @@
-// A pool of blocks to memory words.
+// Nodes of a pool to memory words.
 #pragma once
-
-#include <vector>
 
 #include "block_pool.h"
 
+#include <vector>
+
 namespace voxrt::octree {
 
-/// The memory of the octree below `root`: blocks breadth-first by first visit at 1 + 8k, word 0 the root. Depends on
-/// the tree alone and not on the order in which the pool met its blocks.
+/// The memory of the octree below `root`: word 0 is the root; blocks stand at 1 + 8k in breadth-first order of first
+/// visit. Depends on the tree alone, not on the order in which the pool got its blocks. Linear in the blocks.
 std::vector<Word> breadth_first_words(const BlockPool& pool, Node root);
 
 } // namespace voxrt::octree

@@ -1,14 +1,14 @@
 // A brick of 8x8x8 voxels to a node, by bit operations.
 #pragma once
 
-#include <memory>
-
 #include "node_memo.h"
+
+#include <memory>
 
 namespace voxrt::octree {
 
-/// Turns bricks into nodes of a pool. Remembers the 2x2x2 and 4x4x4 patterns that it met, which is where nearly all the
-/// work of a smooth surface repeats; bounded by one probe of a table that fits the cache for each 4x4x4 part.
+/// Turns bricks into nodes of a pool. Looks up the 2x2x2 and 4x4x4 patterns that it met before, since those of a smooth
+/// surface repeat. Cost: for each 4x4x4 part one probe of a table that fits the cache.
 class BrickBuilder {
 public:
     explicit BrickBuilder(BlockPool& pool) : pool_(pool) {}
@@ -36,7 +36,7 @@ private:
 
     BlockPool& pool_;
     NodeMemo memo_;
-    std::array<std::unique_ptr<NodesByMask>, 256> nodes_by_mask_; // of 2x2x2 voxels, a table a material
+    std::array<std::unique_ptr<NodesByMask>, 256> nodes_by_mask_; // of 2x2x2 voxels, a table per material
 };
 
 } // namespace voxrt::octree

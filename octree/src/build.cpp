@@ -1,18 +1,21 @@
 #include "build.h"
 
+#include "breadth_first.h"
+#include "brick.h"
+#include "octree_builder.h"
+
+#include <voxrt/voxelize/workers.h>
+
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
-#include "ascent.h"
-#include "breadth_first.h"
-#include "brick.h"
-#include "interrupt.h"
-#include "workers.h"
-
 namespace voxrt::octree {
 namespace {
+
+using voxelize::VoxelsView;
 
 constexpr unsigned kBrickLevel = 3;
 
@@ -41,7 +44,7 @@ bool cells_match_mask(const std::uint8_t* cells, const std::uint64_t* mask) {
     return difference == 0;
 }
 
-// The node of a brick in a world of at least 8 voxels a side, or the whole of a smaller world.
+// The node of a brick in a world of at least 8 voxels per side, or the whole of a smaller world.
 Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) {
     const std::uint64_t* mask = voxels.brick_masks + 8 * i;
     const std::int32_t row = voxels.brick_rows[i];
@@ -71,7 +74,7 @@ Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) 
         }
     }
     if (static_cast<std::size_t>(row) >= voxels.rows)
-        refuse("brick", i, "points behind the last row of cells");
+        refuse("brick", i, "refers to a row of cells that is not there");
     const std::uint8_t* cells = voxels.cells + 512 * static_cast<std::size_t>(row);
     if (!cells_match_mask(cells, mask))
         refuse("brick", i, "has cells that contradict its mask");
@@ -85,7 +88,7 @@ Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) 
     }
 }
 
-// A run of the Morton curve: what lies from `begin` up to `end`, in bricks.
+// A run of the Morton curve: positions `begin` … `end` - 1, in bricks, and the first brick and octant there.
 struct Chunk {
     std::uint64_t begin;
     std::uint64_t end;
@@ -96,6 +99,7 @@ struct Chunk {
 // Chunks end where octants of this level do, so that no block below that level is shared between two.
 constexpr unsigned kChunkLevel = 6;
 constexpr std::size_t kChunkBricks = 2048;
+constexpr std::uint32_t kChunkWork = 50 * kChunkBricks; // in units of interrupt.h
 
 std::uint64_t octant_begin(const VoxelsView& voxels, std::size_t i) {
     const unsigned level = voxels.octant_levels[i];
@@ -131,10 +135,10 @@ std::vector<Chunk> cut_into_chunks(const VoxelsView& voxels) {
     return chunks;
 }
 
-// Feeds the bricks and octants of `chunk` to `ascent` in Morton order, up to those where the next chunk starts.
-template <typename Ascending>
-void climb(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, std::size_t octant_end,
-           BrickBuilder& builder, Ascending& ascent) {
+// Adds the bricks and octants of `chunk` to `octree` in Morton order, up to those where the next chunk starts.
+template <typename Builder>
+void add_chunk(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, std::size_t octant_end,
+               BrickBuilder& bricks, Builder& octree) {
     const unsigned brick_level = std::min(voxels.depth, kBrickLevel);
     std::uint64_t covered = chunk.begin;
     std::size_t brick = chunk.brick;
@@ -147,7 +151,7 @@ void climb(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, 
                 refuse("brick", brick, "lies outside the grid or out of Morton order");
             if (code < covered)
                 refuse("brick", brick, "is out of Morton order or overlaps what came before");
-            ascent.add(brick_level, code, brick_node(voxels, brick, builder));
+            octree.add(brick_level, code, brick_node(voxels, brick, bricks));
             covered = code + 1;
             ++brick;
         } else {
@@ -156,62 +160,68 @@ void climb(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, 
                 refuse("octant", octant, "is out of Morton order or overlaps what came before");
             if (voxels.octant_materials[octant] == 0)
                 refuse("octant", octant, "has no material");
-            ascent.add(level, voxels.octant_codes[octant], leaf(voxels.octant_materials[octant]));
+            octree.add(level, voxels.octant_codes[octant], leaf(voxels.octant_materials[octant]));
             covered = next_octant + (std::uint64_t{1} << (3 * (level - kBrickLevel)));
             if (covered > chunk.end)
-                refuse("octant", octant, "overlaps what comes behind");
+                refuse("octant", octant, "overlaps what comes after it");
             if (++octant < octant_end)
                 next_octant = octant_begin(voxels, octant);
         }
     }
-    ascent.finish();
+    octree.finish();
 }
 
-// An octant of at least the chunk level, as a worker left it.
+// An octant of at least the chunk level; its node is in the pool of the thread that made it.
 struct Part {
     unsigned level;
     std::uint64_t code;
     Node node;
 };
 
-struct Worker {
+// What a thread keeps from chunk to chunk.
+struct Scratch {
     BlockPool pool;
-    BrickBuilder builder{pool};
+    BrickBuilder bricks{pool};
 };
 
 } // namespace
 
-std::vector<Word> build(const VoxelsView& voxels, unsigned threads) {
+std::vector<Word> build(const VoxelsView& voxels, int threads) {
     const std::vector<Chunk> chunks = cut_into_chunks(voxels);
     const unsigned top = std::min(voxels.depth, kChunkLevel);
-    std::vector<Worker> workers(worker_count(threads, chunks.size()));
+    const voxelize::Workers workers(threads);
+    std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(workers.threads()));
+    scratch[0] = std::make_unique<Scratch>();
     std::vector<std::vector<Part>> parts(chunks.size());
-    std::vector<unsigned> worker_of(chunks.size());
-    for_each_chunk(static_cast<unsigned>(workers.size()), chunks.size(), [&](unsigned worker, std::size_t i) {
-        if (worker == 0)
-            Interrupt::check();
-        const bool last = i + 1 == chunks.size();
+    std::vector<std::size_t> thread_of(chunks.size());
+    workers.run(chunks.size(), [&](std::size_t i, int thread) {
+        voxelize::count_work(kChunkWork);
+        thread_of[i] = static_cast<std::size_t>(thread);
+        std::unique_ptr<Scratch>& own = scratch[thread_of[i]];
+        if (!own)
+            own = std::make_unique<Scratch>();
         const auto keep = [&](unsigned level, std::uint64_t code, Node node) {
             parts[i].push_back({level, code, node});
         };
-        Ascent ascent(workers[worker].pool, top, keep);
-        worker_of[i] = worker;
-        climb(voxels, chunks[i], last ? voxels.bricks : chunks[i + 1].brick,
-              last ? voxels.octants : chunks[i + 1].octant, workers[worker].builder, ascent);
+        OctreeBuilder octree(own->pool, top, keep);
+        const bool last = i + 1 == chunks.size();
+        add_chunk(voxels, chunks[i], last ? voxels.bricks : chunks[i + 1].brick,
+                  last ? voxels.octants : chunks[i + 1].octant, own->bricks, octree);
     });
 
-    BlockPool& pool = workers[0].pool;
-    std::vector<std::vector<Node>> translation(workers.size());
-    for (std::size_t worker = 1; worker < workers.size(); ++worker)
-        translation[worker] = pool.absorb(workers[worker].pool);
+    BlockPool& pool = scratch[0]->pool;
+    std::vector<std::vector<Node>> translation(scratch.size());
+    for (std::size_t thread = 1; thread < scratch.size(); ++thread)
+        if (scratch[thread])
+            translation[thread] = pool.absorb(scratch[thread]->pool);
     Node root = kEmpty;
-    Ascent ascent(pool, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
+    OctreeBuilder octree(pool, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
     for (std::size_t i = 0; i < chunks.size(); ++i)
         for (const Part& part : parts[i]) {
-            const bool foreign = worker_of[i] != 0 && !is_leaf(part.node);
-            ascent.add(part.level, part.code, foreign ? translation[worker_of[i]][part.node] : part.node);
+            const bool foreign = thread_of[i] != 0 && !is_leaf(part.node);
+            octree.add(part.level, part.code, foreign ? translation[thread_of[i]][part.node] : part.node);
         }
-    ascent.finish();
+    octree.finish();
     return breadth_first_words(pool, root);
 }
 
@@ -219,21 +229,21 @@ std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* m
                                unsigned depth) {
     BlockPool pool;
     Node root = kEmpty;
-    Ascent ascent(pool, depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
-    Interrupt interrupt;
-    std::uint64_t behind = 0;
+    OctreeBuilder octree(pool, depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
+    std::uint64_t next = 0; // lowest code that may follow
     for (std::size_t i = 0; i < count; ++i) {
-        interrupt.poll();
+        work.count_step();
         if (codes[i] >= std::uint64_t{1} << (3 * depth))
             refuse("voxel", i, "lies outside the grid");
-        if (codes[i] < behind)
+        if (codes[i] < next)
             refuse("voxel", i, "is out of Morton order or repeated");
         if (materials[i] == 0)
             refuse("voxel", i, "has no material");
-        ascent.add(0, codes[i], leaf(materials[i]));
-        behind = codes[i] + 1;
+        octree.add(0, codes[i], leaf(materials[i]));
+        next = codes[i] + 1;
     }
-    ascent.finish();
+    octree.finish();
     return breadth_first_words(pool, root);
 }
 

@@ -1,36 +1,28 @@
-// Voxels (sparse bricks and uniform octants in Morton order) to memory words.
+// Voxels to the words of an octree memory.
+//
+// Equal blocks are stored once, and blocks stand in breadth-first order of first visit. So equal voxels give equal
+// words, on every machine and for every number of threads.
 #pragma once
+
+#include "words.h"
+
+#include <voxrt/voxelize/sparse_voxels.h>
 
 #include <cstddef>
 #include <vector>
 
-#include "words.h"
-
 namespace voxrt::octree {
 
-/// The arrays of voxelize.Voxels; the manual of each field is there. Sizes are counted in rows.
-struct VoxelsView {
-    unsigned depth;
-    std::size_t bricks;
-    const std::uint64_t* brick_codes;
-    const std::uint64_t* brick_masks; // 8 a brick
-    const std::uint8_t* brick_materials;
-    const std::int32_t* brick_rows;
-    std::size_t rows;
-    const std::uint8_t* cells; // 512 a row
-    std::size_t octants;
-    const std::uint64_t* octant_codes;
-    const std::uint8_t* octant_levels;
-    const std::uint8_t* octant_materials;
-};
+/// The memory of sparse bricks and octants, of depth `voxels.depth` (1 … 16). `threads`: 0 takes as many as the machine
+/// has.
+///
+/// Cost: bricks and octants, never volume. Memory: the blocks that differ, once, and once more per further thread.
+/// Throws std::invalid_argument, naming the brick or octant, where the arrays break their contract (sparse_voxels.h);
+/// std::length_error where the octree has more blocks than 31-bit addresses can reach.
+std::vector<Word> build(const voxelize::VoxelsView& voxels, int threads);
 
-/// The shared, breadth-first memory of `voxels`, the same for every number of threads (0: all that the machine has).
-/// Cost: bricks and octants, never volume; memory: the blocks that differ, once and once more a further thread. Throws
-/// std::invalid_argument where the arrays break their contract. The GIL must not be held.
-std::vector<Word> build(const VoxelsView& voxels, unsigned threads);
-
-/// The memory of a world of side 2**depth whose solid voxels are given one by one: Morton codes, strictly ascending,
-/// and a material each. Throws std::invalid_argument as above. The GIL must not be held.
+/// The memory of a world of side 2**depth whose solid voxels are given one by one: `count` Morton codes, strictly
+/// ascending, and a material each. Linear in `count`. Throws as above.
 std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
                                unsigned depth);
 

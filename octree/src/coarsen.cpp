@@ -1,9 +1,9 @@
 #include "coarsen.h"
 
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <unordered_map>
-
-#include "interrupt.h"
 
 namespace voxrt::octree {
 namespace {
@@ -22,7 +22,7 @@ public:
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
         if (const auto known = nodes_.find(key); known != nodes_.end())
             return known->second;
-        interrupt_.poll();
+        work_.count_step();
         Node result;
         if (level <= finest_) {
             result = majority(census(word, level));
@@ -68,7 +68,7 @@ private:
     BlockPool& pool_;
     std::unordered_map<std::uint64_t, Node> nodes_;
     std::unordered_map<std::uint64_t, Census> censuses_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace

@@ -1,10 +1,11 @@
 #include "dense.h"
 
-#include <algorithm>
-
 #include "breadth_first.h"
 #include "brick.h"
-#include "interrupt.h"
+
+#include <voxrt/voxelize/interrupt.h>
+
+#include <algorithm>
 
 namespace voxrt::octree {
 namespace {
@@ -37,7 +38,7 @@ private:
     }
 
     Node brick(std::size_t x0, std::size_t y0, std::size_t z0, unsigned level) {
-        interrupt_.poll();
+        work_.count_step();
         const std::size_t side = std::size_t{1} << level;
         const std::size_t nx = std::min(side, sizes_[0] - x0);
         const std::size_t ny = std::min(side, sizes_[1] - y0);
@@ -65,7 +66,7 @@ private:
     unsigned spread_[8] = {};
     BlockPool pool_;
     BrickBuilder bricks_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace

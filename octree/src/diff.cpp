@@ -1,8 +1,8 @@
 #include "diff.h"
 
-#include <algorithm>
+#include <voxrt/voxelize/interrupt.h>
 
-#include "interrupt.h"
+#include <algorithm>
 
 namespace voxrt::octree {
 namespace {
@@ -25,7 +25,7 @@ public:
     Pair of(Word a, Word b, unsigned level) {
         if (is_leaf(a) && is_leaf(b))
             return leaves(material(a), material(b), level);
-        interrupt_.poll();
+        work_.count_step();
         const std::uint64_t key = (std::uint64_t{a} << 32 | b) ^ std::uint64_t{level} << 27;
         Entry& entry = cache_[(key * 0x9E3779B97F4A7C15u) >> (64 - kCacheBits)];
         if (entry.level == level && entry.a == a && entry.b == b)
@@ -76,7 +76,7 @@ private:
     Memory first_;
     Memory second_;
     std::vector<Entry> cache_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace

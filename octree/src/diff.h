@@ -5,17 +5,17 @@
 
 namespace voxrt::octree {
 
-/// Voxels that only the second has, only the first has, and that both have in another material; `bounds` holds them
-/// all.
+/// Counts of voxels, and the smallest box that holds them all.
 struct Difference {
-    std::uint64_t appeared = 0;
-    std::uint64_t vanished = 0;
-    std::uint64_t recoloured = 0;
-    std::optional<Box> bounds;
+    std::uint64_t appeared = 0;   // empty in the first, solid in the second
+    std::uint64_t vanished = 0;   // solid in the first, empty in the second
+    std::uint64_t recoloured = 0; // solid in both, of different materials
+    std::optional<Box> bounds;    // none where nothing differs
 };
 
-/// Compares the voxels, not the words. Pairs of blocks met before are looked up in a cache of bounded size. Throws
-/// std::invalid_argument where the depths differ.
+/// Compares the voxels, not the words. Pairs of blocks met before are looked up in a cache of bounded size, so the cost
+/// grows with the different pairs of blocks. Throws std::invalid_argument where the depths differ or words are no
+/// octree.
 Difference diff(const Memory& first, const Memory& second);
 
 } // namespace voxrt::octree

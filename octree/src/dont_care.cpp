@@ -1,15 +1,15 @@
 #include "dont_care.h"
 
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
-#include "interrupt.h"
-
 namespace voxrt::octree {
 namespace {
 
-// Sets of known octants, the largest first: a block joins another that knows more than it rather than teach one.
+// Sets of specified octants, the largest first: a block rather joins one that specifies more than it than extends one.
 const std::array<std::uint8_t, 256> kLargestFirst = [] {
     std::array<std::uint8_t, 256> sets;
     std::iota(sets.begin(), sets.end(), std::uint8_t{0});
@@ -18,14 +18,14 @@ const std::array<std::uint8_t, 256> kLargestFirst = [] {
     return sets;
 }();
 
-unsigned known_octants(const Block& children) {
-    unsigned known = 0;
+unsigned specified_octants(const Block& children) {
+    unsigned specified = 0;
     for (unsigned octant = 0; octant < 8; ++octant)
-        known |= unsigned{children[octant] != kAnySolid} << octant;
-    return known;
+        specified |= unsigned{children[octant] != kAnySolid} << octant;
+    return specified;
 }
 
-// Numbers of blocks: children first, lowest first, then best known first.
+// Numbers of blocks: children first, lowest first, then best specified first.
 std::vector<Word> order_of(const BlockPool& blocks) {
     std::vector<unsigned> heights(blocks.size());
     std::vector<unsigned> ranks(blocks.size());
@@ -33,7 +33,7 @@ std::vector<Word> order_of(const BlockPool& blocks) {
         for (const Node child : blocks[block])
             if (!is_leaf(child))
                 heights[block] = std::max(heights[block], heights[child] + 1);
-        ranks[block] = 16 * heights[block] + 8 - std::popcount(known_octants(blocks[block]));
+        ranks[block] = 16 * heights[block] + 8 - std::popcount(specified_octants(blocks[block]));
     }
     std::vector<Word> order(blocks.size());
     std::iota(order.begin(), order.end(), Word{0});
@@ -44,9 +44,9 @@ std::vector<Word> order_of(const BlockPool& blocks) {
 } // namespace
 
 DontCareSharing::DontCareSharing(const BlockPool& blocks) : node_of_(blocks.size()) {
-    Interrupt interrupt;
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     for (const Word block : order_of(blocks)) {
-        interrupt.poll();
+        work.count_step();
         Block children = blocks[block];
         for (Node& child : children)
             child = is_leaf(child) ? child : node_of_[child];
@@ -63,72 +63,72 @@ Node DontCareSharing::place(const Block& children) {
         uniform = uniform && only == kAnySolid && is_leaf(child);
         only = child;
     }
-    const StandIn block = described(children);
-    if (uniform && (only != kEmpty || block.known == 0xFF))
+    const MergedBlock block = describe(children);
+    if (uniform && (only != kEmpty || block.specified == 0xFF))
         return only;
-    if (const Word number = joined(block); number != kNone)
+    if (const Word number = find_compatible(block); number != kNone)
         return number;
-    stand_ins_.push_back(block);
-    list(static_cast<Word>(stand_ins_.size() - 1));
-    return static_cast<Word>(stand_ins_.size() - 1);
+    merged_.push_back(block);
+    enter(static_cast<Word>(merged_.size() - 1));
+    return static_cast<Word>(merged_.size() - 1);
 }
 
-// The stand-in that `block` joins, or kNone.
-Word DontCareSharing::joined(const StandIn& block) {
-    for (const unsigned known : kLargestFirst) {
-        if (groups_[known].empty() || (block.known & ~known & ~block.full) != 0)
+// The merged block that `block` joins, or kNone.
+Word DontCareSharing::find_compatible(const MergedBlock& block) {
+    for (const unsigned specified : kLargestFirst) {
+        if (groups_[specified].empty() || (block.specified & ~specified & ~block.full) != 0)
             continue;
-        ask(known, block.known);
-        const std::uint64_t key = key_of(block.children, known, block.known);
+        add_index(specified, block.specified);
+        const std::uint64_t key = key_of(block.children, specified, block.specified);
         for (Word entry = slots_[key & (slots_.size() - 1)]; entry != kNone; entry = entries_[entry].next) {
             const Word number = entries_[entry].number;
-            if (entries_[entry].key != key || stand_ins_[number].known != known || !joins(block, stand_ins_[number]))
+            if (entries_[entry].key != key || merged_[number].specified != specified || !merge(block, merged_[number]))
                 continue;
-            if (stand_ins_[number].known != known) // it learned
-                list(number);
+            if (merged_[number].specified != specified) // it specifies more now
+                enter(number);
             return number;
         }
     }
     return kNone;
 }
 
-DontCareSharing::StandIn DontCareSharing::described(const Block& children) const {
-    StandIn block{children, 1, static_cast<std::uint8_t>(known_octants(children)), 0};
+DontCareSharing::MergedBlock DontCareSharing::describe(const Block& children) const {
+    MergedBlock block{children, 1, static_cast<std::uint8_t>(specified_octants(children)), 0};
     for (unsigned octant = 0; octant < 8; ++octant) {
         const Node child = children[octant];
-        const bool full = is_leaf(child) ? child != kEmpty : stand_ins_[child].full == 0xFF;
+        const bool full = is_leaf(child) ? child != kEmpty : merged_[child].full == 0xFF;
         block.full |= static_cast<std::uint8_t>(unsigned{full} << octant);
         block.height = std::max(block.height, height(child) + 1);
     }
     return block;
 }
 
-// Teaches `stand_in` what `block` knows where that contradicts nothing. It may not grow higher by that: what it learns
-// could otherwise have it for a part.
-bool DontCareSharing::joins(const StandIn& block, StandIn& stand_in) const {
-    const unsigned taught = block.known & ~stand_in.known;
-    const unsigned filled = stand_in.known & ~block.known;
-    if ((taught & ~block.full) != 0 || (filled & ~stand_in.full) != 0)
+// Adds what `block` specifies to `merged`, where the two are compatible. `merged` must not get higher by that: its new
+// children could otherwise contain it.
+bool DontCareSharing::merge(const MergedBlock& block, MergedBlock& merged) const {
+    const unsigned added = block.specified & ~merged.specified;
+    const unsigned filled = merged.specified & ~block.specified;
+    if ((added & ~block.full) != 0 || (filled & ~merged.full) != 0)
         return false;
     for (unsigned octant = 0; octant < 8; ++octant) {
-        const bool agreed = (block.known & stand_in.known) >> octant & 1;
-        if (agreed && block.children[octant] != stand_in.children[octant])
+        const bool agreed = (block.specified & merged.specified) >> octant & 1;
+        if (agreed && block.children[octant] != merged.children[octant])
             return false;
-        if ((taught >> octant & 1) && height(block.children[octant]) >= stand_in.height)
+        if ((added >> octant & 1) && height(block.children[octant]) >= merged.height)
             return false;
     }
     for (unsigned octant = 0; octant < 8; ++octant)
-        if (taught >> octant & 1)
-            stand_in.children[octant] = block.children[octant];
-    stand_in.known |= block.known;
+        if (added >> octant & 1)
+            merged.children[octant] = block.children[octant];
+    merged.specified |= block.specified;
     return true;
 }
 
-// What blocks that know `asked` and stand-ins that know `known` have to agree on.
-std::uint64_t DontCareSharing::key_of(const Block& children, unsigned known, unsigned asked) {
-    std::uint64_t hash = known << 8 | asked;
+// Of what blocks that specify `query` and merged blocks that specify `specified` have to agree on.
+std::uint64_t DontCareSharing::key_of(const Block& children, unsigned specified, unsigned query) {
+    std::uint64_t hash = specified << 8 | query;
     for (unsigned octant = 0; octant < 8; ++octant)
-        if ((known & asked) >> octant & 1) {
+        if ((specified & query) >> octant & 1) {
             hash = (hash ^ children[octant]) * 0x9E3779B97F4A7C15u;
             hash ^= hash >> 29;
         }
@@ -136,27 +136,27 @@ std::uint64_t DontCareSharing::key_of(const Block& children, unsigned known, uns
     return hash ^ hash >> 32;
 }
 
-// Enters the stand-ins that know `known` for blocks that know `asked`, the first time that one does.
-void DontCareSharing::ask(unsigned known, unsigned asked) {
-    if (is_asked_[known][asked])
+// Indexes the merged blocks that specify `specified` for blocks that specify `query`, the first time that one comes.
+void DontCareSharing::add_index(unsigned specified, unsigned query) {
+    if (has_index_[specified][query])
         return;
-    is_asked_[known][asked] = true;
-    asked_[known].push_back(asked);
-    std::erase_if(groups_[known], [&](Word number) { return stand_ins_[number].known != known; });
-    for (const Word number : groups_[known])
-        enter(number, asked);
+    has_index_[specified][query] = true;
+    queries_[specified].push_back(query);
+    std::erase_if(groups_[specified], [&](Word number) { return merged_[number].specified != specified; });
+    for (const Word number : groups_[specified])
+        enter(number, query);
 }
 
-void DontCareSharing::list(Word number) {
-    const unsigned known = stand_ins_[number].known;
-    groups_[known].push_back(number);
-    for (const unsigned asked : asked_[known])
-        enter(number, asked);
+void DontCareSharing::enter(Word number) {
+    const unsigned specified = merged_[number].specified;
+    groups_[specified].push_back(number);
+    for (const unsigned query : queries_[specified])
+        enter(number, query);
 }
 
-void DontCareSharing::enter(Word number, unsigned asked) {
-    const StandIn& stand_in = stand_ins_[number];
-    if ((stand_in.known & ~asked & ~unsigned{stand_in.full}) != 0)
+void DontCareSharing::enter(Word number, unsigned query) {
+    const MergedBlock& merged = merged_[number];
+    if ((merged.specified & ~query & ~unsigned{merged.full}) != 0)
         return;
     if (entries_.size() == slots_.size()) {
         slots_.assign(2 * slots_.size(), kNone);
@@ -166,7 +166,7 @@ void DontCareSharing::enter(Word number, unsigned asked) {
             slot = entry;
         }
     }
-    const std::uint64_t key = key_of(stand_in.children, stand_in.known, asked);
+    const std::uint64_t key = key_of(merged.children, merged.specified, query);
     Word& slot = slots_[key & (slots_.size() - 1)];
     entries_.push_back({key, number, slot});
     slot = static_cast<Word>(entries_.size() - 1);
@@ -175,13 +175,12 @@ void DontCareSharing::enter(Word number, unsigned asked) {
 Node DontCareSharing::shared(Node node, Node fallback, BlockPool& pool) const {
     if (is_leaf(node))
         return node;
-    std::vector<Word> order(stand_ins_.size());
+    std::vector<Word> order(merged_.size());
     std::iota(order.begin(), order.end(), Word{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Word a, Word b) { return stand_ins_[a].height < stand_ins_[b].height; });
-    std::vector<Node> result(stand_ins_.size());
+    std::stable_sort(order.begin(), order.end(), [&](Word a, Word b) { return merged_[a].height < merged_[b].height; });
+    std::vector<Node> result(merged_.size());
     for (const Word number : order) {
-        Block children = stand_ins_[number].children;
+        Block children = merged_[number].children;
         const auto solid_leaf = std::find_if(children.begin(), children.end(), [](Node child) {
             return is_leaf(child) && child != kEmpty && child != kAnySolid;
         });

@@ -1,13 +1,13 @@
 #include "hidden.h"
 
+#include "breadth_first.h"
+#include "brick.h"
+
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <bit>
 #include <unordered_map>
-
-#include "breadth_first.h"
-#include "brick.h"
-#include "interrupt.h"
-#include "morton.h"
 
 namespace voxrt::octree {
 namespace {
@@ -19,7 +19,7 @@ constexpr unsigned kCentre = 13;
 // An octant and the 26 around it, x fastest: nodes of one level.
 using Neighbourhood = std::array<Node, 27>;
 
-// A memory with all of its materials made one, so that neighbourhoods differ only where what is solid does.
+// A memory with all materials replaced by one, so that neighbourhoods that are solid alike are equal.
 class Solidity {
 public:
     Solidity(const Memory& memory, BlockPool& pool) : memory_(memory), pool_(pool) {}
@@ -30,7 +30,7 @@ public:
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
         if (const auto known = nodes_.find(key); known != nodes_.end())
             return known->second;
-        interrupt_.poll();
+        work_.count_step();
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant)
             children[octant] = node(memory_.child(word, octant, level), level - 1);
@@ -41,7 +41,7 @@ private:
     Memory memory_;
     BlockPool& pool_;
     std::unordered_map<std::uint64_t, Node> nodes_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 // The solid voxels of a brick and of one voxel around it: a row along z for each (x, y), bit z + 1 of it for voxel z.
@@ -49,9 +49,9 @@ class Halo {
 public:
     Halo(const BlockPool& pool, const Neighbourhood& around, unsigned level) : pool_(pool), side_(1 << level) {
         for (unsigned i = 0; i < 27; ++i)
-            paint(around[i], level,
-                  {(static_cast<int>(i % 3) - 1) * side_, (static_cast<int>(i / 3 % 3) - 1) * side_,
-                   (static_cast<int>(i / 9) - 1) * side_});
+            mark(around[i], level,
+                 {(static_cast<int>(i % 3) - 1) * side_, (static_cast<int>(i / 3 % 3) - 1) * side_,
+                  (static_cast<int>(i / 9) - 1) * side_});
     }
 
     // Bit z + 1 of element 8 * x + y: voxel (x, y, z) of the brick and all around it are solid.
@@ -77,7 +77,7 @@ private:
     static std::size_t row(int x, int y) { return static_cast<std::size_t>(10 * x + y); }
 
     // `corner` counts from the brick's lowest voxel.
-    void paint(Node node, unsigned level, const std::array<int, 3>& corner) {
+    void mark(Node node, unsigned level, const std::array<int, 3>& corner) {
         if (node == kEmpty)
             return;
         const int side = 1 << level;
@@ -97,9 +97,9 @@ private:
             return;
         }
         for (int octant = 0; octant < 8; ++octant)
-            paint(pool_[node][static_cast<std::size_t>(octant)], level - 1,
-                  {corner[0] + (octant & 1) * side / 2, corner[1] + (octant >> 1 & 1) * side / 2,
-                   corner[2] + (octant >> 2) * side / 2});
+            mark(pool_[node][static_cast<std::size_t>(octant)], level - 1,
+                 {corner[0] + (octant & 1) * side / 2, corner[1] + (octant >> 1 & 1) * side / 2,
+                  corner[2] + (octant >> 2) * side / 2});
     }
 
     const BlockPool& pool_;
@@ -132,7 +132,7 @@ private:
             return kEmpty;
         if (std::all_of(around.begin(), around.end(), [](Node node) { return node == kSolid; }))
             return kSolid;
-        interrupt_.poll();
+        work_.count_step();
         Entry& entry = cache_[slot_of(around, level)];
         if (entry.level == level && entry.around == around)
             return entry.node;
@@ -197,7 +197,7 @@ private:
     BlockPool pool_;
     BrickBuilder bricks_{pool_};
     std::vector<Entry> cache_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace
@@ -214,11 +214,11 @@ std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, con
         std::unordered_map<std::uint64_t, std::uint64_t> below;
         for (const auto& [pair, octants] : pairs) {
             const Word word = static_cast<Word>(pair >> 32);
-            const Word behind = static_cast<Word>(pair);
-            if (is_leaf(word) || behind == kEmpty)
+            const Word hidden_word = static_cast<Word>(pair);
+            if (is_leaf(word) || hidden_word == kEmpty)
                 continue;
             for (unsigned octant = 0; octant < 8; ++octant) {
-                const Word child = is_leaf(behind) ? behind : hidden.child(behind, octant, above);
+                const Word child = is_leaf(hidden_word) ? hidden_word : hidden.child(hidden_word, octant, above);
                 below[std::uint64_t{memory.child(word, octant, above)} << 32 | child] += octants;
             }
         }
@@ -226,7 +226,7 @@ std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, con
     }
     std::unordered_map<Word, std::uint64_t> result;
     for (const auto& [pair, octants] : pairs)
-        if (const Word behind = static_cast<Word>(pair); is_leaf(behind) && behind != kEmpty)
+        if (const Word hidden_word = static_cast<Word>(pair); is_leaf(hidden_word) && hidden_word != kEmpty)
             result[static_cast<Word>(pair >> 32)] += octants;
     return result;
 }

@@ -1,20 +1,21 @@
-// Which voxels no ray from outside can reach.
+// Hidden voxels: those that no ray from outside can reach.
 #pragma once
+
+#include "memory.h"
 
 #include <unordered_map>
 #include <vector>
 
-#include "memory.h"
-
 namespace voxrt::octree {
 
-/// The memory of the hidden voxels, material 1 each: those that are solid, as are all 26 around them, inside the world.
+/// The memory of the hidden voxels, of material 1. A voxel is hidden where it is solid and all 26 voxels around it are
+/// solid voxels of the world.
 ///
-/// A ray crosses one plane at a time, so its first solid voxel shares a face with an empty one. The voxels at edges and
-/// corners count too since a camera may stand on an edge or a corner of an empty voxel, and looks into what lies there.
+/// A ray crosses one plane at a time, so the first solid voxel that it meets shares a face with an empty one. The
+/// neighbours at edges and corners count too, since a camera may stand on an edge or a corner of an empty voxel.
 ///
-/// Cost: octants at the surface of what is solid, and blocks; never volume. Neighbourhoods met before are looked up in
-/// a cache of bounded size. The GIL must not be held.
+/// Cost: octants at the surface, and blocks; never volume. Neighbourhoods met before are looked up in a cache of
+/// bounded size. Throws std::invalid_argument where the words are no octree.
 std::vector<Word> hidden_voxels(const Memory& memory);
 
 /// How many octants of side 2**level hold a block all of whose voxels are solid in `hidden`, by block. Linear in the

@@ -1,6 +1,6 @@
 #include "leaves.h"
 
-#include "interrupt.h"
+#include <voxrt/voxelize/interrupt.h>
 
 namespace voxrt::octree {
 
@@ -10,9 +10,9 @@ LeafWalk::LeafWalk(const Memory& memory, const Box& box, bool solid_only)
 
 std::vector<Leaf> LeafWalk::next(std::size_t limit) {
     std::vector<Leaf> leaves;
-    Interrupt interrupt;
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     while (!stack_.empty() && leaves.size() < limit) {
-        interrupt.poll();
+        work.count_step();
         const Step step = stack_.back();
         stack_.pop_back();
         const std::int64_t side = std::int64_t{1} << step.level;

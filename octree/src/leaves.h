@@ -1,9 +1,9 @@
-// The leaves of a memory, a chunk at a time.
+// The leaves of a memory, one chunk at a time.
 #pragma once
 
-#include <vector>
-
 #include "query.h"
+
+#include <vector>
 
 namespace voxrt::octree {
 
@@ -14,14 +14,14 @@ struct Leaf {
     std::uint8_t material;
 };
 
-/// Walks the leaves that overlap a box, whole and in Morton order. Holds a path and no more, however many leaves there
-/// are.
+/// Walks the leaves that overlap a box, whole (not clipped) and in Morton order. Holds one path from the root, however
+/// many leaves there are.
 class LeafWalk {
 public:
-    /// `memory` must outlive the walk; `solid_only` leaves empty space out.
+    /// The words of `memory` must outlive the walk. `solid_only` leaves empty leaves out.
     LeafWalk(const Memory& memory, const Box& box, bool solid_only);
 
-    /// At most `limit` further leaves; none at the end.
+    /// The next leaves, at most `limit`; none at the end. Throws std::invalid_argument where the words are no octree.
     std::vector<Leaf> next(std::size_t limit);
 
 private:

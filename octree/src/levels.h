@@ -1,14 +1,14 @@
-// The blocks of an octree level by level: which stand where, and how often.
+// The blocks of an octree level by level, and how many octants show each.
 #pragma once
+
+#include "memory.h"
 
 #include <unordered_map>
 #include <vector>
 
-#include "memory.h"
-
 namespace voxrt::octree {
 
-/// A block at one level and the octants that it stands for; a block may occur at several levels.
+/// A block at one level, and how many octants of that level it is the content of. A block may occur at several levels.
 struct Occurrence {
     Word block;
     std::uint64_t octants;

@@ -1,31 +1,36 @@
-// A view of memory words that cannot be walked out of.
+// A view of the words of an octree memory. Words are described in words.h.
 #pragma once
+
+#include "words.h"
 
 #include <cstddef>
 #include <stdexcept>
 
-#include "words.h"
-
 namespace voxrt::octree {
 
-/// Words that claim to be an octree of `depth` levels. Every walk goes through `child`, so words that are not an octree
-/// end in an exception and never in a bad read; a walk ends because its level falls with every step.
+/// Borrowed words that claim to be an octree of `depth` levels, 1 … kMaxDepth: a world of 2**depth voxels per side.
+///
+/// Memories are read through root() and child(), which check every address. So words that are no octree end in
+/// std::invalid_argument, never in a read outside the memory. Each step goes down one level, so every walk ends.
+/// validate.h tells what is wrong with words; VerifiedMemory (verify.h) is for readers that check nothing.
 struct Memory {
     const Word* words;
-    std::size_t size;
+    std::size_t size; // words
     unsigned depth;
 
+    /// Word 0.
     Word root() const {
         if (size == 0)
-            throw std::invalid_argument("an octree memory has at least one word");
+            throw std::invalid_argument("the octree memory has no words; it needs at least its root");
         return words[0];
     }
 
-    /// Child `octant` of the block at `pointer`; `level` is the level of the pointer, of side 2**level voxels.
+    /// The word of child `octant` in the block at `pointer`, a word of an octant of side 2**level.
     Word child(Word pointer, unsigned octant, unsigned level) const {
         const std::size_t address = std::size_t{pointer} + octant;
         if (address >= size || level == 0)
-            throw std::invalid_argument("the words are not a valid octree; read them with octree.decode");
+            throw std::invalid_argument("the words are not a valid octree: a pointer leads outside the memory or below "
+                                        "its depth; validate them first");
         return words[address];
     }
 };

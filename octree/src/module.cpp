@@ -1,17 +1,4 @@
-// Python bindings: checks what NumPy hands over, releases the GIL, hands results back without copying.
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
-
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <tuple>
-
+// voxrt.octree._native: the octree for Python. The headers are the manual; here arrays are checked and handed over.
 #include "breadth_first.h"
 #include "budget.h"
 #include "build.h"
@@ -20,12 +7,20 @@
 #include "diff.h"
 #include "hidden.h"
 #include "interior.h"
-#include "interrupt.h"
 #include "leaves.h"
 #include "query.h"
 #include "regions.h"
 #include "surface.h"
 #include "validate.h"
+
+#include <voxrt/voxelize/python.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+
+#include <algorithm>
+#include <memory>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -33,33 +28,34 @@ using namespace nb::literals;
 namespace voxrt::octree {
 namespace {
 
+using python::LongCall;
+using python::NamedTuple;
+using python::to_numpy;
+using python::to_read_only_numpy;
+
 template <typename T> using Vector = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <typename T, int Columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
 using Volume = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Corner = std::array<std::int64_t, 3>;
 
-// A NumPy array that owns `values`.
-template <typename T, typename... Shape> auto to_numpy(std::vector<T>&& values, Shape... shape) {
-    auto held = std::make_unique<std::vector<T>>(std::move(values));
-    T* data = held->data();
-    nb::capsule owner(held.get(), [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    held.release();
-    return nb::ndarray<nb::numpy, T>(data, {static_cast<std::size_t>(shape)...}, owner);
-}
+NamedTuple verdict_type, bounds_type, difference_type, regions_type, surface_change_type, leaves_type;
 
-nb::ndarray<nb::numpy, const Word, nb::ndim<1>> words_to_numpy(std::vector<Word>&& words) {
+// A read-only array.
+nb::object words_to_numpy(std::vector<Word>&& words) {
     words.shrink_to_fit();
     const std::size_t size = words.size();
-    auto held = std::make_unique<std::vector<Word>>(std::move(words));
-    const Word* data = held->data();
-    nb::capsule owner(held.get(), [](void* p) noexcept { delete static_cast<std::vector<Word>*>(p); });
-    held.release();
-    return nb::ndarray<nb::numpy, const Word, nb::ndim<1>>(data, {size}, owner);
+    return to_read_only_numpy(std::move(words), {size});
 }
 
-void require(bool held, const char* message) {
-    if (!held)
+// Calls `work` without the GIL; Ctrl-C ends it.
+template <class Work> auto run(Work work) {
+    const LongCall call;
+    return work();
+}
+
+void require(bool condition, const char* message) {
+    if (!condition)
         throw std::invalid_argument(message);
 }
 
@@ -76,11 +72,17 @@ Box box_of(const Corner& low, const Corner& high) {
     return {low, high};
 }
 
-auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const Rows<std::uint64_t, 8>& brick_masks,
-                const Vector<std::uint8_t>& brick_materials, const Vector<std::int32_t>& brick_rows,
-                const Rows<std::uint8_t, 512>& cells, const Vector<std::uint64_t>& octant_codes,
-                const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials,
-                unsigned threads) {
+nb::object to_python(const Corner& corner) { return nb::make_tuple(corner[0], corner[1], corner[2]); }
+
+nb::object to_python(const std::optional<Box>& bounds) {
+    return bounds ? bounds_type(to_python(bounds->low), to_python(bounds->high)) : nb::none();
+}
+
+nb::object bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes,
+                      const Rows<std::uint64_t, 8>& brick_masks, const Vector<std::uint8_t>& brick_materials,
+                      const Vector<std::int32_t>& brick_rows, const Rows<std::uint8_t, 512>& cells,
+                      const Vector<std::uint64_t>& octant_codes, const Vector<std::uint8_t>& octant_levels,
+                      const Vector<std::uint8_t>& octant_materials, int threads) {
     require_depth(depth);
     const std::size_t bricks = brick_codes.shape(0);
     const std::size_t octants = octant_codes.shape(0);
@@ -88,47 +90,35 @@ auto bind_build(unsigned depth, const Vector<std::uint64_t>& brick_codes, const 
             "the brick arrays differ in length");
     require(octant_levels.shape(0) == octants && octant_materials.shape(0) == octants,
             "the octant arrays differ in length");
-    const VoxelsView view{depth,
-                          bricks,
-                          brick_codes.data(),
-                          brick_masks.data(),
-                          brick_materials.data(),
-                          brick_rows.data(),
-                          cells.shape(0),
-                          cells.data(),
-                          octants,
-                          octant_codes.data(),
-                          octant_levels.data(),
-                          octant_materials.data()};
-    std::vector<Word> words;
-    {
-        nb::gil_scoped_release release;
-        words = build(view, threads);
-    }
-    return words_to_numpy(std::move(words));
+    require(threads >= 0 && threads <= 1024, "threads must be 0 ... 1024");
+    const voxelize::VoxelsView view{depth,
+                                    bricks,
+                                    brick_codes.data(),
+                                    brick_masks.data(),
+                                    brick_materials.data(),
+                                    brick_rows.data(),
+                                    cells.shape(0),
+                                    cells.data(),
+                                    octants,
+                                    octant_codes.data(),
+                                    octant_levels.data(),
+                                    octant_materials.data()};
+    return words_to_numpy(run([&] { return build(view, threads); }));
 }
 
-auto bind_build_dense(const Volume& cells, unsigned depth) {
+nb::object bind_build_dense(const Volume& cells, unsigned depth) {
     require_depth(depth);
     for (unsigned axis = 0; axis < 3; ++axis)
         require(cells.shape(axis) <= std::size_t{1} << depth, "the array is larger than the world");
-    std::vector<Word> words;
-    {
-        nb::gil_scoped_release release;
-        words = build_dense(cells.data(), cells.shape(0), cells.shape(1), cells.shape(2), depth);
-    }
-    return words_to_numpy(std::move(words));
+    return words_to_numpy(
+        run([&] { return build_dense(cells.data(), cells.shape(0), cells.shape(1), cells.shape(2), depth); }));
 }
 
-auto bind_build_points(const Vector<std::uint64_t>& codes, const Vector<std::uint8_t>& materials, unsigned depth) {
+nb::object bind_build_points(const Vector<std::uint64_t>& codes, const Vector<std::uint8_t>& materials,
+                             unsigned depth) {
     require_depth(depth);
     require(codes.shape(0) == materials.shape(0), "codes and materials differ in length");
-    std::vector<Word> words;
-    {
-        nb::gil_scoped_release release;
-        words = build_points(codes.data(), materials.data(), codes.shape(0), depth);
-    }
-    return words_to_numpy(std::move(words));
+    return words_to_numpy(run([&] { return build_points(codes.data(), materials.data(), codes.shape(0), depth); }));
 }
 
 const char* name_of(Fault fault) {
@@ -151,53 +141,34 @@ const char* name_of(Fault fault) {
     return "";
 }
 
-std::tuple<std::string, std::size_t, std::size_t> bind_validate(const Vector<Word>& words, unsigned depth) {
-    Verdict verdict;
-    {
-        nb::gil_scoped_release release;
-        verdict = validate(words.data(), words.shape(0), depth);
-    }
-    return {name_of(verdict.fault), verdict.address, verdict.least_depth};
+nb::object bind_validate(const Vector<Word>& words, unsigned depth) {
+    const Verdict verdict = run([&] { return validate(words.data(), words.shape(0), depth); });
+    return verdict_type(name_of(verdict.fault), verdict.address, verdict.least_depth);
 }
 
-auto bind_materials_at(const Vector<Word>& words, unsigned depth, const Rows<std::int64_t, 3>& points) {
+nb::object bind_materials_at(const Vector<Word>& words, unsigned depth, const Rows<std::int64_t, 3>& points) {
     const Memory memory = memory_of(words, depth);
-    std::vector<std::uint8_t> materials(points.shape(0));
-    {
-        nb::gil_scoped_release release;
-        materials_at(memory, points.data(), points.shape(0), materials.data());
-    }
-    return to_numpy(std::move(materials), points.shape(0));
+    const std::size_t count = points.shape(0);
+    std::vector<std::uint8_t> materials(count);
+    run([&] { materials_at(memory, points.data(), count, materials.data()); });
+    return to_numpy(std::move(materials), {count});
 }
 
-auto bind_leaf_counts(const Vector<Word>& words, unsigned depth) {
+nb::object bind_leaf_counts(const Vector<Word>& words, unsigned depth) {
     const Memory memory = memory_of(words, depth);
-    std::vector<std::uint64_t> counts;
-    {
-        nb::gil_scoped_release release;
-        counts = leaf_counts(memory);
-    }
-    return to_numpy(std::move(counts), depth + 1, 256);
+    return to_numpy(run([&] { return leaf_counts(memory); }), {std::size_t{depth} + 1, 256});
 }
 
-auto bind_count_in_box(const Vector<Word>& words, unsigned depth, const Corner& low, const Corner& high) {
+nb::object bind_count_in_box(const Vector<Word>& words, unsigned depth, const Corner& low, const Corner& high) {
     const Memory memory = memory_of(words, depth);
     const Box box = box_of(low, high);
-    std::vector<std::uint64_t> counts;
-    {
-        nb::gil_scoped_release release;
-        const auto found = count_in_box(memory, box);
-        counts.assign(found.begin(), found.end());
-    }
-    return to_numpy(std::move(counts), 256);
+    const auto found = run([&] { return count_in_box(memory, box); });
+    return to_numpy(std::vector<std::uint64_t>(found.begin(), found.end()), {256});
 }
 
-std::optional<std::pair<Corner, Corner>> bind_solid_bounds(const Vector<Word>& words, unsigned depth) {
+nb::object bind_solid_bounds(const Vector<Word>& words, unsigned depth) {
     const Memory memory = memory_of(words, depth);
-    nb::gil_scoped_release release;
-    if (const std::optional<Box> bounds = solid_bounds(memory))
-        return std::pair{bounds->low, bounds->high};
-    return std::nullopt;
+    return to_python(run([&] { return solid_bounds(memory); }));
 }
 
 void bind_fill_region(const Vector<Word>& words, unsigned depth, const Corner& low,
@@ -209,121 +180,86 @@ void bind_fill_region(const Vector<Word>& words, unsigned depth, const Corner& l
         high[axis] += static_cast<std::int64_t>(region.shape(axis));
     }
     const Box box = box_of(low, high);
-    nb::gil_scoped_release release;
-    fill_region(memory, box, region.data());
+    run([&] { fill_region(memory, box, region.data()); });
 }
 
-std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::optional<std::pair<Corner, Corner>>>
-bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
+nb::object bind_diff(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
     const Memory a = memory_of(first, depth);
     const Memory b = memory_of(second, depth);
-    nb::gil_scoped_release release;
-    const Difference found = diff(a, b);
-    std::optional<std::pair<Corner, Corner>> bounds;
-    if (found.bounds)
-        bounds = {found.bounds->low, found.bounds->high};
-    return {found.appeared, found.vanished, found.recoloured, bounds};
+    const Difference found = run([&] { return diff(a, b); });
+    return difference_type(found.appeared, found.vanished, found.recoloured, to_python(found.bounds));
 }
 
-// Bounds (x, y, z of the lowest voxel, then of the end) and counts (appeared, vanished, recoloured), a row a region.
-auto bind_differing_regions(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
+nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
     const Memory a = memory_of(first, depth);
     const Memory b = memory_of(second, depth);
-    std::vector<std::int64_t> bounds;
-    std::vector<std::uint64_t> counts;
-    {
-        nb::gil_scoped_release release;
-        for (const Region& region : differing_regions(a, b)) {
-            bounds.insert(bounds.end(), region.bounds.low.begin(), region.bounds.low.end());
-            bounds.insert(bounds.end(), region.bounds.high.begin(), region.bounds.high.end());
-            counts.insert(counts.end(), {region.appeared, region.vanished, region.recoloured});
-        }
+    const std::vector<Region> regions = run([&] { return differing_regions(a, b); });
+    std::vector<std::int64_t> low, high;
+    std::vector<std::uint64_t> appeared, vanished, recoloured;
+    for (const Region& region : regions) {
+        low.insert(low.end(), region.bounds.low.begin(), region.bounds.low.end());
+        high.insert(high.end(), region.bounds.high.begin(), region.bounds.high.end());
+        appeared.push_back(region.appeared);
+        vanished.push_back(region.vanished);
+        recoloured.push_back(region.recoloured);
     }
-    const std::size_t regions = counts.size() / 3;
-    return nb::make_tuple(to_numpy(std::move(bounds), regions, 6), to_numpy(std::move(counts), regions, 3));
+    const std::size_t count = regions.size();
+    return regions_type(to_numpy(std::move(low), {count, 3}), to_numpy(std::move(high), {count, 3}),
+                        to_numpy(std::move(appeared), {count}), to_numpy(std::move(vanished), {count}),
+                        to_numpy(std::move(recoloured), {count}));
 }
 
-auto bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
+nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
-    std::vector<Word> coarse;
-    {
-        nb::gil_scoped_release release;
+    return words_to_numpy(run([&] {
         BlockPool pool;
         const Node root = coarsen(memory, level, pool);
-        coarse = breadth_first_words(pool, root);
-    }
-    return words_to_numpy(std::move(coarse));
+        return breadth_first_words(pool, root);
+    }));
 }
 
 using MaterialPairs = nb::ndarray<const std::uint32_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>;
 
-auto bind_fit_bricks(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
-                     const MaterialPairs& same_face, const MaterialPairs& turned,
-                     const nb::ndarray<const std::uint32_t, nb::shape<256>, nb::c_contig, nb::device::cpu>& covering,
-                     std::size_t most) {
+nb::object
+bind_fit_bricks(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
+                const MaterialPairs& same_axis, const MaterialPairs& other_axis,
+                const nb::ndarray<const std::uint32_t, nb::shape<256>, nb::c_contig, nb::device::cpu>& occlusion,
+                std::size_t limit) {
     const Memory memory = memory_of(words, depth);
-    const Memory behind = memory_of(hidden, depth);
-    auto costs = std::make_unique<SightCosts>();
-    std::copy_n(same_face.data(), 256 * 256, costs->same_face[0].data());
-    std::copy_n(turned.data(), 256 * 256, costs->turned[0].data());
-    std::copy_n(covering.data(), 256, costs->covering.data());
-    std::vector<std::vector<Word>> fits;
-    {
-        nb::gil_scoped_release release;
-        fits = fit_bricks(memory, behind, finest, *costs, most);
-    }
+    const Memory hidden_memory = memory_of(hidden, depth);
+    auto costs = std::make_unique<AppearanceCosts>();
+    std::copy_n(same_axis.data(), 256 * 256, costs->same_axis[0].data());
+    std::copy_n(other_axis.data(), 256 * 256, costs->other_axis[0].data());
+    std::copy_n(occlusion.data(), 256, costs->occlusion.data());
     nb::list result;
-    for (std::vector<Word>& fit : fits)
+    for (std::vector<Word>& fit : run([&] { return fit_bricks(memory, hidden_memory, finest, *costs, limit); }))
         result.append(words_to_numpy(std::move(fit)));
     return result;
 }
 
-std::pair<std::uint64_t, std::uint64_t> bind_surface_change(const Vector<Word>& first, const Vector<Word>& second,
-                                                            unsigned depth) {
+nb::object bind_surface_change(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
     const Memory a = memory_of(first, depth);
     const Memory b = memory_of(second, depth);
-    nb::gil_scoped_release release;
-    const SurfaceChange change = surface_change(a, b);
-    return {change.surface, change.changed};
+    const SurfaceChange change = run([&] { return surface_change(a, b); });
+    return surface_change_type(change.surface, change.changed);
 }
 
-auto bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
+nb::object bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
     const Memory memory = memory_of(words, depth);
-    std::vector<Word> hidden;
-    {
-        nb::gil_scoped_release release;
-        hidden = hidden_voxels(memory);
-    }
-    return words_to_numpy(std::move(hidden));
+    return words_to_numpy(run([&] { return hidden_voxels(memory); }));
 }
 
-auto bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, std::uint8_t material) {
+nb::object bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth,
+                            std::uint8_t material) {
     const Memory memory = memory_of(words, depth);
-    const Memory behind = memory_of(hidden, depth);
-    std::vector<Word> filled;
-    {
-        nb::gil_scoped_release release;
-        filled = fill_hidden(memory, behind, material);
-    }
-    return words_to_numpy(std::move(filled));
+    const Memory hidden_memory = memory_of(hidden, depth);
+    return words_to_numpy(run([&] { return fill_hidden(memory, hidden_memory, material); }));
 }
 
-auto bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth) {
+nb::object bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth) {
     const Memory memory = memory_of(words, depth);
-    const Memory behind = memory_of(hidden, depth);
-    std::vector<Word> shared;
-    {
-        nb::gil_scoped_release release;
-        shared = share_hidden(memory, behind);
-    }
-    return words_to_numpy(std::move(shared));
-}
-
-// Lets Ctrl-C through, from the thread that Python called.
-void check_signals() {
-    nb::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0)
-        throw nb::python_error();
+    const Memory hidden_memory = memory_of(hidden, depth);
+    return words_to_numpy(run([&] { return share_hidden(memory, hidden_memory); }));
 }
 
 // A LeafWalk with the words that it reads.
@@ -332,12 +268,8 @@ public:
     PythonLeafWalk(Vector<Word> words, unsigned depth, const Corner& low, const Corner& high, bool solid_only)
         : words_(std::move(words)), walk_(memory_of(words_, depth), box_of(low, high), solid_only) {}
 
-    auto next(std::size_t limit) {
-        std::vector<Leaf> leaves;
-        {
-            nb::gil_scoped_release release;
-            leaves = walk_.next(limit);
-        }
+    nb::object next(std::size_t limit) {
+        const std::vector<Leaf> leaves = run([&] { return walk_.next(limit); });
         std::vector<std::int32_t> corners;
         std::vector<std::uint8_t> levels;
         std::vector<std::uint8_t> materials;
@@ -347,8 +279,8 @@ public:
             materials.push_back(leaf.material);
         }
         const std::size_t count = leaves.size();
-        return nb::make_tuple(to_numpy(std::move(corners), count, 3), to_numpy(std::move(levels), count),
-                              to_numpy(std::move(materials), count));
+        return leaves_type(to_numpy(std::move(corners), {count, 3}), to_numpy(std::move(levels), {count}),
+                           to_numpy(std::move(materials), {count}));
     }
 
 private:
@@ -356,12 +288,24 @@ private:
     LeafWalk walk_;
 };
 
+void add_result_types(nb::module_& m) {
+    verdict_type = NamedTuple(m, "Verdict", {"fault", "address", "least_depth"},
+                              "What validate() found; fault is empty where the words are an octree.");
+    bounds_type = NamedTuple(m, "Bounds", {"low", "high"}, "Voxels from low up to and without high.");
+    difference_type = NamedTuple(m, "Difference", {"appeared", "vanished", "recoloured", "bounds"},
+                                 "What diff() returns: counts of voxels, and their Bounds or None.");
+    regions_type = NamedTuple(m, "Regions", {"low", "high", "appeared", "vanished", "recoloured"},
+                              "What differing_regions() returns: a row per region.");
+    surface_change_type = NamedTuple(m, "SurfaceChange", {"surface", "changed"}, "What surface_change() returns.");
+    leaves_type = NamedTuple(m, "Leaves", {"corners", "levels", "materials"}, "What LeafWalk.next() returns.");
+}
+
 } // namespace
 } // namespace voxrt::octree
 
 NB_MODULE(_native, m) {
     using namespace voxrt::octree;
-    Interrupt::hook = &check_signals;
+    add_result_types(m);
     m.def("build", &bind_build, "depth"_a, "brick_codes"_a.noconvert(), "brick_masks"_a.noconvert(),
           "brick_materials"_a.noconvert(), "brick_rows"_a.noconvert(), "cells"_a.noconvert(),
           "octant_codes"_a.noconvert(), "octant_levels"_a.noconvert(), "octant_materials"_a.noconvert(), "threads"_a);
@@ -377,7 +321,7 @@ NB_MODULE(_native, m) {
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
     m.def("fit_bricks", &bind_fit_bricks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
-          "same_face"_a.noconvert(), "turned"_a.noconvert(), "covering"_a.noconvert(), "most"_a);
+          "same_axis"_a.noconvert(), "other_axis"_a.noconvert(), "occlusion"_a.noconvert(), "limit"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);

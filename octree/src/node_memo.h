@@ -1,14 +1,14 @@
-// A flat hash table from a 64-bit pattern and what it is a pattern of to a node.
+// A flat hash table from voxels (a 64-bit pattern, and the kind of pattern) to their node.
 #pragma once
+
+#include "block_pool.h"
 
 #include <cstdint>
 #include <vector>
 
-#include "block_pool.h"
-
 namespace voxrt::octree {
 
-/// Remembers nodes by the voxels that they stand for. Pattern 0 (nothing solid) cannot be remembered.
+/// Memoizes nodes by their voxels. Pattern 0 (nothing solid) is not a key.
 class NodeMemo {
 public:
     /// The node of (`pattern`, `kind`), made by `make()` the first time.

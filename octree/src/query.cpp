@@ -1,10 +1,10 @@
 #include "query.h"
 
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <cstring>
 #include <unordered_map>
-
-#include "interrupt.h"
 
 namespace voxrt::octree {
 namespace {
@@ -32,7 +32,7 @@ public:
             counts[material(word)] += volume;
             return;
         }
-        interrupt_.poll();
+        work_.count_step();
         // The box cuts octants of one level at the same place on each axis, so these three name the answer.
         const std::uint64_t key = std::uint64_t{word} << 32 | level << 6 | cut;
         auto [entry, missing] = memo_.try_emplace(key, results_.size());
@@ -56,10 +56,10 @@ private:
     Box box_;
     std::unordered_map<std::uint64_t, std::size_t> memo_;
     std::vector<std::vector<std::pair<std::uint8_t, std::uint64_t>>> results_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
-// Bounds of the solid voxels of a block relative to its corner, each block once a level.
+// Bounds of the solid voxels of a block relative to its corner, each block once per level.
 class BoundsFinder {
 public:
     explicit BoundsFinder(const Memory& memory) : memory_(memory) {}
@@ -72,7 +72,7 @@ public:
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
         if (const auto known = memo_.find(key); known != memo_.end())
             return known->second;
-        interrupt_.poll();
+        work_.count_step();
         Box bounds{};
         bool any = false;
         for (unsigned octant = 0; octant < 8; ++octant) {
@@ -95,7 +95,7 @@ public:
 private:
     Memory memory_;
     std::unordered_map<std::uint64_t, Box> memo_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 class RegionFiller {
@@ -118,7 +118,7 @@ public:
                 return;
         }
         if (!is_leaf(word)) {
-            interrupt_.poll();
+            work_.count_step();
             for (unsigned octant = 0; octant < 8; ++octant)
                 fill(memory_.child(word, octant, level), level - 1, child_corner(corner, octant, side / 2));
             return;
@@ -135,7 +135,7 @@ private:
     std::uint8_t* materials_;
     std::int64_t size_y_;
     std::int64_t size_z_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace
@@ -143,9 +143,9 @@ private:
 void materials_at(const Memory& memory, const std::int64_t* points, std::size_t count, std::uint8_t* materials) {
     const std::uint64_t side = std::uint64_t{1} << memory.depth;
     const Word root = memory.root();
-    Interrupt interrupt;
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     for (std::size_t i = 0; i < count; ++i, points += 3) {
-        interrupt.poll();
+        work.count_step();
         const std::uint64_t x = static_cast<std::uint64_t>(points[0]);
         const std::uint64_t y = static_cast<std::uint64_t>(points[1]);
         const std::uint64_t z = static_cast<std::uint64_t>(points[2]);
@@ -168,7 +168,7 @@ std::vector<std::uint64_t> leaf_counts(const Memory& memory) {
     std::vector<std::uint64_t> counts(256 * (std::size_t{memory.depth} + 1), 0);
     std::unordered_map<Word, std::uint64_t> blocks; // of one level: how many octants each block stands for
     std::unordered_map<Word, std::uint64_t> below;
-    Interrupt interrupt;
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     const auto add = [&](Word word, unsigned level, std::uint64_t octants) {
         if (is_leaf(word))
             counts[256 * std::size_t{level} + material(word)] += octants;
@@ -180,7 +180,7 @@ std::vector<std::uint64_t> leaf_counts(const Memory& memory) {
         blocks.swap(below);
         below.clear();
         for (const auto& [word, octants] : blocks) {
-            interrupt.poll();
+            work.count_step();
             for (unsigned octant = 0; octant < 8; ++octant)
                 add(memory.child(word, octant, level), level - 1, octants);
         }

@@ -1,15 +1,16 @@
 #include "regions.h"
 
-#include <algorithm>
-#include <numeric>
-#include <stdexcept>
-#include <unordered_map>
-
 #include "coarsen.h"
 #include "diff.h"
-#include "interrupt.h"
 #include "leaves.h"
-#include "morton.h"
+
+#include <voxrt/voxelize/disjoint_sets.h>
+#include <voxrt/voxelize/interrupt.h>
+#include <voxrt/voxelize/morton.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <unordered_map>
 
 namespace voxrt::octree {
 namespace {
@@ -35,7 +36,7 @@ private:
     bool visit(Node a, Node b, unsigned level, const std::array<std::int32_t, 3>& corner) {
         if (a == b)
             return true;
-        interrupt_.poll();
+        work_.count_step();
         if (is_leaf(a) && is_leaf(b)) {
             const Kind kind = a == kEmpty ? kAppeared : b == kEmpty ? kVanished : kRecoloured;
             leaves.push_back({corner, static_cast<std::uint8_t>(level), kind});
@@ -57,49 +58,25 @@ private:
     Node first_;
     Node second_;
     std::size_t limit_ = 0;
-    Interrupt interrupt_;
-};
-
-// Leaves that touch, joined (Tarjan's disjoint sets, with path halving).
-class Joining {
-public:
-    explicit Joining(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    std::uint32_t root(std::uint32_t i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-
-    // The lower number becomes the root of both.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 std::uint64_t code_of(const std::array<std::int32_t, 3>& corner) {
-    std::uint64_t code = 0;
-    for (unsigned axis = 0; axis < 3; ++axis)
-        code |= spread_bits(static_cast<std::uint32_t>(corner[axis])) << axis;
-    return code;
+    return voxelize::morton(static_cast<std::uint32_t>(corner[0]), static_cast<std::uint32_t>(corner[1]),
+                            static_cast<std::uint32_t>(corner[2]));
 }
 
-// Two leaves that touch do so all along the smaller one, so the leaf, if any, that holds all of an octant beside it is
-// looked for on its 26 sides.
+// Connects leaves that touch. Where two touch, the larger one holds a whole octant of the smaller one's size beside the
+// smaller one: so each leaf looks for a leaf that holds such an octant, in 26 directions.
 std::vector<Region> connected(const std::vector<Leaf>& leaves, std::int32_t size) {
     std::vector<std::uint64_t> codes;
     codes.reserve(leaves.size());
     for (const Leaf& leaf : leaves)
         codes.push_back(code_of(leaf.corner));
-    Joining joining(leaves.size());
-    Interrupt interrupt;
+    voxelize::DisjointSets sets(leaves.size());
+    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
     for (std::uint32_t i = 0; i < leaves.size(); ++i) {
-        interrupt.poll();
+        work.count_step();
         for (int direction = 0; direction < 27; ++direction) {
             const std::int32_t side = std::int32_t{1} << leaves[i].level;
             const std::array<std::int32_t, 3> beside{leaves[i].corner[0] + (direction % 3 - 1) * side,
@@ -109,19 +86,19 @@ std::vector<Region> connected(const std::vector<Leaf>& leaves, std::int32_t size
                 std::max({beside[0], beside[1], beside[2]}) >= size)
                 continue;
             const std::uint64_t code = code_of(beside);
-            const auto behind = std::upper_bound(codes.begin(), codes.end(), code);
-            if (behind == codes.begin())
+            const auto after = std::upper_bound(codes.begin(), codes.end(), code);
+            if (after == codes.begin())
                 continue;
-            const auto other = static_cast<std::uint32_t>(behind - codes.begin() - 1);
+            const auto other = static_cast<std::uint32_t>(after - codes.begin() - 1);
             if (leaves[other].level >= leaves[i].level && code - codes[other] < voxels_at(leaves[other].level))
-                joining.join(i, other);
+                sets.merge(i, other);
         }
     }
     std::unordered_map<std::uint32_t, std::size_t> rows;
     std::vector<Region> regions;
     for (std::uint32_t i = 0; i < leaves.size(); ++i) {
         const Leaf& leaf = leaves[i];
-        const auto [row, missing] = rows.try_emplace(joining.root(i), regions.size());
+        const auto [row, missing] = rows.try_emplace(sets.find(i), regions.size());
         if (missing)
             regions.push_back({{{size, size, size}, {0, 0, 0}}});
         Region& region = regions[row->second];

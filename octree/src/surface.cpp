@@ -1,11 +1,12 @@
 #include "surface.h"
 
+#include "hidden.h"
+#include "query.h"
+
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <vector>
-
-#include "hidden.h"
-#include "interrupt.h"
-#include "query.h"
 
 namespace voxrt::octree {
 namespace {
@@ -32,10 +33,10 @@ public:
 
     SurfaceChange result{0, 0};
 
-    // `word` and `behind` are the octants of `first` and of its hidden voxels at `corner`, or leaves that hold them.
-    void visit(Word word, Word behind, unsigned level, const std::array<std::int64_t, 3>& corner) {
-        interrupt_.poll();
-        if (word == kEmpty || (is_leaf(behind) && behind != kEmpty))
+    // `word` and `hidden` are the octants of `first` and of its hidden voxels at `corner`, or leaves that hold them.
+    void visit(Word word, Word hidden, unsigned level, const std::array<std::int64_t, 3>& corner) {
+        work_.count_step();
+        if (word == kEmpty || (is_leaf(hidden) && hidden != kEmpty))
             return;
         if (level <= 3) {
             compare(corner, std::int64_t{1} << level);
@@ -44,7 +45,7 @@ public:
         const std::int64_t half = std::int64_t{1} << (level - 1);
         for (unsigned octant = 0; octant < 8; ++octant)
             visit(is_leaf(word) ? word : first_.child(word, octant, level),
-                  is_leaf(behind) ? behind : hidden_.child(behind, octant, level), level - 1,
+                  is_leaf(hidden) ? hidden : hidden_.child(hidden, octant, level), level - 1,
                   child_corner(corner, octant, half));
     }
 
@@ -70,7 +71,7 @@ private:
     Memory second_;
     Neighbourhood a_{};
     Neighbourhood b_{};
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace

@@ -12,7 +12,7 @@ struct SurfaceChange {
 };
 
 /// Compares the surface of `first` with that of `second`, voxel by voxel; both have one depth. Cost grows with the
-/// surface of the first. Throws std::invalid_argument where the depths differ. The GIL must not be held.
+/// surface of the first. Throws std::invalid_argument where the depths differ or words are no octree.
 SurfaceChange surface_change(const Memory& first, const Memory& second);
 
 } // namespace voxrt::octree

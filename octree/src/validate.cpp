@@ -1,9 +1,9 @@
 #include "validate.h"
 
+#include <voxrt/voxelize/interrupt.h>
+
 #include <algorithm>
 #include <vector>
-
-#include "interrupt.h"
 
 namespace voxrt::octree {
 namespace {
@@ -37,7 +37,7 @@ public:
         stack_.assign(1, {first, 0});
         heights_[first] = kOpen;
         while (!stack_.empty()) {
-            interrupt_.poll();
+            work_.count_step();
             Visit& visit = stack_.back();
             if (visit.octant == 8) {
                 close(visit.block);
@@ -82,7 +82,7 @@ private:
     const Word* words_;
     std::vector<std::uint32_t> heights_;
     std::vector<Visit> stack_;
-    Interrupt interrupt_;
+    voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
 } // namespace

@@ -1,9 +1,9 @@
-// Is it an octree? Linear time and memory in the number of words, whatever they say.
+// Whether words are an octree, and what is wrong where they are not. Linear in the words.
 #pragma once
 
-#include <cstddef>
-
 #include "words.h"
+
+#include <cstddef>
 
 namespace voxrt::octree {
 
@@ -17,15 +17,13 @@ enum class Fault {
     too_deep,   // a pointer where `depth` levels leave room for a leaf alone
 };
 
-/// What is wrong and the address of the word at which it shows; `least_depth` is the levels that the memory has, told
-/// for `none` and `too_deep`.
 struct Verdict {
     Fault fault;
-    std::size_t address;
-    std::size_t least_depth;
+    std::size_t address;     // of the word at fault; the number of words for Fault::length
+    std::size_t least_depth; // levels of pointers below the root; known for `none` and `too_deep`, else 0
 };
 
-/// Every word is checked, reached from the root or not. `depth` 0 asks for no limit. The GIL must not be held.
+/// Checks every word, reached from the root or not (verify.h checks the reached ones alone). `depth` 0: no limit.
 Verdict validate(const Word* words, std::size_t size, unsigned depth);
 
 } // namespace voxrt::octree

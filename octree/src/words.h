@@ -1,7 +1,8 @@
-// Words of an octree memory, report dialect.
+// The words of an octree memory.
 //
-// A word with bit 31 clear is a pointer: the word address of octant 0 of a block of 8 words. A word 0xFFFFFFmm is a
-// leaf of material mm; 0 is empty space. Octant index = {z, y, x}.
+// A word with bit 31 clear is a pointer: the address of octant 0 in a block of 8 words. A word 0xFFFFFFmm is a leaf of
+// material mm; 0 is empty space. Word 0 is the root; blocks stand at addresses 1 + 8k. The index of an octant in its
+// block is {z, y, x}, x in bit 0. An octant of level n has 2**n voxels per side.
 #pragma once
 
 #include <array>

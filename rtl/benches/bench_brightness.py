@@ -7,19 +7,20 @@ import cocotb
 from bench_shader import packed
 from cocotb.triggers import with_timeout
 from streams import PACES, drive, exchange, reset_on_the_way, start
+from structs import SHADING, packed_array
 
 DEPTH, PLACE, SUM = 6, 10, 12
 ANGLE, MEAN, LIGHT = range(3)
 
 
 def lit_point(place, mirrored, face, side):
-    """Give the lit point of a sub-cell, 1/32 voxel, grid frame."""
+    """Give the lit point of a hit point, 1/32 voxel, grid frame."""
     mirrored_point = [2 * p + (axis != face) for axis, p in enumerate(place)]
     return [32 * side - p if mirrored >> axis & 1 else p for axis, p in enumerate(mirrored_point)]
 
 
 def some_place(side, face):
-    """Make a sub-cell, 1/16 voxel, behind a face."""
+    """Make a hit point, 1/16 voxel, behind a face."""
     place = [random.randrange(16 * side) for _ in range(3)]
     place[face] -= place[face] % 16
     return place
@@ -40,11 +41,11 @@ def some_pixel(dut, side, light, ambient, flat):
         detail = packed((MEAN, 2), (sums, payload - 5), (count, 5))
         return item | {"detail_i": detail}, (pixel, 1, 1, Fraction(1, count), sums)
     place, mirrored = some_place(side, face), random.randrange(8)
-    way = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
-    lit = item["lit_i"] = lit and any(way)
+    direction = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
+    lit = item["lit_i"] = lit and any(direction)
     part = Fraction(ambient, 256)
     if lit:
-        part = Fraction(1) if flat else max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
+        part = Fraction(1) if flat else max(part, Fraction(direction[face] ** 2, sum(d * d for d in direction)))
     detail = packed((LIGHT, 2), (0, payload - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
     return item | {"detail_i": detail}, (pixel, 1, 0, part)
 
@@ -67,7 +68,7 @@ def begin(dut):
     reach = random.choice([16 * side, 1 << 18])
     light = [random.randint(-reach, reach) for _ in range(3)]
     ambient, flat = random.choice([0, 255, random.randrange(256)]), random.random() < 0.2
-    drive(dut, world_i=side, light_i=light, ambient_i=ambient, flat_i=flat)
+    drive(dut, side_i=side, light_i=packed_array(light, 32), shading_i=SHADING.pack(flat=flat, ambient=ambient))
     return lambda: some_pixel(dut, side, light, ambient, flat)
 
 

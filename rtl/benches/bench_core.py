@@ -49,7 +49,7 @@ class Core:
         dut.bram_en_i.value = 0
         dut.m_axis_tready.value = 0
         dut.rst_ni.value = 0
-        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+        cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
         await ClockCycles(dut.clk_i, 20)
         dut.rst_ni.value = 1
         await ClockCycles(dut.clk_i, 2)
@@ -118,6 +118,13 @@ class Core:
         """Write the light's position."""
         for axis in range(3):
             await self.write(f"light[{axis}]", value=position[axis])
+
+    async def write_mirrors(self):
+        """Write the materials of scenes, those of MIRRORS as mirrors."""
+        for material in (0, 1, 2, 255):
+            red, green, blue = (int(channel) for channel in COLOURS[material])
+            entry = (material in MIRRORS) << 24 | red << 16 | green << 8 | blue
+            await self.axi.write_dword(MATERIALS + 4 * material, entry)
 
     async def wait(self):
         """Wait for a frame to end."""
@@ -318,6 +325,114 @@ async def reset_at_any_clock(dut):
 
 
 @cocotb.test()
+@cocotb.parametrize(reset=["soft", "pin"])
+async def one_clock_of_reset(dut, reset):
+    """Reset for one clock, at each turn of the lanes' rings; three frames after it are whole.
+
+    A frame has more rays per lane than a lane has rows for their weights, so that each row is used again.
+    """
+    core = Core(dut)
+    await core.start()
+    voxels = scene(11)
+    await core.load(words_of(voxels))
+    features = {name for name in ("light", "mirrors") if await core.read("features", name)}
+    shading = {"light": {"light": (-40, 200, 30), "ambient": 50}, "mirrors": {"bounces": 3, "mirrors": MIRRORS}}
+    shading = {key: value for name in features for key, value in shading[name].items()}
+    width, height = 11, 7 * int(dut.Lanes.value)
+    expected = shaded(voxels, width, height, **shading)
+
+    async def prepare():
+        await core.write_mirrors()
+        await core.set_frame(CAMERA, width, height, 3)
+        await core.set_light(shading.get("light", (0, 0, 0)))
+        await core.write("shading", light="light" in features, ambient=50, bounces=shading.get("bounces", 0))
+
+    await prepare()
+    for clocks in range(250, 266):
+        await core.write("control", start=1)
+        await ClockCycles(dut.clk_i, clocks)
+        core.dropping = True
+        if reset == "soft":
+            await core.write("control", soft_reset=1)
+        else:
+            dut.rst_ni.value = 0
+            await ClockCycles(dut.clk_i, 1)
+            dut.rst_ni.value = 1
+            await ClockCycles(dut.clk_i, 2)
+            await prepare()
+        await ClockCycles(dut.clk_i, 4)
+        core.dropping = False
+        core.words.clear()
+        await core.write("status", frame_done=1)
+        for _ in range(3):
+            await core.write("control", start=1)
+            await core.wait()
+            np.testing.assert_array_equal(core.picture(width, height), expected)
+        assert core.words == []
+
+
+@cocotb.test()
+@cocotb.parametrize(register=["size", "depth"])
+async def values_out_of_range_count_as_the_nearest(dut, register):
+    """Width, height and depth 0, and depths above the deepest."""
+    core = Core(dut)
+    await core.start()
+    deepest = int(dut.MaxDepth.value)
+    voxels = scene(12)
+    await core.load(words_of(voxels))
+    await core.set_frame(CAMERA, 7, 5, 3)
+    if register == "size":
+        for written, meant in (((0, 5), (1, 5)), ((7, 0), (7, 1)), ((0, 0), (1, 1))):
+            await core.write("size", width=written[0], height=written[1])
+            await core.write("control", start=1)
+            await core.wait()
+            np.testing.assert_array_equal(core.picture(*meant), render(voxels, CAMERA, *meant, COLOURS)[0])
+        return
+    for depth in (0, deepest + 1, 31):
+        pictures = []
+        for number in (depth, min(max(depth, 1), deepest)):
+            await core.write("depth", depth=number)
+            await core.write("control", start=1)
+            await core.wait()
+            pictures.append(core.picture(7, 5))
+        np.testing.assert_array_equal(*pictures)
+
+
+@cocotb.test()
+@cocotb.parametrize(writes=[False, True])
+async def the_processor_uses_the_memory_port_at_every_clock(dut, writes):
+    """Lanes keep a share of the memory: the frame ends, in at most 2.5 times the clocks; its pixels are the same."""
+    core = Core(dut)
+    await core.start()
+    voxels = scene(13)
+    words = words_of(voxels)
+    await core.load(words)
+    width, height = 12, 5 * int(dut.Lanes.value)
+    await core.set_frame(CAMERA, width, height, 3)
+    expected = render(voxels, CAMERA, width, height, COLOURS)[0]
+
+    async def use_the_port():
+        dut.bram_en_i.value = 1
+        dut.bram_we_i.value = 15 if writes else 0
+        for address in itertools.cycle(range(len(words))):
+            dut.bram_addr_i.value = 4 * address
+            dut.bram_wrdata_i.value = int(words[address])
+            await RisingEdge(dut.clk_i)
+
+    cycles = []
+    for busy in (False, True):
+        user = cocotb.start_soon(use_the_port()) if busy else None
+        await core.write("control", start=1)
+        await core.wait()
+        if user:
+            user.cancel()
+            dut.bram_en_i.value = dut.bram_we_i.value = 0
+        np.testing.assert_array_equal(core.picture(width, height), expected)
+        cycles.append(await core.read("cycles", "value"))
+    assert cycles[1] < 2.5 * cycles[0]
+
+
+@cocotb.test()
 async def errors_stick_until_cleared(dut):
     """Raise an error by a corrupt memory; the frame ends."""
     core = Core(dut)
@@ -369,9 +484,7 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
     assert features == {name for name, built in parameters.items() if int(built.value)}
     voxels = scene(8)
     await core.load(words_of(voxels))
-    for material in MIRRORS:
-        red, green, blue = (int(channel) for channel in COLOURS[material])
-        await core.axi.write_dword(MATERIALS + 4 * material, 1 << 24 | red << 16 | green << 8 | blue)
+    await core.write_mirrors()
     await core.set_frame(CAMERA, 14, 11, 3)
     looks = [
         {"light": (-40, 200, 30), "ambient": 50},

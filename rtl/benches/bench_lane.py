@@ -1,7 +1,7 @@
 """voxrt_lane alone: rays of rays.py, a memory that answers or not, pixels against the oracle of docs/shading.md.
 
-With Light or Mirrors also what stands around it for these: shadow rays come back late and go first, and there are few
-places for them. A ray's weights are there some time before it is offered, in any free row.
+With Light or Mirrors also what is around it for these: shadow rays come back late and go first, and there are few
+credits for them. The weights of a ray come some time before it, into any free row.
 """
 
 import random
@@ -18,13 +18,24 @@ from oracles.ray import FACE_NONE, shade
 from oracles.shading import Shader, shaded_pixel
 from rays import ray_of, some_direction
 from streams import PACES, drive, pace, reset, start
+from structs import (
+    HIT_POINT,
+    LIGHT_PLANES,
+    MATERIAL_WRITE,
+    RAY,
+    RESULT,
+    ROW_FREE,
+    SHADING,
+    WEIGHTS_WRITE,
+    WORLD,
+)
 
 LEAF, DEPTH, ROWS = 1 << 9, 3, 32
 SIDE = 1 << DEPTH
 MAX_DEPTH, PLACE, SUM, COUNT = 6, 10, 12, 5
 MATERIALS = (5, 9, 255)
 SHADOW_RAYS = 3
-NOTHING = {"arrives_i": 0, "ray_valid_i": 0, "mem_ack_i": 0, "take_ready_i": 0, "table_write_i": 0}
+NOTHING = {"weights_write_i": 0, "ray_valid_i": 0, "mem_ack_i": 0, "allocate_ready_i": 0, "material_write_i": 0}
 
 
 def encoded(word):
@@ -32,40 +43,32 @@ def encoded(word):
     return LEAF | word & 0xFF if word >> 31 else word >> 3
 
 
-def arrival(ray, row):
-    """Give a ray's weights as they come to the lane, before it is offered."""
-    return {
-        "arrives_i": 1,
-        "arrival_row_i": row,
-        "arrival_weight_i": [weight % (1 << 40) for weight in ray.weight],
-    }
-
-
-def inputs(dut, ray, row, tag):
+def inputs(ray, row, tag, *, shadow):
     """Give a ray as the lane takes it; a shadow ray has a tag."""
-    return {
-        "ray_row_i": row,
-        "ray_resolved_i": ray.resolved,
-        "ray_pixel_i": FACE_NONE,
-        "ray_mirrored_i": ray.mirrored,
-        "ray_dead_i": ray.dead,
-        "ray_octant_i": ray.octant,
-        "ray_entry_time_i": ray.entry_time % (1 << len(dut.ray_entry_time_i)),
-        "ray_entry_face_i": ray.entry_face,
-        "ray_origin_i": [place % (1 << len(dut.ray_origin_i[0])) for place in ray.origin],
-        "ray_tag_i": tag,
-        "ray_lit_i": 1,
-    }
+    packed = RAY.pack(
+        resolved=ray.resolved,
+        pixel=FACE_NONE,
+        lit=1,
+        shadow=shadow,
+        tag=tag,
+        mirrored=ray.mirrored,
+        dead=ray.dead,
+        octant=ray.octant,
+        entry_time=ray.entry_time,
+        entry_face=ray.entry_face,
+        origin=ray.origin,
+    )
+    return {"ray_row_i": row, "ray_i": packed}
 
 
 class Surroundings:
-    """Memory, pixel buffer, free rows, queues of rays and the maker of shadow rays."""
+    """Memory, reorder buffer, free rows, queues of rays and the maker of shadow rays."""
 
     def __init__(self, dut, words, shader, rays, hurry=0.1):
         self.dut, self.shader, self.hurry = dut, shader, hurry
         self.words = [encoded(int(word)) for word in words]
         self.asked = deque([None] * (int(dut.MemoryClocks.value) - 1))
-        self.coming, self.ordered, self.places = deque((ray, 0) for ray in rays), deque(), SHADOW_RAYS
+        self.coming, self.ordered, self.credits = deque((ray, 0) for ray in rays), deque(), SHADOW_RAYS
         self.rays, self.shadow_rays = deque(), deque()  # That wait.
         self.free_rows = list(range(ROWS))
         self.offers = False
@@ -75,27 +78,27 @@ class Surroundings:
     async def run(self, sending, taking):
         """Serve for ever."""
         dut = self.dut
-        sends, has_place, acknowledges = pace(sending), pace(taking), pace(taking)
+        sends, allocatable, acknowledges = pace(sending), pace(taking), pace(taking)
         while True:
-            drive(dut, take_ready_i=next(has_place), take_tag_i=len(self.stored) % 256)
-            drive(dut, request_ready_i=self.places > 0)
+            drive(dut, allocate_ready_i=next(allocatable), allocate_tag_i=len(self.stored) % 256)
+            drive(dut, hit_point_ready_i=self.credits > 0)
             shadow = bool(self.shadow_rays)
             self.offers = self.offers or (bool(self.rays) and bool(next(sends)))
             waiting = self.shadow_rays if shadow else self.rays
             if shadow or self.offers:
                 drive(dut, **waiting[0])
-            drive(dut, ray_valid_i=shadow or self.offers, ray_shadow_i=shadow)
+            drive(dut, ray_valid_i=shadow or self.offers)
             self.arrive()
             await RisingEdge(dut.clk_i)
             taken = int(dut.ray_ready_o.value)
             if taken:
                 waiting.popleft()
                 self.offers &= shadow
-            assert int(dut.take_o.value) == (taken and not shadow)
-            if int(dut.take_o.value):
-                assert int(dut.take_ready_i.value)
+            assert int(dut.allocate_o.value) == (taken and not shadow)
+            if int(dut.allocate_o.value):
+                assert int(dut.allocate_ready_i.value)
                 self.stored.append(None)
-            self.fill()
+            self.complete()
             self.release()
             self.order(taken and shadow)
             self.errors += int(dut.bad_pointer_o.value) + int(dut.step_limit_o.value)
@@ -108,54 +111,51 @@ class Surroundings:
             (ray, tag), waiting = self.ordered.popleft(), self.shadow_rays
         elif self.coming and len(self.free_rows) > SHADOW_RAYS and random.random() < 0.9:
             (ray, tag), waiting = self.coming.popleft(), self.rays
-        drive(self.dut, arrives_i=0)
+        drive(self.dut, weights_write_i=0)
         if ray is not None:
             row = self.free_rows.pop(random.randrange(len(self.free_rows)))
-            drive(self.dut, **arrival(ray, row))
-            waiting.append(inputs(self.dut, ray, row, tag))
+            drive(self.dut, weights_write_i=WEIGHTS_WRITE.pack(valid=1, row=row, weights=ray.weight))
+            waiting.append(inputs(ray, row, tag, shadow=waiting is self.shadow_rays))
 
     def release(self):
         """Take rows back."""
-        if int(self.dut.releases_o.value):
-            row = self.dut.released_row_o.value.to_unsigned()
-            assert row not in self.free_rows, "released twice"
-            self.free_rows.append(row)
+        freed = ROW_FREE.unpack(self.dut.row_free_o)
+        if freed["valid"]:
+            assert freed["row"] not in self.free_rows, "freed twice"
+            self.free_rows.append(freed["row"])
 
-    def fill(self):
-        """Keep what comes for the pixel buffer."""
-        dut = self.dut
-        tag = dut.fill_tag_o.value.to_unsigned()
-        if int(dut.store_o.value):
+    def complete(self):
+        """Keep what comes for the reorder buffer."""
+        result = RESULT.unpack(self.dut.result_o)
+        tag = result["tag"]
+        if result["store"]:
             assert self.stored[tag] is None, "stored twice"
-            self.stored[tag] = dut.store_pixel_o.value.to_unsigned()
-        if int(dut.fill_o.value):
+            self.stored[tag] = self.dut.result_pixel_o.value.to_unsigned()
+        if result["complete"]:
             assert self.stored[tag] is not None
-            assert tag not in self.lit, "filled twice"
-            self.lit[tag] = int(dut.fill_lit_o.value)
+            assert tag not in self.lit, "completed twice"
+            self.lit[tag] = result["lit"]
 
-    def order(self, starts):
-        """Make shadow rays of sub-cells, sooner or later."""
-        dut = self.dut
-        requests = int(dut.request_o.value)
-        self.places += starts - requests
-        assert self.places >= 0, "a shadow ray without a place"
-        if requests:
-            tag, face = dut.request_tag_o.value.to_unsigned(), dut.request_face_o.value.to_unsigned()
-            mirrored = dut.request_mirrored_o.value.to_unsigned()
-            place = [value.to_unsigned() for value in dut.request_place_o.value]
+    def order(self, issues):
+        """Make shadow rays of hit points, sooner or later."""
+        asks = int(self.dut.hit_point_valid_o.value)
+        self.credits += issues - asks
+        assert self.credits >= 0, "a shadow ray without a credit"
+        if asks:
+            hit = HIT_POINT.unpack(self.dut.hit_point_o)
+            tag, face, mirrored, place = hit["tag"], hit["face"], hit["mirrored"], hit["point"]
             assert self.stored[tag] % 4 == face
-            assert sub_cell(self.stored[tag]) == (place, mirrored)
+            assert hit_point(self.stored[tag]) == (place, mirrored)
             point = lit_point(place, mirrored, face, SIDE)
-            way = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
-            self.ordered.append((ray_of(point, way, SIDE, unit=32, inside=True), tag))
+            direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
+            self.ordered.append((ray_of(point, direction, SIDE, unit=32, inside=True), tag))
 
     def answer(self, acknowledges):
         """Give a word of before, or none."""
         dut = self.dut
         self.asked.append(None)
         if int(dut.mem_read_o.value):
-            address = 1 + 8 * dut.mem_block_o.value.to_unsigned() + dut.mem_octant_o.value.to_unsigned()
-            self.asked[-1] = self.words[address]
+            self.asked[-1] = self.words[1 + dut.mem_address_o.value.to_unsigned()]
         word = self.asked.popleft()
         answers = word is not None and next(acknowledges)
         drive(dut, mem_ack_i=answers, mem_word_i=word if answers else random.randrange(1 << 10))
@@ -165,7 +165,7 @@ class Surroundings:
         stored = self.stored[tag]
         face, material, detail = stored % 4, stored >> 2 & 0xFF, stored >> 10
         colour = self.shader.palette[material]
-        kind = stored >> len(self.dut.store_pixel_o) - 2 if len(self.dut.store_pixel_o) > 10 else ANGLE
+        kind = stored >> len(self.dut.result_pixel_o) - 2 if len(self.dut.result_pixel_o) > 10 else ANGLE
         if kind == ANGLE:
             return tuple(colour) if self.shader.flat else shade(colour, direction, face), material, face
         if kind == MEAN:
@@ -175,14 +175,15 @@ class Surroundings:
         assert kind == LIGHT
         part = Fraction(self.shader.ambient, 256)
         if self.lit[tag]:
-            point = lit_point(*sub_cell(stored), face, SIDE)
-            way = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
-            part = Fraction(1) if self.shader.flat else max(part, Fraction(way[face] ** 2, sum(d * d for d in way)))
+            point = lit_point(*hit_point(stored), face, SIDE)
+            direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
+            square, total = direction[face] ** 2, sum(d * d for d in direction)
+            part = Fraction(1) if self.shader.flat else max(part, Fraction(square, total))
         return tuple(floor(channel * part + Fraction(1, 2)) for channel in colour), material, face
 
 
-def sub_cell(stored):
-    """Give the sub-cell of a pixel that is lit, and the mirrored axes."""
+def hit_point(stored):
+    """Give the hit point of a pixel that is lit, and the mirrored axes."""
     detail = stored >> 10
     place = [detail >> PLACE * axis & (1 << PLACE) - 1 for axis in range(3)]
     return place, detail >> 3 * PLACE & 7
@@ -217,24 +218,23 @@ async def some_shader(dut):
         shader.mirrors = frozenset(random.choice([[5], [5, 9], [*MATERIALS]]))
         for material in MATERIALS:
             red, green, blue = palette[material]
-            row = (material in shader.mirrors) << 24 | red << 16 | green << 8 | blue
-            drive(dut, table_write_i=1, table_material_i=material, table_row_i=row)
+            entry = {"mirror": material in shader.mirrors, "red": red, "green": green, "blue": blue}
+            drive(dut, material_write_i=MATERIAL_WRITE.pack(valid=1, material=material, **entry))
             await RisingEdge(dut.clk_i)
-        drive(dut, table_write_i=0)
+        drive(dut, material_write_i=0)
     if int(dut.Light.value) and random.random() < 0.8:
         set_light(dut, shader, some_place())
-    drive(dut, light_i=shader.light is not None, bounces_i=shader.bounces)
+    drive(dut, shading_i=SHADING.pack(light=shader.light is not None, bounces=shader.bounces))
     return shader
 
 
 def set_light(dut, shader, light):
     """Set where the light is, among the planes, and how bright it is in shadow."""
     shader.light, shader.ambient = light, random.choice([0, random.randrange(100)])
-    for mirrored in range(2):
-        for axis, place in enumerate(light):
-            own = 16 * SIDE - place if mirrored else place
-            dut.before_light_i[mirrored][axis].value = sum(16 * plane < own for plane in range(SIDE))
-            dut.to_light_i[mirrored][axis].value = sum(16 * plane <= own for plane in range(SIDE))
+    places = [*light, *(16 * SIDE - place for place in light)]
+    occluder = [sum(16 * plane < place for plane in range(SIDE)) for place in places]
+    backface = [sum(16 * plane <= place for plane in range(SIDE)) for place in places]
+    drive(dut, light_planes_i=LIGHT_PLANES.pack(occluder=occluder, backface=backface))
 
 
 async def frame(dut, count, sending, taking):
@@ -251,8 +251,14 @@ async def trace(dut, scene, sending, taking, **hurry):
     voxels, shader, position, directions = scene
     words = words_of(voxels)
     rays = [ray_of(position, direction, SIDE) for direction in directions]
-    drive(dut, world_i=SIDE, beyond_i=(1 << MAX_DEPTH) - SIDE, root_i=encoded(int(words[0])))
-    drive(dut, origin_i=position, mirrored_origin_i=[16 * SIDE - place for place in position])
+    world = WORLD.pack(
+        origin=position,
+        mirrored_origin=[16 * SIDE - place for place in position],
+        depth=DEPTH,
+        side=SIDE,
+        outside_mask=(1 << MAX_DEPTH) - SIDE,
+    )
+    drive(dut, world_i=world, root_i=encoded(int(words[0])))
     surroundings = Surroundings(dut, words, shader, rays, **hurry)
     runner = cocotb.start_soon(surroundings.run(sending, taking))
     try:
@@ -274,13 +280,13 @@ async def trace(dut, scene, sending, taking, **hurry):
 
 async def begin(dut):
     """Start with nothing to do."""
-    await start(dut, ray_shadow_i=0, request_ready_i=0, **NOTHING)
+    await start(dut, hit_point_ready_i=0, **NOTHING)
 
 
 @cocotb.test()
 @cocotb.parametrize(**PACES)
 async def pixels(dut, sending, taking):
-    """Random worlds and troublesome rays; words that do not come, pixel buffers that are full."""
+    """Random worlds and troublesome rays; words that do not come, reorder buffers that are full."""
     await begin(dut)
     for _ in range(8):
         await frame(dut, 60, sending, taking)
@@ -288,7 +294,7 @@ async def pixels(dut, sending, taking):
 
 @cocotb.test()
 async def all_slots_ask_for_a_shadow_ray(dut):
-    """Shadow rays come when no slot is free, and there are no places for others: a ray that asks makes way."""
+    """Shadow rays come when no slot is free, and there are no credits for others: a ray that asks gives its slot up."""
     await begin(dut)
     shader = await some_shader(dut)
     voxels = np.zeros((SIDE,) * 3, np.uint8)
@@ -296,7 +302,7 @@ async def all_slots_ask_for_a_shadow_ray(dut):
     position = [8 * SIDE, 8 * SIDE, -16]
     if int(dut.Light.value):
         set_light(dut, shader, position)
-        drive(dut, light_i=1)
+        drive(dut, shading_i=SHADING.pack(light=1, bounces=shader.bounces))
     directions = [[random.randint(-20, 20), random.randint(-20, 20), 60] for _ in range(60)]
     await trace(dut, (voxels, shader, position, directions), "always", "always", hurry=0.01)
 
@@ -313,5 +319,5 @@ async def reset_at_any_clock(dut):
         await reset(dut)
         await ClockCycles(dut.clk_i, 3)
         assert not int(dut.mem_read_o.value)
-        assert not int(dut.fill_o.value)
+        assert not RESULT.unpack(dut.result_o)["complete"]
         await frame(dut, 30, "random", "random")

@@ -1,4 +1,4 @@
-"""voxrt_light: each lane's sub-cells become its shadow rays, in order; and where the light stands among the planes."""
+"""voxrt_light: each lane's hit points become its shadow rays, in order; and where the light stands among the planes."""
 
 import random
 
@@ -6,6 +6,7 @@ import cocotb
 from bench_brightness import lit_point, some_place
 from cocotb.triggers import ClockCycles, RisingEdge
 from streams import drive, pace, reset, start
+from structs import HIT_POINT, LIGHT_PLANES, SCAN, SHADOW_POINT, SHADOW_RAY, packed_array, signed
 
 LANES, DEPTH, QUEUE = 3, 6, 16
 
@@ -26,20 +27,18 @@ class Lanes:
         for _ in range(clocks):
             asks = [ask and self.places[lane] > 0 and next(self.asks) for lane in range(LANES)]
             starts = [self.waiting[lane] > 0 and next(self.starts) for lane in range(LANES)]
-            drive(dut, request_i=sum(bool(bit) << lane for lane, bit in enumerate(asks)))
-            drive(dut, started_i=sum(bool(bit) << lane for lane, bit in enumerate(starts)))
+            drive(dut, hit_point_valid_i=sum(bool(bit) << lane for lane, bit in enumerate(asks)))
+            drive(dut, issued_i=sum(bool(bit) << lane for lane, bit in enumerate(starts)))
             for lane in range(LANES):
                 face, mirrored, tag = random.randrange(3), random.randrange(8), random.randrange(256)
                 place = some_place(side, face)
-                dut.tag_i[lane].value, dut.face_i[lane].value, dut.mirrored_i[lane].value = tag, face, mirrored
-                for axis in range(3):
-                    dut.place_i[lane][axis].value = place[axis]
+                dut.hit_point_i[lane].value = HIT_POINT.pack(tag=tag, face=face, mirrored=mirrored, point=place)
                 if asks[lane]:
                     point = lit_point(place, mirrored, face, side)
-                    way = [2 * at - own for at, own in zip(light, point, strict=True)]
-                    self.wanted[lane].append((tag, point, way))
+                    direction = [2 * at - own for at, own in zip(light, point, strict=True)]
+                    self.wanted[lane].append((tag, point, direction))
             await RisingEdge(dut.clk_i)
-            ready = dut.ready_o.value.to_unsigned()
+            ready = dut.hit_point_ready_o.value.to_unsigned()
             assert ready == sum((places > 0) << lane for lane, places in enumerate(self.places))
             for lane in range(LANES):
                 self.places[lane] += bool(starts[lane]) - bool(asks[lane])
@@ -47,9 +46,10 @@ class Lanes:
             if int(dut.valid_o.value):
                 lane = dut.lane_o.value.to_unsigned().bit_length() - 1
                 assert dut.lane_o.value.to_unsigned() == 1 << lane
-                point = [value.to_signed() for value in dut.lit_o.value]
-                way = [value.to_signed() for value in dut.way_o.value]
-                assert (dut.tag_o.value.to_unsigned(), point, way) == self.wanted[lane].pop(0)
+                ray = SHADOW_RAY.unpack(dut.shadow_ray_o)
+                point = [signed(value, SHADOW_POINT) for value in ray["point"]]
+                direction = [signed(value, SCAN) for value in ray["direction"]]
+                assert (ray["tag"], point, direction) == self.wanted[lane].pop(0)
                 self.waiting[lane] += 1
 
     def frame(self):
@@ -57,24 +57,25 @@ class Lanes:
         self.side = 1 << random.randint(1, DEPTH)
         reach = random.choice([16 * self.side, (1 << 20) - 1])
         self.light = [random.choice([0, 16 * random.randint(-2, 70), random.randint(-reach, reach)]) for _ in range(3)]
-        drive(self.dut, world_i=self.side, light_i=self.light)
+        drive(self.dut, side_i=self.side, light_i=packed_array(self.light, 32))
 
     def check_planes(self):
         """Compare the numbers of planes before the light, and not behind it."""
+        planes = LIGHT_PLANES.unpack(self.dut.light_planes_o)
         for mirrored in range(2):
             for axis, own in enumerate(self.light):
                 light = 16 * self.side - own if mirrored else own
                 before = sum(16 * plane < light for plane in range(self.side))
                 reached = sum(16 * plane <= light for plane in range(self.side))
-                assert self.dut.before_light_o[mirrored][axis].value.to_unsigned() == before
-                assert self.dut.to_light_o[mirrored][axis].value.to_unsigned() == reached
+                assert planes["occluder"][3 * mirrored + axis] == before
+                assert planes["backface"][3 * mirrored + axis] == reached
 
 
 @cocotb.test()
 @cocotb.parametrize(asking=["always", "random"], starting=["always", "random"])
 async def shadow_rays(dut, asking, starting):
     """Lanes that ask as fast as they may, lanes that start late."""
-    await start(dut, request_i=0, started_i=0)
+    await start(dut, hit_point_valid_i=0, issued_i=0)
     lanes = Lanes(dut, asking, starting)
     for _ in range(10):
         lanes.frame()
@@ -88,11 +89,11 @@ async def shadow_rays(dut, asking, starting):
 @cocotb.test()
 async def reset_at_any_clock(dut):
     """Drop what is on its way; all places are free again."""
-    await start(dut, request_i=0, started_i=0)
+    await start(dut, hit_point_valid_i=0, issued_i=0)
     for _ in range(10):
         lanes = Lanes(dut, "random", "random")
         lanes.frame()
         await ClockCycles(dut.clk_i, 3)
         await lanes.run(random.randrange(1, 60))
-        drive(dut, request_i=0, started_i=0)
+        drive(dut, hit_point_valid_i=0, issued_i=0)
         await reset(dut)

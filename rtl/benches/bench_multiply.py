@@ -20,7 +20,7 @@ def some_number(bits):
 @cocotb.test()
 async def products(dut):
     """One a clock."""
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     on_the_way = [None] * LATENCY
     for _ in range(5000):

@@ -1,31 +1,32 @@
-"""voxrt_pixel_buffer: places filled in any order come out in the order in which they were taken."""
+"""voxrt_pixel_buffer: entries completed in any order come out in the order in which they were allocated."""
 
 from random import randrange, shuffle
 
 import cocotb
-from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
+from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge, with_timeout
 from streams import PACES, drive, pace, reset, start, take
 
 
-async def fill(dut, pixels, kind, disorder):
-    """Take a place for each pixel; store and fill them late and out of order, the pixel no later than the answer."""
-    waiting, there, taken = [], pace(kind), 0
-    while pixels[taken:] or waiting:
-        takes = taken < len(pixels) and int(dut.ready_o.value) and next(there)
-        drive(dut, take_i=takes, fill_i=0, store_i=0)
-        if waiting and (len(waiting) > disorder or taken == len(pixels) or not int(dut.ready_o.value)):
+async def complete(dut, pixels, kind, disorder):
+    """Allocate an entry per pixel; store and complete them late, out of order, the pixel first or with the answer."""
+    waiting, there, allocated = [], pace(kind), 0
+    while pixels[allocated:] or waiting:
+        await FallingEdge(dut.clk_i)  # ready_o is that of the next clock.
+        allocates = allocated < len(pixels) and int(dut.ready_o.value) and next(there)
+        drive(dut, allocate_i=allocates, complete_i=0, store_i=0)
+        if waiting and (len(waiting) > disorder or allocated == len(pixels) or not int(dut.ready_o.value)):
             tag, pixel, lit, stored = waiting.pop(0)
             if not stored and randrange(2):
                 drive(dut, store_i=1, tag_i=tag, pixel_i=pixel)
                 waiting.insert(randrange(len(waiting) + 1), (tag, pixel, lit, True))
             else:
-                drive(dut, fill_i=1, tag_i=tag, lit_i=lit, store_i=not stored, pixel_i=pixel)
+                drive(dut, complete_i=1, tag_i=tag, lit_i=lit, store_i=not stored, pixel_i=pixel)
         await RisingEdge(dut.clk_i)
-        if takes:
-            waiting.append((int(dut.tag_o.value), *pixels[taken], False))
-            taken += 1
+        if allocates:
+            waiting.append((int(dut.tag_o.value), *pixels[allocated], False))
+            allocated += 1
             shuffle(waiting)
-        drive(dut, take_i=0, fill_i=0, store_i=0)
+        drive(dut, allocate_i=0, complete_i=0, store_i=0)
         await RisingEdge(dut.clk_i)
 
 
@@ -42,13 +43,13 @@ def some(count):
 @cocotb.test()
 @cocotb.parametrize(**PACES, disorder=[0, 7])
 async def order(dut, sending, taking, disorder):
-    """Many laps of the buffer."""
-    await start(dut, take_i=0, fill_i=0, store_i=0, ready_i=0)
+    """Each entry many times."""
+    await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
     await ClockCycles(dut.clk_i, 20)
     pixels = some(200)
-    filler = cocotb.start_soon(fill(dut, pixels, sending, disorder))
+    completer = cocotb.start_soon(complete(dut, pixels, sending, disorder))
     assert await with_timeout(take(dut, len(pixels), taking, lambda: seen(dut)), 1, "ms") == pixels
-    await filler
+    await completer
     await ClockCycles(dut.clk_i, 20)
     assert not int(dut.valid_o.value)
 
@@ -56,20 +57,20 @@ async def order(dut, sending, taking, disorder):
 @cocotb.test()
 async def reset_at_any_clock(dut):
     """No pixel of before the reset shows up after it."""
-    await start(dut, take_i=0, fill_i=0, store_i=0, ready_i=0)
+    await start(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
     await ClockCycles(dut.clk_i, 20)
     for _ in range(20):
         pixels = some(40)
-        tasks = [cocotb.start_soon(fill(dut, pixels, "random", 5))]
+        tasks = [cocotb.start_soon(complete(dut, pixels, "random", 5))]
         tasks.append(cocotb.start_soon(take(dut, 40, "random", lambda: seen(dut))))
         await ClockCycles(dut.clk_i, randrange(1, 200))
         for task in tasks:
             if not task.done():
                 task.cancel()
-        drive(dut, take_i=0, fill_i=0, store_i=0, ready_i=0)
+        drive(dut, allocate_i=0, complete_i=0, store_i=0, ready_i=0)
         await reset(dut)
         await ClockCycles(dut.clk_i, 20)
         pixels = some(20)
-        filler = cocotb.start_soon(fill(dut, pixels, "always", 3))
+        completer = cocotb.start_soon(complete(dut, pixels, "always", 3))
         assert await with_timeout(take(dut, 20, "always", lambda: seen(dut)), 1, "ms") == pixels
-        await filler
+        await completer

@@ -20,7 +20,7 @@ def some_distance(bits):
 @cocotb.test()
 async def times(dut):
     """One a clock."""
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     modulus = 1 << len(dut.time_o)
     on_the_way = [None] * LATENCY

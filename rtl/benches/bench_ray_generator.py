@@ -5,6 +5,7 @@ import random
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from streams import PACES, drive, reset, start, take
+from structs import RASTER
 
 
 def some_frame():
@@ -16,15 +17,16 @@ def some_frame():
 async def begin(dut, frame):
     """Start a frame as voxrt_scan does."""
     corner, right, line, width, height = frame
-    drive(dut, start_i=1, right_i=right, width_i=width, height_i=height, ready_i=0)
+    held = {"right": right, "width": width, "height": height}
+    drive(dut, raster_i=RASTER.pack(start=1, **held))
     await RisingEdge(dut.clk_i)
-    drive(dut, start_i=0)
+    drive(dut, raster_i=RASTER.pack(**held))
     await ClockCycles(dut.clk_i, random.randrange(1, 9))
-    drive(dut, corner_i=1, line_step_i=corner)
+    drive(dut, raster_i=RASTER.pack(corner=1, line_step=corner, **held))
     await RisingEdge(dut.clk_i)
-    drive(dut, corner_i=0, line_step_i=[0, 0, 0])
+    drive(dut, raster_i=RASTER.pack(**held))
     await RisingEdge(dut.clk_i)
-    drive(dut, line_step_i=line)
+    drive(dut, raster_i=RASTER.pack(line_step=line, **held))
 
 
 def seen(dut):
@@ -51,9 +53,10 @@ def expected(corner, right, line, width, height):
 @cocotb.parametrize(taking=PACES["taking"])
 async def directions(dut, taking):
     """Frames of all shapes, one after another."""
-    await start(dut, start_i=0, corner_i=0, ready_i=0)
+    await start(dut, raster_i=0, ready_i=0)
     for _ in range(30):
         frame = some_frame()
+        drive(dut, ready_i=0)
         await begin(dut, frame)
         wanted = expected(*frame)
         assert await with_timeout(take(dut, len(wanted), taking, lambda: seen(dut)), 1, "ms") == wanted
@@ -64,9 +67,10 @@ async def directions(dut, taking):
 @cocotb.test()
 async def reset_at_any_clock(dut):
     """Begin anew after it."""
-    await start(dut, start_i=0, corner_i=0, ready_i=0)
+    await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):
         frame = some_frame()
+        drive(dut, ready_i=0)
         await begin(dut, frame)
         taker = cocotb.start_soon(take(dut, frame[3] * frame[4], "random", lambda: seen(dut)))
         await ClockCycles(dut.clk_i, random.randrange(1, 30))
@@ -74,5 +78,6 @@ async def reset_at_any_clock(dut):
             taker.cancel()
         await reset(dut)
         assert not int(dut.valid_o.value)
+        drive(dut, ready_i=0)
         await begin(dut, frame)
         assert await take(dut, frame[3] * frame[4], "random", lambda: seen(dut)) == expected(*frame)

@@ -6,10 +6,10 @@ import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 from rays import FACE_NONE, ray_of, some_direction
 from streams import drive, pace, reset, start
+from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, signed, unpacked_array
 
 LANES, LATENCY = 3, 40
-FLAGS = ("resolved_o", "overflow_o", "shadow_o")
-NUMBERS = ("lane_o", "pixel_o", "mirrored_o", "dead_o", "octant_o", "entry_time_o", "entry_face_o", "tag_o")
+KEY_BITS = 52  # voxrt_pkg::key_bits(6, 1).
 
 
 def some_position(side):
@@ -31,12 +31,19 @@ def some_shadow(side):
     return point, way
 
 
+def world(position, depth):
+    """Give the world of a camera at a position."""
+    mirrored = [(16 << depth) - place for place in position]
+    return WORLD.pack(origin=position, mirrored_origin=mirrored, depth=depth, side=1 << depth)
+
+
 def seen(dut):
     """Read what stands at the outputs."""
-    values = {name: int(getattr(dut, name).value) for name in FLAGS}
-    values |= {name: getattr(dut, name).value.to_unsigned() for name in NUMBERS}
-    values["weight_o"] = tuple(value.to_unsigned() for value in dut.weight_o.value)
-    values["origin_o"] = tuple(value.to_signed() for value in dut.origin_o.value)
+    values = RAY.unpack(dut.ray_o)
+    values["origin"] = tuple(signed(value, DISTANCE) for value in values["origin"])
+    values["weights"] = tuple(unpacked_array(dut.weights_o.value.to_unsigned(), 3, WEIGHT))
+    values["lane"] = dut.lane_o.value.to_unsigned()
+    values["overflow"] = int(dut.overflow_o.value)
     return values
 
 
@@ -48,21 +55,21 @@ async def collect(dut, into):
             into.append(seen(dut))
 
 
-def expected(dut, ray, lane, tag, shadow):
+def expected(ray, lane, tag, shadow):
     """Give what `seen` shall give; of a resolved ray only what is of use."""
-    values = {"lane_o": lane, "resolved_o": ray.resolved, "overflow_o": ray.overflow, "shadow_o": shadow}
+    values = {"lane": lane, "resolved": ray.resolved, "overflow": ray.overflow, "shadow": shadow}
     if shadow:
-        values["tag_o"] = tag
+        values["tag"] = tag
     if ray.resolved:
-        return values | ({} if shadow else {"pixel_o": FACE_NONE})
+        return values | ({"lit": not ray.overflow} if shadow else {"pixel": FACE_NONE})
     return values | {
-        "mirrored_o": ray.mirrored,
-        "dead_o": ray.dead,
-        "octant_o": ray.octant,
-        "weight_o": ray.weight,
-        "entry_time_o": ray.entry_time % (1 << len(dut.entry_time_o)),
-        "entry_face_o": ray.entry_face,
-        "origin_o": ray.origin,
+        "mirrored": ray.mirrored,
+        "dead": ray.dead,
+        "octant": ray.octant,
+        "weights": ray.weight,
+        "entry_time": ray.entry_time % (1 << KEY_BITS),
+        "entry_face": ray.entry_face,
+        "origin": ray.origin,
     }
 
 
@@ -70,8 +77,7 @@ async def frame(dut, count, kind):
     """Send rays of one frame, and compare."""
     depth = random.randint(1, 6)
     side, position, there = 1 << depth, some_position(1 << depth), pace(kind)
-    drive(dut, depth_i=depth, world_i=side, root_leaf_i=0, root_material_i=0)
-    drive(dut, origin_i=position, mirrored_origin_i=[16 * side - place for place in position])
+    drive(dut, world_i=world(position, depth), root_leaf_i=0, root_material_i=0)
     got, wanted = [], []
     collector = cocotb.start_soon(collect(dut, got))
     while len(wanted) < count:
@@ -82,9 +88,9 @@ async def frame(dut, count, kind):
         lane, tag, shadow = 1 << random.randrange(LANES), random.randrange(256), random.random() < 0.3
         point, direction = some_shadow(side) if shadow else (position, some_direction())
         ray = ray_of(point, direction, side, unit=32 if shadow else 16, inside=shadow)
-        wanted.append(expected(dut, ray, lane, tag, shadow))
+        wanted.append(expected(ray, lane, tag, shadow))
         drive(dut, valid_i=1, lane_i=lane, direction_i=direction, shadow_i=shadow, tag_i=tag)
-        drive(dut, lit_i=point if shadow else [0, 0, 0])
+        drive(dut, point_i=packed_array(point if shadow else [0, 0, 0], SHADOW_POINT))
         await RisingEdge(dut.clk_i)
     drive(dut, valid_i=0)
     await ClockCycles(dut.clk_i, LATENCY)
@@ -107,8 +113,7 @@ async def rays_as_in_whole_numbers(dut, kind):
 async def a_world_of_one_leaf_is_answered(dut):
     """Give the root's material with the face of the entry, to rays that meet the world."""
     await start(dut, valid_i=0)
-    drive(dut, depth_i=3, world_i=8, root_leaf_i=1, root_material_i=7, shadow_i=0, lane_i=1)
-    drive(dut, origin_i=[-16, 40, 50], mirrored_origin_i=[144, 88, 78])
+    drive(dut, world_i=world([-16, 40, 50], 3), root_leaf_i=1, root_material_i=7, shadow_i=0, lane_i=1)
     got = []
     cocotb.start_soon(collect(dut, got))
     for direction in ([9, 1, 1], [-9, 1, 1]):
@@ -116,7 +121,7 @@ async def a_world_of_one_leaf_is_answered(dut):
         await RisingEdge(dut.clk_i)
     drive(dut, valid_i=0)
     await ClockCycles(dut.clk_i, LATENCY)
-    assert [(ray["resolved_o"], ray["pixel_o"]) for ray in got] == [(1, 7 << 2), (1, FACE_NONE)]
+    assert [(ray["resolved"], ray["pixel"]) for ray in got] == [(1, 7 << 2), (1, FACE_NONE)]
 
 
 @cocotb.test()

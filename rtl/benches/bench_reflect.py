@@ -1,4 +1,4 @@
-"""voxrt_reflect against lists of the mirrors that each ray has met: a ring of rays, one of them at a turn a clock."""
+"""voxrt_reflect against lists of the mirrors that each ray has met: a ring of rays, of which one is at stage 9."""
 
 import random
 from itertools import count
@@ -7,13 +7,14 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 from streams import drive, pace
+from structs import MATERIAL_WRITE
 
 SLOTS = 12
 TABLE_STAGE, SUM_STAGE, TURN_STAGE = 3, 7, 9
 
 
-def some_row():
-    """Make a row of the material table: whether it is a mirror, and its colour."""
+def some_entry():
+    """Make an entry of the material table: whether it is a mirror, and its colour."""
     return random.random() < 0.9, tuple(random.choice([0, 255, random.randrange(256)]) for _ in range(3))
 
 
@@ -24,21 +25,21 @@ class Ring:
         self.dut = dut
         self.table = {}
         self.rays = [None] * SLOTS
-        self.rows = [None] * SLOTS  # That were looked up for the turn that comes.
+        self.entries = [None] * SLOTS  # That were looked up for the turn that comes.
         self.clocks = count()
         self.ended = self.reflected = 0
 
     def write_table(self, material, row):
         """Set the inputs that write a row, and give what else is to be done once the clock has passed."""
         mirror, (red, green, blue) = row
-        number = mirror << 24 | red << 16 | green << 8 | blue
-        drive(self.dut, table_write_i=1, table_material_i=material, table_row_i=number)
+        fields = {"mirror": mirror, "red": red, "green": green, "blue": blue}
+        drive(self.dut, material_write_i=MATERIAL_WRITE.pack(valid=1, material=material, **fields))
         return {material: row}
 
     async def fill_table(self):
         """Write all rows."""
         for material in range(256):
-            written = self.write_table(material, some_row())
+            written = self.write_table(material, some_entry())
             await self.clock(0, {}, busy=False)
             self.table |= written
 
@@ -48,28 +49,28 @@ class Ring:
         slots = {stage: (now - stage) % SLOTS for stage in (TABLE_STAGE, SUM_STAGE, TURN_STAGE)}
         own, looking = slots[TURN_STAGE], slots[TABLE_STAGE]
         ray = self.rays[own]
-        hits = busy and ray is not None and self.rows[own] is not None and random.random() < 0.9
+        hits = busy and ray is not None and self.entries[own] is not None and random.random() < 0.9
         material = random.randrange(256)
-        mirror, colour = self.rows[own] or (False, None)
+        mirror, colour = self.entries[own] or (False, None)
         reflects = ends = False
         if hits and mirror and bounces:
             ray.append(colour)
             ends = len(ray) > bounces
             reflects = not ends
-        starts = busy and not reflects and (ray is None or hits) and random.random() < 0.8
+        issues = busy and not reflects and (ray is None or hits) and random.random() < 0.8
         drive(dut, bounces_i=bounces, material_i=material, slot7_i=slots[SUM_STAGE], slot9_i=own)
-        drive(dut, hit_i=hits, starts_i=starts)
+        drive(dut, hit_i=hits, issues_i=issues)
         await RisingEdge(dut.clk_i)
         assert int(dut.reflects_o.value) == reflects
         assert int(dut.ends_o.value) == ends
         if ends:
-            met = dut.met_o.value.to_unsigned()
+            met = dut.mirrors_o.value.to_unsigned()
             assert met % 32 == len(ray) == bounces + 1
             sums = [met >> 5 + 12 * channel & 0xFFF for channel in range(3)]
             assert sums == [sum(channel) for channel in zip(*ray, strict=True)]
-        if starts or (hits and not reflects):
-            self.rays[own] = [] if starts else None
-        self.rows[looking] = self.table.get(material)
+        if issues or (hits and not reflects):
+            self.rays[own] = [] if issues else None
+        self.entries[looking] = self.table.get(material)
         self.table |= written
         self.ended += ends
         self.reflected += reflects
@@ -78,17 +79,17 @@ class Ring:
         """Hold the limit for so many clocks, while the table is written or not; then let all rays go."""
         writes = pace(writing) if writing else iter(int, 1)
         for _ in range(clocks):
-            drive(self.dut, table_write_i=0)
+            drive(self.dut, material_write_i=0)
             writing = next(writes)
-            await self.clock(bounces, self.write_table(random.randrange(256), some_row()) if writing else {})
-        drive(self.dut, table_write_i=0)
+            await self.clock(bounces, self.write_table(random.randrange(256), some_entry()) if writing else {})
+        drive(self.dut, material_write_i=0)
         self.rays = [None] * SLOTS
 
 
 async def prepare(dut):
     """Start the clock, and fill the table."""
-    drive(dut, table_write_i=0, hit_i=0, starts_i=0)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    drive(dut, material_write_i=0, hit_i=0, issues_i=0)
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await RisingEdge(dut.clk_i)
     ring = Ring(dut)
     await ring.fill_table()

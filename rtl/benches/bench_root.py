@@ -32,8 +32,8 @@ class Memory:
         """Pass a clock: take the address, give the answer to one of before."""
         dut = self.dut
         await RisingEdge(dut.clk_i)
-        asks = int(dut.reads_o.value)
-        self.asked.append(1 + 8 * dut.block_o.value.to_unsigned() + dut.octant_o.value.to_unsigned() if asks else None)
+        asks = int(dut.read_o.value)
+        self.asked.append(1 + dut.read_address_o.value.to_unsigned() if asks else None)
         address = self.asked.popleft()
         gives = random.randrange(2) if address is None else random.random() >= self.likely
         if address is not None:
@@ -46,9 +46,9 @@ class Memory:
 async def ask(dut, memory, address):
     """Start a search; what stands at the inputs counts at that clock alone. Give word 0 of then."""
     first = random.randrange(1 << 10)
-    drive(dut, start_i=1, address_i=address, first_i=first)
+    drive(dut, start_i=1, address_i=address, first_word_i=first)
     await memory.clock()
-    drive(dut, start_i=0, address_i=random.randrange(1 << 32), first_i=random.randrange(1 << 10))
+    drive(dut, start_i=0, address_i=random.randrange(1 << 32), first_word_i=random.randrange(1 << 10))
     return first
 
 
@@ -62,7 +62,7 @@ async def find(dut, memory, address):
         wanted = memory.words[address]
     for _ in range(1000):
         await memory.clock()
-        if int(dut.done_o.value):
+        if int(dut.valid_o.value):
             break
     else:
         raise AssertionError("the root was never found")
@@ -71,13 +71,13 @@ async def find(dut, memory, address):
     for _ in range(random.randrange(1, 10)):
         assert dut.root_o.value.to_unsigned() == wanted
         await memory.clock()
-        assert not int(dut.done_o.value)
-        assert not int(dut.reads_o.value)
+        assert not int(dut.valid_o.value)
+        assert not int(dut.read_o.value)
 
 
 async def begin(dut, refuses):
     """Start beside a memory of random words."""
-    await start(dut, start_i=0, address_i=0, first_i=0, ack_i=0, word_i=0)
+    await start(dut, start_i=0, address_i=0, first_word_i=0, ack_i=0, word_i=0)
     return Memory(dut, refuses)
 
 
@@ -110,7 +110,7 @@ async def reset_at_any_clock(dut):
         drive(dut, ack_i=1)
         for _ in range(random.randrange(8)):
             await ClockCycles(dut.clk_i, 1)
-            assert not int(dut.done_o.value)
-            assert not int(dut.reads_o.value)
+            assert not int(dut.valid_o.value)
+            assert not int(dut.read_o.value)
         memory.asked = deque([None] * len(memory.asked))
         await find(dut, memory, ADDRESSES[random.choice(list(ADDRESSES))]())

@@ -5,6 +5,7 @@ import random
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 from streams import drive, reset, start
+from structs import SCAN, packed_array, signed, unpacked_array
 
 SIZE_BITS = 12
 
@@ -14,20 +15,25 @@ def some_registers():
     return [[random.choice([-32768, 32767, random.randint(-32768, 32767)]) for _ in range(3)] for _ in range(3)]
 
 
+def line_step(dut):
+    """Read the three components."""
+    return [signed(value, SCAN) for value in unpacked_array(dut.line_step_o.value.to_unsigned(), 3, SCAN)]
+
+
 async def check(dut):
     """Scan once."""
     look, right, up = some_registers()
     width, height = (random.choice([0, 2047, random.randrange(2048)]) for _ in range(2))
-    drive(dut, look_i=look, right_i=right, up_i=up, half_width_i=width, half_height_i=height, start_i=1)
+    drive(dut, **{f"{name}_i": packed_array(row, 16) for name, row in (("look", look), ("right", right), ("up", up))})
+    drive(dut, half_width_i=width, half_height_i=height, start_i=1)
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)
     await ClockCycles(dut.clk_i, 2 * SIZE_BITS + 1)
     assert int(dut.corner_o.value)
-    corner = [value.to_signed() for value in dut.line_step_o.value]
-    assert corner == [a - b * width + c * height for a, b, c in zip(look, right, up, strict=True)]
+    assert line_step(dut) == [a - b * width + c * height for a, b, c in zip(look, right, up, strict=True)]
     await ClockCycles(dut.clk_i, 2)
     for _ in range(3):
-        assert [value.to_signed() for value in dut.line_step_o.value] == [-c for c in up]
+        assert line_step(dut) == [-c for c in up]
         await RisingEdge(dut.clk_i)
 
 

@@ -10,6 +10,7 @@ from bench_ray_generator import expected as directions_of
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from oracles.ray import FACE_NONE, shade
 from streams import PACES, drive, exchange, reset_on_the_way, start
+from structs import MATERIAL_WRITE, SHADED_PIXEL
 
 SQUARE, SUM = 40, 12
 
@@ -64,19 +65,17 @@ def some_pixels(frame, colours, flat):
 
 def seen(dut):
     """Read a shaded pixel."""
-    colour, pixel = dut.colour_o.value.to_unsigned(), dut.pixel_o.value.to_unsigned()
-    return colour, pixel, int(dut.first_o.value), int(dut.line_end_o.value), int(dut.last_o.value)
+    return tuple(SHADED_PIXEL.unpack(dut.pixel_o).values())[::-1]
 
 
 async def prepare(dut):
     """Start, and fill the material table; give it."""
-    await start(dut, start_i=0, corner_i=0, valid_i=0, ready_i=0, table_write_i=0, flat_i=0)
+    await start(dut, raster_i=0, valid_i=0, pixel_ready_i=0, material_write_i=0, flat_i=0)
     colours = [tuple(random.choice([0, 255, random.randrange(256)]) for _ in range(3)) for _ in range(256)]
-    for material, colour in enumerate(colours):
-        table = packed(*((channel, 8) for channel in colour))
-        drive(dut, table_write_i=1, table_material_i=material, table_colour_i=table)
+    for material, (red, green, blue) in enumerate(colours):
+        drive(dut, material_write_i=MATERIAL_WRITE.pack(valid=1, material=material, red=red, green=green, blue=blue))
         await RisingEdge(dut.clk_i)
-    drive(dut, table_write_i=0)
+    drive(dut, material_write_i=0)
     return colours
 
 

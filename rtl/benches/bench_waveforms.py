@@ -95,12 +95,12 @@ async def frame_start(dut):
     rtu = dut.u_rtu
     events = {
         "the frame is latched": dut.start,
-        "its root is there": rtu.start_q,
+        "its root is there": rtu.root_valid,
         "direction of the corner": rtu.corner,
         "first direction": rtu.u_rays.direction_valid,
         "first ray for a lane": rtu.ray_valid,
-        "first word asked for": rtu.read,
-        "first pixel from a lane": rtu.pixel_valid,
+        "first word asked for": rtu.lane_read,
+        "first pixel from a lane": rtu.lane_pixel_valid,
         "first pixel shaded": dut.pixel_valid,
         "first word of the stream": dut.m_axis_tvalid,
     }

@@ -7,7 +7,6 @@ and a C++ compiler.
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
@@ -20,14 +19,13 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import get_runner
 
 BENCHES = Path(__file__).resolve().parent
-RTL = BENCHES.parent
+sys.path.insert(1, str(BENCHES.parent))
+from configurations import RTL, TOP, list_sources, read_configurations  # noqa: E402 - found by the line above
+
 GENERATED = RTL / "generated"
 BUILDS_FOLDER = RTL.parent / "build" / "benches"
-CONFIGURATIONS = {
-    name: {key: value for key, value in parameters.items() if not key.startswith("Simulation")}
-    for name, parameters in json.loads((RTL / "configurations.json").read_text()).items()
-}
-CORE = "voxrt_core"
+CONFIGURATIONS = {name: configuration.parameters for name, configuration in read_configurations().items()}
+CORE = TOP
 SEED = 1  # Of all that is random: what fails, fails again.
 
 
@@ -54,9 +52,9 @@ BUILDS = {
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
-    "free_rows": Build("voxrt_free_rows", {"RowBits": 5}, ("bench_free_rows",)),
+    "free_list": Build("voxrt_free_list", {"RowBits": 5}, ("bench_free_list",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
-    "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresFirst": 1}, ("bench_pixel_buffer",)),
+    "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresEarlier": 1}, ("bench_pixel_buffer",)),
     "merge": Build("voxrt_merge", {"Lanes": 5}, ("bench_merge",)),
     "pixel_packer": Build("voxrt_pixel_packer", {}, ("bench_pixel_packer",)),
     "scan": Build("voxrt_scan", {}, ("bench_scan",)),
@@ -75,7 +73,7 @@ BUILDS = {
     "root": Build("voxrt_root", {"BlockBits": 6, "MemoryClocks": 2}, ("bench_root",)),
     "root-banked": Build("voxrt_root", {"BlockBits": 6, "MemoryClocks": 5}, ("bench_root",)),
     "reflect": Build("voxrt_reflect", {"Slots": 12}, ("bench_reflect",)),
-    "light_way": Build("voxrt_light_way", {"MaxDepth": 6}, ("bench_light_way",)),
+    "light_direction": Build("voxrt_light_direction", {"MaxDepth": 6}, ("bench_light_direction",)),
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
     "brightness-light": Build("voxrt_brightness", {"MaxDepth": 6, "Mirrors": 0}, ("bench_brightness",)),
     "brightness-mirrors": Build("voxrt_brightness", {"MaxDepth": 6, "Light": 0}, ("bench_brightness",)),
@@ -98,9 +96,7 @@ def run(name: str) -> None:
     """Build a top and run its benches; exits with an error when one fails."""
     build = BUILDS[name]
     folder = BUILDS_FOLDER / name
-    sources = [RTL / "lint.vlt", RTL / "voxrt_pkg.sv", GENERATED / "voxrt_registers_pkg.sv"]
-    sources += [GENERATED / "voxrt_registers.sv"]
-    sources += sorted(path for path in RTL.glob("voxrt_*.sv") if path.name != "voxrt_pkg.sv")
+    sources = [RTL / "lint.vlt", *list_sources()]
     share_runtime(folder)
     runner = get_runner("verilator")
     runner.build(
@@ -110,6 +106,7 @@ def run(name: str) -> None:
         defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},
         build_args=[
             "-O3",
+            "--assert",
             "--x-assign",
             "unique",
             "--x-initial",

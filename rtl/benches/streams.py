@@ -31,7 +31,7 @@ async def reset(dut, clocks=3):
 async def start(dut, **values):
     """Start the clock and reset, all inputs set."""
     drive(dut, **values)
-    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start())
+    cocotb.start_soon(Clock(dut.clk_i, 10, "ns").start(start_high=False))
     await reset(dut)
 
 

@@ -1,9 +1,9 @@
-// What rays have met on their way through the octree, for the benches: bound to voxrt_lane, and no part of the core.
+// Coverage of the traversal, for the benches: bound to voxrt_lane, and no part of the core.
 //
-// Sampled where a leaf's exit is known and its size about to be added (stage "add" of voxrt_lane), in lanes without light,
-// whose rays read a word at every turn. What was counted is written to traversal.txt when the simulation ends, a line for
-// each bin that was hit: rtl/benches/coverage.py reads it, and says which bins are impossible. Counters, because as many cover
-// properties take minutes to compile.
+// Sampled at stage 8 (add) of voxrt_lane, where a leaf's exit is known, in lanes without light, whose rays read a word
+// at every pass. When the simulation ends, the counts are written to traversal.txt, a line per bin that was hit:
+// rtl/benches/coverage.py reads it, and says which bins are impossible. Counters, because as many cover properties take
+// minutes to compile.
 module voxrt_lane_coverage
   import voxrt_pkg::*;
 #(
@@ -17,7 +17,7 @@ module voxrt_lane_coverage
   input logic                leave_i,         // An empty leaf.
   input logic                finish_i,        // Material, or an error.
   input logic [MaxDepth-1:0] size_i,          // Of the cell, one-hot.
-  input logic [MaxDepth-1:0] place_i,         // Of its corner, on the axis of the exit.
+  input logic [MaxDepth-1:0] coordinate_i,    // Of its corner, on the axis of the exit.
   input face_e               exit_i,
   input face_e               key_face_i,      // The plane that the ray crossed last.
   input material_t           material_i,
@@ -25,7 +25,7 @@ module voxrt_lane_coverage
   input logic [         2:0] dead_i,
   input logic [         2:0] child_i,         // Of a pointer, in the mirrored frame.
   input logic [ KeyBits-1:0] time_i      [3],
-  input logic [  MaxDepth:0] world_i,         // One-hot: the world's side.
+  input logic [  MaxDepth:0] side_i,          // Of the world, one-hot.
   input logic                bad_pointer_i,
   input logic                step_limit_i
 );
@@ -41,9 +41,9 @@ module voxrt_lane_coverage
     for (int unsigned i = 0; i <= MaxDepth; i++) if (size[i]) level_of |= 5'(i);
   endfunction
 
-  assign sum      = {1'b0, place_i} + {1'b0, size_i};
-  assign ancestor = sum & ~{1'b0, place_i};
-  assign outside  = (sum & world_i) != '0;
+  assign sum      = {1'b0, coordinate_i} + {1'b0, size_i};
+  assign ancestor = sum & ~{1'b0, coordinate_i};
+  assign outside  = (sum & side_i) != '0;
   assign level    = 4'(level_of({1'b0, size_i}));
   assign climbed  = 4'(level_of(ancestor) - level_of({1'b0, size_i}));
   assign leaves   = active_i && leave_i && dead_i != '1;
@@ -64,13 +64,15 @@ module voxrt_lane_coverage
   int unsigned word_q    [3];                     // Not delivered, bad pointer, step limit.
 
   always_ff @(posedge clk_i) begin
-    if (leaves && !outside) leaf_q[level][exit_i][mirrored_i][climbed] <= leaf_q[level][exit_i][mirrored_i][climbed] + 1;
+    if (leaves && !outside) begin
+      leaf_q[level][exit_i][mirrored_i][climbed] <= leaf_q[level][exit_i][mirrored_i][climbed] + 1;
+    end
     if (leaves && outside) leaf_out_q[level][exit_i][mirrored_i] <= leaf_out_q[level][exit_i][mirrored_i] + 1;
     if (hits) solid_q[level][key_face_i][mirrored_i] <= solid_q[level][key_face_i][mirrored_i] + 1;
     if (descends) pointer_q[level][child_i][mirrored_i] <= pointer_q[level][child_i][mirrored_i] + 1;
     if (active_i && leave_i) dead_q[dead_i][exit_i] <= dead_q[dead_i][exit_i] + 1;
     if (leaves) tie_q[ties][exit_i] <= tie_q[ties][exit_i] + 1;
-    if (leaves && outside) depth_q[level_of(world_i)] <= depth_q[level_of(world_i)] + 1;
+    if (leaves && outside) depth_q[level_of(side_i)] <= depth_q[level_of(side_i)] + 1;
     if (active_i && retry_i) word_q[0] <= word_q[0] + 1;
     if (bad_pointer_i) word_q[1] <= word_q[1] + 1;
     if (step_limit_i) word_q[2] <= word_q[2] + 1;
@@ -129,7 +131,7 @@ bind voxrt_lane voxrt_lane_coverage #(
   .leave_i      (u_next_cell.action8_q == Leave),
   .finish_i     (u_next_cell.action8_q == Finish),
   .size_i       (u_next_cell.size8_q),
-  .place_i      (u_next_cell.place8_q & ~beyond_i),
+  .coordinate_i (u_next_cell.coordinate8_q & ~world_i.outside_mask[MaxDepth-1:0]),
   .exit_i       (u_next_cell.exit_face8_q),
   .key_face_i   (u_next_cell.key_face8_q),
   .material_i   (material8_q),
@@ -137,7 +139,7 @@ bind voxrt_lane voxrt_lane_coverage #(
   .dead_i       (dead_q[8+Extra]),
   .child_i      (u_next_cell.set8_q),
   .time_i       (u_next_cell.time8_q),
-  .world_i,
+  .side_i       (world_i.side[MaxDepth:0]),
   .bad_pointer_i(bad_pointer_o),
   .step_limit_i (step_limit_o)
 );

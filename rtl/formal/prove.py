@@ -33,7 +33,7 @@ depth {depth}
 [engines]
 smtbmc --unroll z3
 [script]
-read_slang --threads 1 --top {name}_properties {sources}
+read_slang --threads 1 --no-synthesis-define --top {name}_properties {sources}
 prep -top {name}_properties -flatten
 [files]
 {files}

@@ -1,5 +1,5 @@
 // What goes in comes out, in order, once, and nothing else: one value, chosen freely, is followed through the FIFO.
-// Proven without bound by induction: the two assertions on places tie the counters to the value followed.
+// Proven without bound by induction: the two assertions on indices tie the counters to the value followed.
 module voxrt_fifo_properties #(
   parameter int unsigned Width = 4,
   parameter int unsigned Depth = 4
@@ -66,8 +66,8 @@ module voxrt_fifo_properties #(
     if (!rst_ni) inside_q <= 1'b0;
   end
 
-  logic [IndexBits:0] place;
-  assign place = dut.read_q + ahead_q;
+  logic [IndexBits:0] index;
+  assign index = dut.read_q + ahead_q;
 
   always_comb begin
     if (started_q) begin
@@ -77,7 +77,7 @@ module voxrt_fifo_properties #(
       assert (valid_o == (count_q != '0));
       if (inside_q) begin
         assert (ahead_q < count_q);
-        assert (dut.data_q[place[IndexBits-1:0]] == value_q);
+        assert (dut.data_q[index[IndexBits-1:0]] == value_q);
         if (ahead_q == '0) assert (valid_o && data_o == value_q);
       end
     end

@@ -1,6 +1,7 @@
 // AXI4-Lite rules of the register block: an answer stays until taken, each request has one, and none comes unasked. A
-// word of a register that is plain storage (the up vector's first component) reads back as it was last written, whatever
-// else goes on. The material table, which lies outside the block, is taken to answer a clock after it is asked.
+// word of a register that is plain storage (the up vector's first component) reads back as it was last written,
+// whatever else goes on. The material table, which lies outside the block, is taken to answer a clock after it is
+// asked.
 module voxrt_registers_properties
   import voxrt_registers_pkg::*;
 (

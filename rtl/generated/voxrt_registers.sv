@@ -273,41 +273,62 @@ module voxrt_registers (
         automatic logic is_valid_rw;
         automatic logic is_external;
         is_external = '0;
-        is_valid_addr = '1; // No valid address check
+        is_valid_addr = '0;
         is_valid_rw = '1; // No valid RW check
         decoded_reg_strb.identity = cpuif_req_masked & (cpuif_addr == 11'h0) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h0);
         decoded_reg_strb.version = cpuif_req_masked & (cpuif_addr == 11'h4) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h4);
         decoded_reg_strb.configuration = cpuif_req_masked & (cpuif_addr == 11'h8) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h8);
         decoded_reg_strb.control = cpuif_req_masked & (cpuif_addr == 11'hc);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc);
         decoded_reg_strb.status = cpuif_req_masked & (cpuif_addr == 11'h10);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h10);
         decoded_reg_strb.size = cpuif_req_masked & (cpuif_addr == 11'h14);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h14);
         decoded_reg_strb.depth = cpuif_req_masked & (cpuif_addr == 11'h18);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h18);
         decoded_reg_strb.features = cpuif_req_masked & (cpuif_addr == 11'h1c) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h1c);
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.position[i0] = cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
+            is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.look[i0] = cpuif_req_masked & (cpuif_addr == 11'h30 + (11)'(i0) * 11'h4);
+            is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h30 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.right[i0] = cpuif_req_masked & (cpuif_addr == 11'h40 + (11)'(i0) * 11'h4);
+            is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h40 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.up[i0] = cpuif_req_masked & (cpuif_addr == 11'h50 + (11)'(i0) * 11'h4);
+            is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h50 + (11)'(i0) * 11'h4);
         end
         decoded_reg_strb.cycles = cpuif_req_masked & (cpuif_addr == 11'h60) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h60);
         decoded_reg_strb.rays = cpuif_req_masked & (cpuif_addr == 11'h64) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h64);
         decoded_reg_strb.words_read = cpuif_req_masked & (cpuif_addr == 11'h68) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h68);
         decoded_reg_strb.hits = cpuif_req_masked & (cpuif_addr == 11'h6c) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h6c);
         decoded_reg_strb.stalls = cpuif_req_masked & (cpuif_addr == 11'h70) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h70);
         decoded_reg_strb.shading = cpuif_req_masked & (cpuif_addr == 11'h74);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h74);
         decoded_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h78);
         for(int i0=0; i0<3; i0++) begin
             decoded_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
+            is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
         end
         decoded_reg_strb.materials = cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_external |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
-        decoded_err = '0;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
+        decoded_err = ~is_valid_addr & decoded_req;
         decoded_req_is_external = is_external;
     end
     logic external_wr_ack;
@@ -1065,7 +1086,7 @@ module voxrt_registers (
     end
     assign cpuif_wr_ack = external_wr_ack | (decoded_req & decoded_req_is_wr & ~decoded_req_is_external);
     // Writes are always granted with no error response
-    assign cpuif_wr_err = '0;
+    assign cpuif_wr_err = decoded_err;
 
     //--------------------------------------------------------------------------
     // Readback
@@ -1260,7 +1281,7 @@ module voxrt_registers (
             readback_data = readback_data_rt[readback_addr_rt[10:6]];
         end
         readback_done = readback_done_rt;
-        readback_err = '0;
+        readback_err = readback_err_rt;
     end
 
     always_ff @(posedge clk) begin

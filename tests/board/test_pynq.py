@@ -1,8 +1,7 @@
-"""The driver of the board, register by register, against a stand-in with the verilated core inside."""
+"""The driver of the PYNQ board against a fake of PYNQ with the verilated core inside."""
 
 from __future__ import annotations
 
-import json
 import re
 import runpy
 from dataclasses import replace
@@ -24,6 +23,7 @@ from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Camera, View, frame_world
 from voxrt.board.view_check import check_view
+from voxrt.rtl.configurations import read_configurations
 
 SIZE = (64, 48)
 RTL = Path(__file__).parents[2] / "rtl"
@@ -49,13 +49,13 @@ def core():
 def test_frames(monkeypatch, core):
     vdma = install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
-    assert device.identity.capacity == 16377  # what is mapped, in whole blocks
+    assert device.identity.capacity == 16377  # the mapped words, in whole blocks
     assert (device.identity.depth, device.identity.position_limit) == (16, 1 << 21)
     memory, model = SceneMemory(device), ModelDevice()
     for seed in (1, 2):
         scene = scene_of(seed)
-        memory.swap(scene, ignore)
-        SceneMemory(model).swap(scene, ignore)
+        memory.load(scene, ignore)
+        SceneMemory(model).load(scene, ignore)
         for size in (SIZE, (32, 24), (32, 24)):
             view = View(frame_world(3, size), size, (9, 8, 7))
             frame, expected = device.frame(view), model.frame(view)
@@ -76,21 +76,19 @@ def test_faults(monkeypatch, core):
     vdma = install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
     memory = SceneMemory(device)
-    memory.swap(scene_of(1), ignore)
+    memory.load(scene_of(1), ignore)
     view = View(Camera((-20, 5, 900), (0, 0, -90), (1, 0, 0), (0, 1, 0)), SIZE)
     good = device.frame(view).colour
-    with pytest.raises(DeviceError, match="met a direction overflow;"):
+    with pytest.raises(DeviceError, match="reports a direction overflow;"):
         device.frame(replace(view, camera=replace(view.camera, right=(32767, 0, 0), up=(32767, 0, 0))))
     device.write_memory(0, np.array([7], dtype=np.uint32))
-    with pytest.raises(DeviceError, match="met a bad pointer"):
+    with pytest.raises(DeviceError, match="reports a bad pointer"):
         device.frame(view)
     device.write_memory(0, np.array([1], dtype=np.uint32))
     with pytest.raises(Refused, match="holds 16377"):
-        memory.swap(replace(scene_of(1), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
-    with pytest.raises(DeviceError, match="an octree at word 8"):
-        device.select_scene(8, 3)
+        memory.load(replace(scene_of(1), words=np.full(16385, 0xFFFFFF01, dtype=np.uint32)), ignore)
     core.vdma_errors = 1 << 8
-    with pytest.raises(DeviceError, match="the VDMA met a line that ended too early"):
+    with pytest.raises(DeviceError, match="the VDMA reports a line that ends too early"):
         device.frame(view)
     core.vdma_errors = 0
     assert (device.frame(view).colour == good).all()
@@ -103,7 +101,7 @@ def test_faults(monkeypatch, core):
     assert (device.frame(view).colour == good).all()
     with monkeypatch.context() as patch:
         patch.setattr(vdma_module, "_SECONDS", 0.0)
-        patch.setattr(vdma, "tick", lambda: core.run(100))  # the channel lets the frame go by
+        patch.setattr(vdma, "tick", lambda: core.run(100))  # the channel writes no frame
         with pytest.raises(DeviceError, match="the VDMA did not answer"):
             device.frame(view)
     assert (device.frame(view).colour == good).all()
@@ -112,22 +110,22 @@ def test_faults(monkeypatch, core):
 def test_widths_that_the_vdma_cannot_write(monkeypatch, core):
     install(monkeypatch, core)
     device = open_pynq("voxrt.bit")
-    SceneMemory(device).swap(scene_of(1), ignore)
+    SceneMemory(device).load(scene_of(1), ignore)
     view = View(frame_world(3, SIZE), SIZE)
     check_view(view, device.identity)
     for columns in (1, 4, 44, 62, 63):
-        with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, as PYNQ"):
+        with pytest.raises(Refused, match=f"{columns} columns are no multiple of 8, which PYNQ"):
             check_view(replace(view, size=(columns, 48)), device.identity)
 
 
 def test_other_hardware(monkeypatch, core):
-    with pytest.raises(DeviceError, match="this machine has no PYNQ"):
+    with pytest.raises(DeviceError, match="this machine has no package pynq"):
         open_pynq("voxrt.bit")
     install(monkeypatch, core)
     with pytest.raises(DeviceError, match="cannot be opened"):
         open_pynq("missing")
     core.identity = 7
-    with pytest.raises(DeviceError, match="no voxrt ray tracer answers"):
+    with pytest.raises(DeviceError, match="the ray tracer does not answer"):
         open_pynq("voxrt.bit")
 
 
@@ -138,8 +136,7 @@ def test_the_block_design_has_these_names():
     for name, base in BASE.items():
         assert re.search(rf"{name}/\w+ 0x{base:08X}", design)
     mapped = int(re.search(r"memory/S_AXI 0x\w+ (\d+)K", design)[1]) << 10
-    blocks = json.loads((RTL / "configurations.json").read_text())["z1"]["BlockBits"]
-    assert mapped >= 4 * (1 + (8 << blocks))
+    assert mapped >= 4 * read_configurations()["z1"].words
 
 
 def test_the_map_is_the_generated_one():

@@ -1,10 +1,10 @@
-"""Scenes in memory: what breaks on the way leaves the old one running, at every single write."""
+"""Loading a scene: a failure at any write leaves the present scene as it is."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from fakes.device import PaintedDevice, scene, wide_scene
+from fakes.device import FakeDevice, scene, wide_scene
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,51 +18,146 @@ def ignore(_stage, _done, _total):
 
 
 def leaves(words, depth):
-    device = PaintedDevice(len(words))
+    device = FakeDevice(len(words))
     device.memory[:], device.depth = words, depth
     return device.octree()
 
 
-def test_swap_between_two_places():
-    device = PaintedDevice(capacity=72)
+def test_scenes_alternate_between_both_ends():
+    device = FakeDevice(capacity=73)
     memory = SceneMemory(device)
     roots = []
-    for blocks in (1, 2, 3, 2):
+    for blocks in (1, 2, 3, 2, 6, 8, 1):
         new = scene(blocks=blocks, material=blocks)
-        memory.swap(new, ignore)
-        assert memory.running is new
+        memory.load(new, ignore)
+        assert memory.loaded is new
         assert device.octree() == leaves(new.words, new.depth)
         roots.append(device.root)
-    assert roots == [0, 16, 40, 0]
+    # The scene of 6 blocks (49 words) fits below word 56. No scene fits beside the one of 8 blocks (65 words).
+    assert roots == [0, 56, 0, 56, 0, 0, 0]
+
+
+@given(st.lists(st.integers(1, 40), min_size=2, max_size=8), st.integers(41, 80))
+def test_two_scenes_that_fit_are_never_overwritten(sizes, blocks):
+    """Whenever both fit, all steps but the last one leave the present scene as it is and do not hold the device."""
+    device = FakeDevice(capacity=1 + 8 * blocks)
+    memory = SceneMemory(device)
+    present = None
+    for material, size in enumerate(sizes, start=1):
+        new = wide_scene(str(material), size, material)
+        if present is None or len(present.words) + len(new.words) + 7 > device.identity.capacity:
+            memory.load(new, ignore)
+        else:
+            device.calls.clear()
+            shown, root = device.octree(), device.root
+            for _ in memory.load_in_steps(new, ignore):
+                assert (device.octree(), device.root) == (shown, root)
+                assert set(device.calls) == {"write_memory"}
+            assert device.calls == ["write_memory", "write_materials", "select_scene"]
+        assert device.octree() == leaves(new.words, new.depth)
+        present = new
+
+
+def test_frames_between_the_steps_of_a_large_scene():
+    device = FakeDevice(capacity=40000)
+    memory = SceneMemory(device)
+    memory.load(wide_scene("old", 2000, material=3), ignore)
+    old = device.octree()
+    stages = []
+    for _ in memory.load_in_steps(wide_scene("new", 2500, material=4), lambda *stage: stages.append(stage)):
+        assert device.octree() == old
+    assert set(device.octree().values()) == {4}
+    starts = range(0, 20001, 4096)
+    assert stages == [(stage, start, 20001) for stage in ("write", "verify") for start in starts] + [
+        ("verify", 20001, 20001)
+    ]
+
+
+def test_scenes_that_do_not_fit_are_written_while_the_device_is_held():
+    device = FakeDevice(capacity=73)
+    memory = SceneMemory(device)
+    memory.load(scene(blocks=5), ignore)
+    device.calls.clear()
+    assert list(memory.load_in_steps(scene(blocks=6, material=2), ignore)) == []
+    assert device.calls == ["hold", "write_memory", "write_materials", "select_scene"]
+    assert set(device.octree().values()) == {2}
+
+
+@pytest.mark.parametrize("steps", range(8))
+def test_an_aborted_load_leaves_the_present_scene(steps):
+    device = FakeDevice(capacity=40000)
+    memory = SceneMemory(device)
+    old, new = wide_scene("old", 1500, material=3), wide_scene("new", 1500, material=4)
+    memory.load(old, ignore)
+    loading = memory.load_in_steps(new, ignore)
+    assert [next(loading) for _ in range(min(steps, 6))] == [None] * min(steps, 6)
+    loading.close()
+    assert memory.loaded is old
+    assert device.octree() == leaves(old.words, old.depth)
+    memory.load(new, ignore)
+    assert device.octree() == leaves(new.words, new.depth)
+
+
+@pytest.mark.parametrize("method", ["write_materials", "select_scene"])
+def test_a_failed_switch_leaves_the_present_scene(method, monkeypatch):
+    device = FakeDevice(capacity=400)
+    memory = SceneMemory(device)
+    old = scene("old", material=3)
+    memory.load(old, ignore)
+    new = Scene("new", 1, np.array([0xFFFFFF04], dtype=np.uint32), 255 - old.colours, old.mirrors)
+    works = getattr(device, method)
+    faults = [DeviceError("the bus does not answer")]
+
+    def fail_once(*values):
+        works(*values)
+        if faults:
+            raise faults.pop()
+
+    monkeypatch.setattr(device, method, fail_once)
+    with pytest.raises(DeviceError, match="the bus does not answer"):
+        memory.load(new, ignore)
+    assert memory.loaded is old
+    assert device.octree() == leaves(old.words, old.depth)
+    assert (device.colours == old.colours).all()
+
+
+def test_a_failed_first_load_leaves_empty_space():
+    device = FakeDevice(capacity=400)
+    memory = SceneMemory(device)
+    device.forget_write_at = 0
+    with pytest.raises(DeviceError, match="reads"):
+        memory.load(scene(blocks=3), ignore)
+    assert memory.loaded is None
+    assert device.octree() == {(): 0}
 
 
 @pytest.mark.parametrize("capacity", [2401 + 2201, 2 * 2401 + 16])
 @pytest.mark.parametrize("fault", ["fail_write_at", "forget_write_at"])
 @pytest.mark.parametrize("write", [0])
-def test_broken_transfer_leaves_the_old_scene(capacity, fault, write):
-    device = PaintedDevice(capacity=capacity)
+def test_a_failed_transfer_leaves_the_present_scene(capacity, fault, write):
+    device = FakeDevice(capacity=capacity)
     memory = SceneMemory(device)
     old = wide_scene("old", 300, material=3)
-    memory.swap(old, ignore)
+    memory.load(old, ignore)
     setattr(device, fault, device.writes + write)
     with pytest.raises(DeviceError):
-        memory.swap(wide_scene("new", 275, material=4), ignore)
-    assert memory.running is old
+        memory.load(wide_scene("new", 275, material=4), ignore)
+    assert memory.loaded is old
     assert device.octree() == leaves(old.words, old.depth)
-    memory.swap(wide_scene("new", 275, material=4), ignore)
+    memory.load(wide_scene("new", 275, material=4), ignore)
     assert set(device.octree().values()) == {4}
 
 
-def test_broken_at_every_write_of_a_large_scene():
+def test_a_failure_at_every_write():
     old, new = wide_scene("old", 8, material=3), wide_scene("new", 8, material=4)
     big = Scene("big", 16, np.tile(old.words, 1), old.colours, old.mirrors)
     for write in range(4):
-        device = PaintedDevice(capacity=len(old.words) + 8)
+        device = FakeDevice(capacity=len(old.words) + 8)
         memory = SceneMemory(device)
-        memory.swap(big, ignore)
+        memory.load(big, ignore)
         device.fail_write_at = device.writes + write
         try:
-            memory.swap(new, ignore)
+            memory.load(new, ignore)
         except DeviceError:
             assert set(device.octree().values()) == {3}
         else:
@@ -70,24 +165,24 @@ def test_broken_at_every_write_of_a_large_scene():
 
 
 def test_too_large_before_the_first_word():
-    device = PaintedDevice(capacity=16)
+    device = FakeDevice(capacity=16)
     memory = SceneMemory(device)
-    with pytest.raises(Refused, match="scene has 17 words and painter holds 16; build it with a smaller depth"):
-        memory.swap(scene(blocks=2), ignore)
+    with pytest.raises(Refused, match="scene has 17 words and fake holds 16; build it with a smaller depth"):
+        memory.load(scene(blocks=2), ignore)
     assert device.writes == 0
 
 
 def test_a_device_that_cannot_be_restored_says_so():
-    device = PaintedDevice(capacity=2401)
+    device = FakeDevice(capacity=2401)
     memory = SceneMemory(device)
-    memory.swap(wide_scene("old", 300), ignore)
+    memory.load(wide_scene("old", 300), ignore)
 
     def broken(_address, _words):
         raise DeviceError("the bus does not answer")
 
     device.write_memory = broken
-    with pytest.raises(DeviceError, match="and the old scene could not be restored"):
-        memory.swap(wide_scene("new", 300), ignore)
+    with pytest.raises(DeviceError, match="and the present scene could not be restored"):
+        memory.load(wide_scene("new", 300), ignore)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +193,7 @@ def test_a_device_that_cannot_be_restored_says_so():
         ([2] + [0xFFFFFF00] * 8, 3, "word 0x0 points to no block"),
         ([0] + [0xFFFFFF00] * 8, 3, "word 0x0 points to no block"),
         ([1, 0x80000001] + [0xFFFFFF00] * 7, 3, "word 0x1 is neither"),
-        ([0xFFFFFF00] * 8, 3, "8 words are not a root and blocks of 8"),
+        ([0xFFFFFF00] * 8, 3, "8 words are not a root and blocks of 8 words"),
         ([], 3, "0 words are not"),
         ([0xFFFFFF00], 0, "a depth of 0"),
         ([0xFFFFFF00], 17, "a depth of 17"),
@@ -122,7 +217,7 @@ def test_accepted_memories_are_octrees(words, depth):
 @given(st.integers(1, 6), st.integers(0, 100))
 def test_relocated(blocks, eighths):
     there = scene(blocks=blocks)
-    device = PaintedDevice(1024)
+    device = FakeDevice(1024)
     device.memory[8 * eighths : 8 * eighths + len(there.words)] = relocate(there.words, 8 * eighths)
     device.root, device.depth = 8 * eighths, there.depth
     assert device.octree() == leaves(there.words, there.depth)

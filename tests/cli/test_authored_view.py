@@ -5,9 +5,9 @@ import pytest
 
 import voxrt
 from voxrt import export
+from voxrt.board_scenes import load_scene
 from voxrt.sim import Lighting
 from voxrt.sim import render as render_frame
-from voxrt.staging import load_scene
 
 YARD = """
 [materials]

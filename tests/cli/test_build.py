@@ -65,7 +65,7 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
         assert result[key] == manifest[key], key
     assert report.words == 1 + 8 * report.blocks == len((folder / "out/house.mem").read_text().split())
     assert [material.name for material in report.materials[1:]] == ["timber", "glass", "brick", "plaster", "tiles"]
-    assert list(report.seconds) == ["load", "fit", "tint", "voxelize", "octree", "write", "preview"]
+    assert list(report.seconds) == ["load", "fit", "colour", "voxelize", "octree", "write", "preview"]
     assert report.render is not None
     assert report.render.rays == 640 * 480
     assert report.render.cycles is None
@@ -271,7 +271,7 @@ def test_profile_has_a_row_a_stage(voxrt):
     stages = [line.split()[0] for line in lines if not line.startswith(" ")]
     assert stages == ["stage", *json.loads(finished.out)["seconds"], "all"]
     first = next(i for i, line in enumerate(lines) if line.startswith("voxelize")) + 1
-    parts = ["survey", "bin", "coverage", "fill", "holes", "order", "gather"]
+    parts = ["analysis", "bin", "coverage", "fill", "holes", "order", "gather"]
     assert [line.split()[0] for line in lines[first : first + len(parts)]] == parts
 
 

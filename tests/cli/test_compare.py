@@ -18,7 +18,7 @@ def built(voxrt, folder):
 
 
 def test_a_memory_is_like_its_source(voxrt, built):
-    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt[compare] is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
     arguments = ("compare", "house.mem", "house.obj", "--size", "96x72")
     finished = voxrt(*arguments, "-o", "like.png", "--json")
     assert finished.code == 0, finished.err
@@ -35,7 +35,7 @@ def test_a_memory_is_like_its_source(voxrt, built):
 
 
 def test_a_finer_grid_is_liker(voxrt, built):
-    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt[compare] is not installed")
+    pytest.importorskip("open3d", exc_type=ImportError, reason="the extra voxrt-build[compare] is not installed")
     finished = voxrt("compare", "house.mem", "house.obj", "--size", "96x72", "--curve", "curve.png", "--json")
     assert finished.code == 0, finished.err
     curve = msgspec.json.decode(finished.out, type=CompareResult, strict=True).curve
@@ -53,4 +53,4 @@ def test_without_open3d(voxrt, monkeypatch):
     monkeypatch.setitem(sys.modules, "open3d", None)
     finished = voxrt("compare", "house.mem", "house.obj")
     assert finished.code == 5
-    assert "pip install 'voxrt[compare]'" in finished.error
+    assert "pip install 'voxrt-build[compare]'" in finished.error

@@ -48,7 +48,7 @@ def test_upload_to_a_device(voxrt):
     assert voxrt("build", "house.obj", "--depth", 4).code == 0
     finished = voxrt("upload", "house.mem", "--device", "model")
     assert (finished.code, finished.out) == (0, "")
-    assert "house.mem: runs now" in finished.err
+    assert "house.mem: loaded" in finished.err
 
 
 def test_upload_to_the_simulated_hardware(voxrt):
@@ -57,7 +57,7 @@ def test_upload_to_the_simulated_hardware(voxrt):
     for config in ("tiny", "lit"):
         finished = voxrt("upload", "house.mem", "--device", "sim", "--config", config)
         assert finished.code == 0
-        assert "house.mem: runs now" in finished.err
+        assert "house.mem: loaded" in finished.err
     for command in (("upload", "house.mem", "--device", "sim"), ("serve", "--device", "sim"), ("render", "house.mem")):
         finished = voxrt(*command, "--config", "huge")
         assert finished.code == 2
@@ -80,8 +80,8 @@ def test_a_server_for_others_wants_a_token(folder):
     [
         (["serve", "--port", "65536"], 2, "--port 65536 is not 0 to 65535"),
         (["serve", "--depth", "17"], 2, "--depth 17 is not 1 to 16"),
-        (["serve", "--device", "pynq"], 2, "--device pynq wants the ray tracer's --bitstream"),
-        (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no PYNQ"),
+        (["serve", "--device", "pynq"], 2, "--device pynq needs the ray tracer's --bitstream"),
+        (["serve", "--device", "pynq", "--bitstream", "a.bit"], 5, "this machine has no package pynq"),
         (["serve", "nothing.mem"], 3, "nothing.mem"),
         (["serve", "nothing.blob"], 3, "nothing.blob"),
         (["upload", "house.obj", "--to", "127.0.0.1:1"], 2, "is no .mem or .blob; build it first"),

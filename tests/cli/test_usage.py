@@ -45,6 +45,12 @@ import pytest
         (["render", "house.mem", "--position", "1,2,1e99999"], "out of range"),
         (["render", "house.mem", "--look", "0,0,40000"], "signed 16 bits"),
         (["render", "house.mem", "--look", "0,0,0.5"], "three whole numbers"),
+        (["core", "--config", "tiny"], "--config and --verilog need each other"),
+        (["core", "--verilog", "tiny.v"], "--config and --verilog need each other"),
+        (["core", "--path", "--config", "tiny", "--verilog", "tiny.v"], "--path excludes"),
+        (["core", "--config", "huge", "--verilog", "huge.v"], "name one of tiny, duo, quad"),
+        (["core", "--config", "tiny", "--verilog", "tiny.sv"], "ends in .v"),
+        (["core", "--config", "tiny", "--verilog", "house.mtl/tiny.v"], "house.mtl is a file, not a folder"),
     ],
 )
 def test_usage(voxrt, arguments, said):
@@ -107,7 +113,7 @@ def test_the_traceback_comes_with_debug_only(voxrt, process):
     assert finished.err.splitlines()[-1].startswith("voxrt: error: nothing.glb: no such file")
 
 
-@pytest.mark.parametrize("command", ["build", "render", "compare", "view", "convert", "info", "diff"])
+@pytest.mark.parametrize("command", ["build", "render", "compare", "view", "convert", "info", "diff", "core"])
 def test_help_has_an_example(voxrt, command):
     finished = voxrt(command, "--help")
     assert finished.code == 0

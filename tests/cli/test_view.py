@@ -18,12 +18,12 @@ SMALL = ("--size", "96x72")
 
 @pytest.fixture
 def pyvista():
-    return pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    return pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
 
 
 @pytest.fixture
 def _canvas():
-    pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
     try:
         check_screen(off_screen=True)
     except ViewerError as problem:
@@ -148,4 +148,4 @@ def test_without_pyvista(voxrt, monkeypatch, wanted):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     finished = voxrt("view", "house.obj", "--depth", "4", *wanted)
     assert finished.code == 5
-    assert "pip install 'voxrt[view]'" in finished.error
+    assert "pip install 'voxrt-build[view]'" in finished.error

@@ -1,4 +1,4 @@
-"""Headless Chromium through chromedriver's W3C WebDriver protocol, with the standard library alone."""
+"""Headless Chromium by chromedriver's W3C WebDriver protocol; it needs the standard library only."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ class Browser:
         self._call("POST", f"{self._session}/url", {"url": url})
 
     def run(self, script: str, *arguments: object) -> object:
-        """The value of a JavaScript function's body."""
+        """Run the body of a JavaScript function; return its value."""
         return self._call("POST", f"{self._session}/execute/sync", {"script": script, "args": list(arguments)})
 
     def until(self, condition: str, seconds: float = 30) -> object:
-        """Wait, inside the page, until a JavaScript expression is true; its value."""
-        # The condition stands in the script itself: the page's security policy forbids making code of text.
+        """Wait in the page until a JavaScript expression is true; return its value."""
+        # The condition is part of the script: the security policy of the page forbids eval().
         script = f"""
             const done = arguments[arguments.length - 1];
             const end = performance.now() + {seconds} * 1000;
@@ -63,7 +63,7 @@ class Browser:
         return self._call("POST", f"{self._session}/execute/async", {"script": script, "args": []})
 
     def keys(self, down: list[str], seconds: float) -> None:
-        """Hold keys down together for a while."""
+        """Press keys together for some seconds."""
         press = [{"type": "keyDown", "value": key} for key in down]
         lift = [{"type": "keyUp", "value": key} for key in down]
         actions = [*press, {"type": "pause", "duration": int(seconds * 1000)}, *lift]
@@ -89,7 +89,7 @@ class Browser:
         return base64.b64decode(self._call("GET", f"{self._session}/screenshot"))
 
     def faults(self) -> list[str]:
-        """What the page's console called severe."""
+        """The severe messages of the console."""
         log = self._call("POST", f"{self._session}/se/log", {"type": "browser"})
         return [entry["message"] for entry in log if entry["level"] == "SEVERE"]
 

@@ -1,4 +1,4 @@
-"""A device and scenes for tests: a painter in NumPy whose picture says which memory, camera and view it was made of."""
+"""A fake device and scenes for tests; the pixels tell the memory, the camera and the number of the frame."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CAPACITY = 4096
 
 
 def scene(name: str = "scene", blocks: int = 1, material: int = 1, **fields) -> Scene:
-    """A chain of `blocks` blocks: octant 0 of each leads to the next, the others hold `material`."""
+    """A chain of `blocks` blocks: octant 0 of each is a pointer to the next, the others hold `material`."""
     words = np.full(1 + 8 * blocks, 0xFFFFFF00 | material, dtype=np.uint32)
     for block in range(blocks):
         words[0 if block == 0 else 1 + 8 * (block - 1)] = 1 + 8 * block
@@ -24,7 +24,7 @@ def scene(name: str = "scene", blocks: int = 1, material: int = 1, **fields) -> 
 
 
 def wide_scene(name: str, blocks: int, material: int = 1) -> Scene:
-    """A scene of many blocks and three levels, for filling memories: the first block leads to up to 8, those to 64."""
+    """A scene of many blocks and three levels: the first block has up to 8 pointers, its children up to 64."""
     words = np.full(1 + 8 * blocks, 0xFFFFFF00 | material, dtype=np.uint32)
     words[0] = 1
     for block in range(1, blocks):
@@ -33,11 +33,11 @@ def wide_scene(name: str, blocks: int, material: int = 1) -> Scene:
     return Scene(name, 16, words, base.colours, base.mirrors)
 
 
-class PaintedDevice:
-    """Paints (material of the root's octant 1, camera's x, frame count); fails when told to."""
+class FakeDevice:
+    """All pixels are (material of the root's octant 1, camera's x, number of the frame). Faults can be set."""
 
     def __init__(self, capacity: int = CAPACITY, size: tuple[int, int] = (64, 48), **identity) -> None:
-        self.identity = Identity("painter", "1", capacity, 16, size, 1 << 20, **identity)
+        self.identity = Identity("fake", "1", capacity, 16, size, 1 << 20, **identity)
         self.memory = np.zeros(capacity, dtype=np.uint32)
         self.colours = np.zeros((256, 3), dtype=np.uint8)
         self.root = self.depth = 0
@@ -50,11 +50,16 @@ class PaintedDevice:
         self.may_finish.set()
         self.busy = threading.Lock()
         self.writes = 0
+        self.calls = []  # names of the methods that changed something, in order
 
     def registers(self):
         return {"root": self.root, "depth": self.depth, "frames": self.frames}
 
+    def hold(self):
+        self.calls.append("hold")
+
     def write_memory(self, address, words):
+        self.calls.append("write_memory")
         assert 0 <= address <= address + len(words) <= self.identity.capacity
         if self.writes == self.fail_write_at:
             self.fail_write_at = None
@@ -69,13 +74,15 @@ class PaintedDevice:
         return self.memory[address : address + count].copy()
 
     def write_materials(self, colours, _mirrors):
+        self.calls.append("write_materials")
         self.colours = colours.copy()
 
     def select_scene(self, root, depth):
+        self.calls.append("select_scene")
         self.root, self.depth = root, depth
 
     def octree(self):
-        """What a ray tracer would read: every word that the root reaches, by path."""
+        """The material of every leaf that the root reaches, by its path of octants."""
         found, paths = {}, [((), self.root)]
         while paths:
             path, address = paths.pop()
@@ -94,6 +101,7 @@ class PaintedDevice:
             if self.fail_frames:
                 raise DeviceError("the lanes hang")
             self.frames += 1
+            self.calls.append("frame")
             word = int(self.memory[self.root])
             material = word & 0xFF if word >> 31 else int(self.memory[word + 1]) & 0xFF
             colour = np.empty((view.size[1], view.size[0], 3), dtype=np.uint8)

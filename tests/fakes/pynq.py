@@ -1,9 +1,9 @@
-"""A stand-in for a PYNQ board: `pynq`'s classes as their documents have them, around the verilated core.
+"""A fake PYNQ board: the classes of `pynq` as documented, around the verilated core.
 
-Names and addresses are those of rtl/vivado/build.tcl. Registers, scene memory and video are the core's own pins. The
-VDMA between its stream and the processor's memory is a model of the write channel of PG020: it needs what the
-programming sequence there demands, in its order, lines and addresses that are whole words of a 64-bit bus, and tells a
-frame by its status bit. The core's clock ticks with every access, as a board's would between two of them.
+Names and addresses are those of rtl/vivado/build.tcl. Registers, scene memory and video are the pins of the core. The
+VDMA is a model of the write channel of PG020. It checks the programming sequence of that document, and that lines and
+addresses are whole words of a 64-bit bus. It reports a frame by its status bit. Every access advances the clock of the
+core.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from functools import partial
 import numpy as np
 
 BASE = {"core": 0x43C00000, "memory": 0x42000000, "vdma": 0x43000000}
-CLOCKS_AN_ACCESS = 2000
-FRAME_CAME, LINE_TOO_EARLY = 1 << 12, 1 << 8
+CLOCKS_PER_ACCESS = 2000
+FRAME_DONE, LINE_TOO_EARLY = 1 << 12, 1 << 8
 
 
 class Vdma:
-    """The write channel's registers, and memory that it can reach."""
+    """The registers of the write channel, and the memory that it can write."""
 
     def __init__(self, core):
         self.core = core
@@ -28,7 +28,7 @@ class Vdma:
         self.halt()
 
     def halt(self):
-        self.control, self.status = 0x00010002, 1  # one frame an interrupt, circular; halted
+        self.control, self.status = 0x00010002, 1  # one frame per interrupt, circular; halted
         self.buffers, self.stride, self.row_bytes, self.rows = [0, 0, 0], 0, 0, 0
         self.waits = False
 
@@ -66,26 +66,26 @@ class Vdma:
         self.waits = True
 
     def tick(self):
-        """Let the core work; a frame that is complete goes into memory, and the channel waits for the next."""
-        if self.core.hangs or not self.core.run(CLOCKS_AN_ACCESS) or not self.waits:
+        """Advance the core; write a complete frame to memory, and wait for the next."""
+        if self.core.hangs or not self.core.run(CLOCKS_PER_ACCESS) or not self.waits:
             return
         buffer = self.memory[self.buffers[0]].reshape(-1)
         for row, line in enumerate(self.core.frame()):
             buffer[row * self.stride : row * self.stride + self.row_bytes] = line.reshape(-1)
-        self.status |= FRAME_CAME | self.core.vdma_errors
+        self.status |= FRAME_DONE | self.core.vdma_errors
         self.arm()
 
 
 class Core:
-    """The verilated core, with faults to order."""
+    """The verilated core, with faults that tests can set."""
 
     def __init__(self, config="tiny"):
-        from voxrt.sim._rtl import PixelGenerator
+        from voxrt.sim._rtl import Core
 
-        self._core = PixelGenerator(config)
-        self.hangs = False  # its clock stands
+        self._core = Core(config)
+        self.hangs = False  # its clock stops
         self.vdma_errors = 0
-        self.identity = None  # another one's
+        self.identity = None  # that of other hardware
         for name in ("expect", "run", "frame", "read_memory", "write_memory", "memory_words"):
             setattr(self, name, getattr(self._core, name))
 
@@ -97,7 +97,7 @@ class Core:
 
 
 class PortArray(np.ndarray):
-    """MMIO's array of the memory: reading and writing it reads and writes the core's."""
+    """The array of MMIO: reads and writes go to the memory of the core."""
 
     def __getitem__(self, key):
         start, stop, step = key.indices(len(self))
@@ -142,7 +142,7 @@ class Mmio:
 
 
 class Board:
-    """What an overlay finds, and memory that the VDMA can write."""
+    """The parts that an overlay finds, and the memory that the VDMA can write."""
 
     def __init__(self, core, memory_bytes):
         self.core, self.vdma = core, Vdma(core)
@@ -166,14 +166,14 @@ class Board:
 
 class PynqBuffer(np.ndarray):
     def invalidate(self):
-        """Nothing is cached here."""
+        """Do nothing: there is no cache."""
 
     def freebuffer(self):
         del self.memory[self.physical_address]
 
 
 def install(monkeypatch, core, memory_bytes=0x10000):
-    """Put a `pynq` with this core in its overlay where imports find it; its VDMA."""
+    """Make `import pynq` find a fake with this core in its overlay; return its VDMA."""
     board = Board(core, memory_bytes)
     module = types.SimpleNamespace(Overlay=board.overlay, MMIO=partial(Mmio, board), allocate=board.allocate)
     monkeypatch.setitem(sys.modules, "pynq", module)

@@ -1,4 +1,4 @@
-"""Connections of strangers, opened and gone without a trace."""
+"""TCP connections without a protocol."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import contextlib
 
 
 @contextlib.asynccontextmanager
-async def stranger(port):
-    """A TCP connection to this machine; hung up, and awaited until it is gone, at the end."""
+async def raw_connection(port):
+    """A TCP connection to this machine; at the end it is aborted, and awaited until it is closed."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         yield reader, writer
@@ -19,7 +19,7 @@ async def stranger(port):
 
 
 async def ended(reader):
-    """Whether the other side hangs up without another word."""
+    """Whether the other side closes the connection without sending anything."""
     try:
         return await reader.read() == b""
     except ConnectionError:

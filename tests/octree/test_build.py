@@ -131,7 +131,7 @@ def test_the_sound_brick_builds():
         ({"brick_codes": np.array([1], np.uint64)}, "the brick arrays differ in length"),
         ({"brick_masks": np.zeros((2, 8), np.uint64)}, "brick 0: is empty"),
         ({"brick_materials": np.array([0, 2], np.uint8)}, "brick 0: has neither a material nor a row"),
-        ({"brick_rows": np.array([0, -1], np.int32)}, "brick 0: points behind the last row"),
+        ({"brick_rows": np.array([0, -1], np.int32)}, "brick 0: refers to a row of cells that is not there"),
         (
             {"brick_rows": np.array([0, -1], np.int32), "cells": np.ones((1, 512), np.uint8)},
             "brick 0: has cells that contradict its mask",

@@ -115,7 +115,7 @@ def test_as_the_model(config, seed):
         got = design.render(
             camera, width, height, depth, MATERIALS, stall_seed=int(rng.integers(2) * rng.integers(2**32)), **shading
         )
-        assert_equal(got, expected["colour"], expected["material"], expected["face"], (camera, shading))
+        assert_equal(got, expected.colour, expected.material, expected.face, (camera, shading))
 
 
 def room():
@@ -230,7 +230,7 @@ def test_the_deepest_world_and_the_farthest_mirrors(config):
         shading = PLAIN | {"bounces": 15, "mirrors": flags(2, 3)}
         expected = model.render(MATERIALS, camera, 24, 16, **shading)
         got = design.render(camera, 24, 16, depth, MATERIALS, **shading)
-        assert_equal(got, expected["colour"], expected["material"], expected["face"], config)
+        assert_equal(got, expected.colour, expected.material, expected.face, config)
         assert (got["material"] > 0).mean() > 0.3
 
 

@@ -1,4 +1,4 @@
-"""The board's reader of blobs, against a writer that spells them by hand, and against every damage."""
+"""The reader of blobs, against a writer of the tests, and against damaged blobs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fakes.device import scene
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting
 from voxrt.serve.blob import read_blob
-from voxrt.serve.scene_files import BoardReader
+from voxrt.serve.scene_files import MemoryReader
 
 MADE = scene("föhn", blocks=3)
 SECTIONS = {
@@ -28,7 +28,7 @@ SECTIONS = {
 }  # fmt: skip
 
 
-def spell(sections):
+def encode(sections):
     table, body = b"", b""
     start = 24 + 16 * len(sections)
     for name, data in sections.items():
@@ -38,21 +38,21 @@ def spell(sections):
 
 
 def test_blob():
-    read = BoardReader()({"any.name": spell(SECTIONS)}, lambda *_: None)
+    read = MemoryReader()({"any.name": encode(SECTIONS)}, lambda *_: None)
     assert (read.name, read.depth, read.background) == ("föhn", 3, (1, 2, 3))
     assert (read.words == MADE.words).all()
     assert read.colours[1].tolist() == [200, 100, 50]
     assert np.flatnonzero(read.mirrors).tolist() == [1]
     assert read.camera == Camera((-16, 32, 48), (0, 0, -90), (1, 0, 0), (0, 1, 0))
     assert read.lighting == Lighting((1, -2, 3), 40, on=True, bounces=2)
-    bare = read_blob(spell({name: SECTIONS[name] for name in (b"NAME", b"WRLD", b"MATL", b"WORD")}))
+    bare = read_blob(encode({name: SECTIONS[name] for name in (b"NAME", b"WRLD", b"MATL", b"WORD")}))
     assert (bare.camera, bare.lighting) == (None, None)
 
 
 @pytest.mark.parametrize("name", [b"NAME", b"WRLD", b"MATL", b"WORD"])
 def test_missing_sections(name):
     with pytest.raises(Refused, match=f"no section {name.decode()}"):
-        read_blob(spell({key: data for key, data in SECTIONS.items() if key != name}))
+        read_blob(encode({key: data for key, data in SECTIONS.items() if key != name}))
 
 
 @pytest.mark.parametrize(
@@ -69,12 +69,12 @@ def test_missing_sections(name):
     ],
 )
 def test_other_layouts(name, data):
-    with pytest.raises(Refused, match="another layout"):
-        read_blob(spell({**SECTIONS, name: data}))
+    with pytest.raises(Refused, match="do not have the layout of version 1"):
+        read_blob(encode({**SECTIONS, name: data}))
 
 
 def test_every_flipped_bit_and_every_cut():
-    blob = spell(SECTIONS)
+    blob = encode(SECTIONS)
     padding = len(blob)
     for at in range(padding):
         with pytest.raises(Refused):
@@ -85,7 +85,7 @@ def test_every_flipped_bit_and_every_cut():
             read = read_blob(bytes(flipped))
         except Refused:
             continue
-        # Between sections there is room that means nothing.
+        # The bytes between sections have no meaning.
         assert (read.words == MADE.words).all()
         assert read.camera == Camera((-16, 32, 48), (0, 0, -90), (1, 0, 0), (0, 1, 0))
     with pytest.raises(Refused, match="version 2"):

@@ -12,12 +12,13 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
+from voxrt.board_scenes import AssetReader, board_scene
 from voxrt.export import Blob, write_rom
 from voxrt.octree import Octree, Rom
-from voxrt.serve.server import FrameServer, Listening
-from voxrt.serve.show import Program
+from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.server import FrameServer
+from voxrt.serve.server_options import ServerOptions
 from voxrt.sim import look_at, pixel_directions
-from voxrt.staging import BuildingReader, board_scene
 from voxrt.voxelize import Material
 
 PIXELS = """
@@ -40,9 +41,9 @@ def serving(scene, port=0):
 
     async def serve():
         kept["stop"] = asyncio.Event()
-        program = Program(BuildingReader(depth=4), {scene.name: lambda: scene})
-        async with FrameServer(ModelDevice(), program, Listening(port=port)) as server:
-            await server.show.stage.put_on(scene, lambda *_: None)
+        library = SceneLibrary(AssetReader(depth=4), {scene.name: lambda: scene})
+        async with FrameServer(ModelDevice(), library, ServerOptions(port=port)) as server:
+            await server.session.renderer.load(scene, lambda *_: None)
             kept["server"] = server
             ready.set()
             await kept["stop"].wait()
@@ -66,7 +67,7 @@ def picture(browser):
 
 def shown(server, browser):
     """Whether the canvas comes to hold exactly the frame that the model renders of the server's view."""
-    view, scene = server.show.stage.view, server.show.stage.scene
+    view, scene = server.session.renderer.view, server.session.renderer.scene
     device = ModelDevice()
     device.write_memory(0, scene.words)
     device.write_materials(scene.colours, scene.mirrors)
@@ -83,14 +84,14 @@ def test_page(tmp_path):
         assert browser.until("document.querySelector('#steering').innerText === 'you steer'")
         assert browser.until(still)
         assert shown(server, browser)
-        before = server.show.stage.view.camera
+        before = server.session.renderer.view.camera
 
         # A turned head turns right and up too: right-handed, square, at the largest scale.
         browser.run("document.querySelector('#picture').focus()")
         browser.keys(["\ue012"], 0.3)  # left arrow
         browser.keys(["w"], 0.3)
         assert browser.until(still)
-        camera = server.show.stage.view.camera
+        camera = server.session.renderer.view.camera
         assert camera != before
         look, right, up = (np.array(triple, dtype=float) for triple in (camera.look, camera.right, camera.up))
         cosines = [a @ b / np.linalg.norm(a) / np.linalg.norm(b) for a, b in ((look, right), (look, up), (right, up))]
@@ -126,8 +127,8 @@ def test_page(tmp_path):
             "const c = document.querySelector('#background'); c.value = '#204060'; c.dispatchEvent(new Event('input'))"
         )
         assert browser.until(still)
-        assert server.show.stage.view.background == (0x20, 0x40, 0x60)
-        assert server.show.stage.view.lighting.features == {"flat"}
+        assert server.session.renderer.view.background == (0x20, 0x40, 0x60)
+        assert server.session.renderer.view.lighting.features == {"flat"}
         assert shown(server, browser)
         assert browser.faults() == []
 

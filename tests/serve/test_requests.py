@@ -1,4 +1,4 @@
-"""Messages of viewers: what is right is read, all else is refused in one line, and nothing else ever happens."""
+"""Messages of clients: correct ones are read, all others are refused in one line."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from voxrt.board.device import Counters, Frame
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera
 from voxrt.serve.packets import Chunk, FramePacket, pack_chunk, pack_frame, unpack_chunk, unpack_frame
-from voxrt.serve.requests import Take, Upload, UploadedFile, ViewChange, read_request, request_number
+from voxrt.serve.requests import ChangeView, StartUpload, TakeControl, UploadedFile, read_request, request_number
 
 CAMERA = {"position": [-160, 0, 16], "look": [0, 0, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
 
 
 def test_requests():
-    assert read_request('{"type": "take", "request": 7}') == (7, Take())
+    assert read_request('{"type": "take", "request": 7}') == (7, TakeControl())
     change = {"type": "view", "camera": CAMERA, "features": ["flat"], "nonstop": True}
     assert read_request(json.dumps(change)) == (
         0,
-        ViewChange(
+        ChangeView(
             camera=Camera((-160, 0, 16), (0, 0, -90), (1, 0, 0), (0, 1, 0)), features=frozenset({"flat"}), nonstop=True
         ),
     )
     upload = {"type": "upload", "files": [{"name": "a.mem", "size": 9, "crc32": 1}], "check_only": True}
-    assert read_request(json.dumps(upload)) == (0, Upload((UploadedFile("a.mem", 9, 1),), check_only=True))
+    assert read_request(json.dumps(upload)) == (0, StartUpload((UploadedFile("a.mem", 9, 1),), check_only=True))
 
 
 @pytest.mark.parametrize(
@@ -39,11 +39,11 @@ def test_requests():
         ("", "no JSON"),
         ("[" * 100000, "no JSON"),
         ("[]", "no JSON object"),
-        ('{"type": "fly"}', "'fly' is no type of message; there are cancel, counters"),
-        ('{"type": ["take"]}', "is no type of message"),
+        ('{"type": "fly"}', "'fly' is no type of request; there are cancel, counters"),
+        ('{"type": ["take"]}', "is no type of request"),
         ('{"type": "take", "request": -1}', "request -1 is not a whole number from 0"),
         ('{"type": "take", "request": true}', "request True"),
-        ('{"type": "take", "now": 1}', "take has no field 'now'"),
+        ('{"type": "take", "now": 1}', "the request take has no field 'now'"),
         ('{"type": "view", "background": [0, 0, 256]}', "background 256 is not a whole number from 0 to 255"),
         ('{"type": "view", "background": [0, 0]}', "background is not three numbers"),
         ('{"type": "view", "camera": {}}', "camera is not {position, look, right, up}"),
@@ -86,14 +86,14 @@ def test_any_text(text):
 
 
 def test_frame_layout():
-    """Field by field as docs/protocol.md has it."""
+    """Every field of docs/protocol.md."""
     colour = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
     message = pack_frame(FramePacket(5, 6, 7, 8, Frame(colour, Counters(6, 2**40, None, 0.0125))))
     assert struct.unpack_from("<4sHHHH", message) == (b"VXFR", 56, 3, 2, 0)
     assert struct.unpack_from("<7I2Q", message, 12) == (5, 18, 6, 7, 8, 6, 12500, 2**64 - 1, 2**40)
     assert message[56:] == bytes(range(18))
     back = unpack_frame(message)
-    assert (back.sequence, back.scene, back.viewer, back.request) == (5, 6, 7, 8)
+    assert (back.sequence, back.scene, back.client, back.request) == (5, 6, 7, 8)
     assert back.frame.counters == Counters(6, 2**40, None, 0.0125)
     assert (back.frame.colour == colour).all()
     for broken in (message[:-1], message + b"x", message[:20], b"", b"VXFRUIT" * 12):

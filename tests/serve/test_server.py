@@ -1,4 +1,4 @@
-"""The frame server as viewers meet it: over real sockets, on loopback."""
+"""The frame server over real sockets on loopback."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from contextlib import asynccontextmanager
 
 import numpy as np
 import pytest
-from fakes.device import PaintedDevice, scene
-from fakes.sockets import ended, stranger
+from fakes.device import FakeDevice, scene
+from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
 from voxrt.board.errors import Refused
-from voxrt.serve.admission import Limits
-from voxrt.serve.client import visit
-from voxrt.serve.clients import Viewer
+from voxrt.serve.clients import Client
+from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT, Chunk, pack_chunk
-from voxrt.serve.scene_files import BoardReader
-from voxrt.serve.server import FrameServer, Listening
-from voxrt.serve.show import Program
+from voxrt.serve.scene_files import MemoryReader
+from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.server import FrameServer
+from voxrt.serve.server_options import Limits, ServerOptions
 
 CAMERA = {"position": [80, 0, 0], "look": [0, 0, -90], "right": [1, 0, 0], "up": [0, 1, 0]}
 
@@ -41,17 +41,18 @@ def mem_files(made, name=None):
 
 
 @asynccontextmanager
-async def served(device=None, running=None, library=None, reader=None, **listening):
-    device = device or PaintedDevice()
-    async with FrameServer(device, Program(reader or BoardReader(), library or {}), Listening(**listening)) as server:
-        if running is not None:
-            await server.show.stage.put_on(running, ignore)
+async def served(device=None, loaded=None, scenes=None, reader=None, **options):
+    device = device or FakeDevice()
+    library = SceneLibrary(reader or MemoryReader(), scenes or {})
+    async with FrameServer(device, library, ServerOptions(**options)) as server:
+        if loaded is not None:
+            await server.session.renderer.load(loaded, ignore)
         yield server
     assert device.closed
 
 
 async def frame_where(client, condition):
-    while not condition(packet := await client.frame()):
+    while not condition(packet := await client.next_frame()):
         pass
     return packet
 
@@ -60,132 +61,136 @@ def pixel(packet):
     return tuple(packet.frame.colour[0, 0].tolist())
 
 
-def test_visit(run):
-    async def visiting():
-        async with served(running=scene(material=5)) as server, visit(server.url) as client:
+def test_client(run):
+    async def check():
+        async with served(loaded=scene(material=5)) as server, open_client(server.url) as client:
             assert client.hello["protocol"] == 1
             assert client.hello["device"]["capacity"] == 4096
-            packet = await client.frame()
+            packet = await client.next_frame()
             assert packet.frame.colour.shape == (48, 64, 3)
             assert pixel(packet)[0] == 5
             assert (packet.frame.counters.cycles, packet.frame.counters.words_read) == (11, 7)
             with pytest.raises(Refused, match="take control first"):
-                await client.ask("view", camera=CAMERA)
-            await client.take()
+                await client.request("view", camera=CAMERA)
+            await client.take_control()
             request = await client.send("view", camera=CAMERA, size=[32, 16])
             packet = await frame_where(client, lambda packet: packet.request == request)
             assert packet.frame.colour.shape == (16, 32, 3)
-            assert (pixel(packet)[1], packet.viewer) == (80, client.hello["viewer"])
-            assert (await client.ask("registers"))["registers"]["depth"] == 1
-            counters = (await client.ask("counters"))["counters"]
+            assert (pixel(packet)[1], packet.client) == (80, client.hello["viewer"])
+            assert (await client.request("registers"))["registers"]["depth"] == 1
+            counters = (await client.request("counters"))["counters"]
             assert counters["viewers"] == 1
             assert counters["frames"] >= 2
 
-    run(visiting())
+    run(check())
 
 
 @pytest.mark.parametrize(
     ("fields", "problem"),
     [
-        ({"size": [65, 48]}, "65x48 pixels are more than painter has: 64x48"),
-        ({"features": ["mirrors"]}, "painter has no mirrors"),
-        ({"camera": {**CAMERA, "position": [1 << 20, 0, 0]}}, "the camera stands more than 65536 voxels"),
+        ({"size": [65, 48]}, "65x48 pixels are more than fake renders: 64x48"),
+        ({"features": ["mirrors"]}, "fake has no mirrors"),
+        ({"camera": {**CAMERA, "position": [1 << 20, 0, 0]}}, "the camera is more than 65536 voxels"),
         ({"camera": {**CAMERA, "right": [32767, 0, 0], "up": [32767, 0, 0]}}, "directions reach 1802185"),
         ({"bounces": 16}, "bounces 16"),
     ],
 )
 def test_views_out_of_range(run, fields, problem):
-    async def visiting():
-        async with served(running=scene()) as server, visit(server.url) as client:
-            await client.take()
-            before = server.show.stage.view
+    async def check():
+        async with served(loaded=scene()) as server, open_client(server.url) as client:
+            await client.take_control()
+            before = server.session.renderer.view
             with pytest.raises(Refused, match=problem):
-                await client.ask("view", **fields)
-            assert server.show.stage.view == before
+                await client.request("view", **fields)
+            assert server.session.renderer.view == before
 
-    run(visiting())
+    run(check())
 
 
 def test_control_passes(run):
-    async def visiting():
-        async with served(running=scene()) as server, visit(server.url) as first, visit(server.url) as second:
-            await first.take()
-            assert not (await second.ask("take"))["granted"]
+    async def check():
+        async with (
+            served(loaded=scene()) as server,
+            open_client(server.url) as first,
+            open_client(server.url) as second,
+        ):
+            await first.take_control()
+            assert not (await second.request("take"))["granted"]
             with pytest.raises(Refused, match="take control"):
-                await second.ask("view", camera=CAMERA)
-            await first.ask("release")
-            await second.ask("view", camera=CAMERA)
+                await second.request("view", camera=CAMERA)
+            await first.request("release")
+            await second.request("view", camera=CAMERA)
             with pytest.raises(Refused, match="take control"):
-                await first.ask("view", camera=CAMERA)
-        async with served(running=scene()) as server, visit(server.url) as waiting:
-            async with visit(server.url) as leaving:
-                await leaving.take()
-                assert not (await waiting.ask("take"))["granted"]
-            while server.show.handover.controller != waiting.hello["viewer"]:
-                await waiting.ask("counters")
+                await first.request("view", camera=CAMERA)
+        async with served(loaded=scene()) as server, open_client(server.url) as waiting:
+            async with open_client(server.url) as leaving:
+                await leaving.take_control()
+                assert not (await waiting.request("take"))["granted"]
+            while server.session.control.controller != waiting.hello["viewer"]:
+                await waiting.request("counters")
 
-    run(visiting())
+    run(check())
 
 
 def test_frames_come_when_something_changed_and_only_complete(run):
-    async def visiting():
-        device = PaintedDevice()
-        async with served(device, scene()) as server, visit(server.url) as client:
-            await client.take()
-            await client.frame()
+    async def check():
+        device = FakeDevice()
+        async with served(device, scene()) as server, open_client(server.url) as client:
+            await client.take_control()
+            await client.next_frame()
             still = device.frames
             for _ in range(20):
-                await client.ask("counters")
+                await client.request("counters")
             assert device.frames == still
             device.may_finish.clear()
             request = await client.send("view", camera=CAMERA)
             for _ in range(20):
-                await client.ask("counters")
-            assert server.show.stage.frames == still  # one has begun, none is sent
+                await client.request("counters")
+            assert server.session.renderer.frames == still  # one has begun, none is sent
             device.may_finish.set()
             await frame_where(client, lambda packet: packet.request == request)
-            await client.ask("view", nonstop=True)
-            numbers = [(await client.frame()).sequence for _ in range(10)]
+            await client.request("view", nonstop=True)
+            numbers = [(await client.next_frame()).sequence for _ in range(10)]
             assert numbers == sorted(set(numbers))
 
-    run(visiting())
+    run(check())
 
 
 def test_upload(run):
-    async def visiting():
-        device = PaintedDevice()
-        async with served(device, scene(material=5)) as server, visit(server.url) as client:
-            await client.take()
+    async def check():
+        device = FakeDevice()
+        async with served(device, scene(material=5)) as server, open_client(server.url) as client:
+            await client.take_control()
             stages = []
             new = scene("new", blocks=3, material=6)
             checked = await client.upload(mem_files(new), lambda stage, _d, _t: stages.append(stage), check_only=True)
             assert checked["scene"]["crc32"] == new.crc32
-            assert server.show.stage.scene.name == "scene"
+            assert server.session.renderer.scene.name == "scene"
             done = await client.upload(mem_files(new), lambda stage, _d, _t: stages.append(stage))
             assert done["scene"] == {"name": "new", "depth": 3, "words": 25, "crc32": new.crc32}
             assert set(stages) == {"send", "read", "write", "verify"}
             packet = await frame_where(client, lambda packet: packet.scene == 2)
             assert pixel(packet)[0] == 6
 
-    run(visiting())
+    run(check())
 
 
 def test_uploads_that_break_leave_the_old_scene(run):
-    async def visiting():
-        device = PaintedDevice(capacity=40)
+    async def check():
+        device = FakeDevice(capacity=40)
         old = scene("old", material=5)
-        async with served(device, old) as server, visit(server.url) as client:
-            await client.take()
+        async with served(device, old) as server, open_client(server.url) as client:
+            await client.take_control()
 
             async def refused(files, problem):
                 with pytest.raises(Refused, match=problem):
                     await client.upload(files, ignore)
-                assert server.show.stage.scene is old
+                assert server.session.renderer.scene is old
 
             new = scene("new", blocks=2)
-            await refused(mem_files(scene("big", blocks=6)), "49 words and painter holds 40")
-            await refused({"new.mem": mem_files(new)["new.mem"]}, "not a .mem with the .json")
-            await refused({"new.txt": b"?"}, "not a .mem with the .json")
+            await refused(mem_files(scene("big", blocks=6)), "49 words and fake holds 40")
+            await refused({"new.mem": mem_files(new)["new.mem"]}, "neither a blob nor a .mem with its .json")
+            await refused({"new.txt": b"?"}, "neither a blob nor a .mem with its .json")
             await refused({**mem_files(new), "new.mem": b"FFFFFF01\n"}, "describes another new.mem")
             await refused({**mem_files(new), "new.json": b"{"}, "is no manifest")
             device.fail_write_at = device.writes
@@ -200,92 +205,92 @@ def test_uploads_that_break_leave_the_old_scene(run):
                 (b"VXCH", "no chunk"),
                 (b"", "no chunk"),
             ):
-                ready = await client.ask("upload", files=files)
+                ready = await client.request("upload", files=files)
                 await client._connection.send(pack_chunk(Chunk(ready["upload"], 1, b"x")) if chunk is None else chunk)
                 with pytest.raises(Refused, match=problem):
                     await client._answer(ready["request"])
-            ready = await client.ask("upload", files=files)
+            ready = await client.request("upload", files=files)
             await client._connection.send(pack_chunk(Chunk(ready["upload"], 0, b"FFFFFF01")))
             with pytest.raises(Refused, match=r"new\.mem was damaged"):
                 await client._answer(ready["request"])
-            ready = await client.ask("upload", files=files)
-            await client.ask("cancel")
+            ready = await client.request("upload", files=files)
+            await client.request("cancel")
             await client._connection.send(pack_chunk(Chunk(ready["upload"], 0, b"FFFFFF01")))
-            with pytest.raises(Refused, match="more than the"):
-                await client.ask("upload", files=[{"name": "new.mem", "size": 1 << 39, "crc32": 0}])
+            with pytest.raises(Refused, match="more than the limit"):
+                await client.request("upload", files=[{"name": "new.mem", "size": 1 << 39, "crc32": 0}])
             await client.upload(mem_files(new), ignore)
-            assert server.show.stage.scene.name == "new"
+            assert server.session.renderer.scene.name == "new"
 
-    run(visiting())
+    run(check())
 
 
 def test_a_controller_that_leaves_in_the_middle(run):
-    async def visiting():
+    async def check():
         old = scene("old", material=5)
-        async with served(running=old) as server, visit(server.url) as witness:
-            async with visit(server.url) as client:
-                await client.take()
-                ready = await client.ask("upload", files=[{"name": "new.mem", "size": CHUNK_LIMIT + 1, "crc32": 0}])
+        async with served(loaded=old) as server, open_client(server.url) as witness:
+            async with open_client(server.url) as client:
+                await client.take_control()
+                ready = await client.request("upload", files=[{"name": "new.mem", "size": CHUNK_LIMIT + 1, "crc32": 0}])
                 await client._connection.send(pack_chunk(Chunk(ready["upload"], 0, bytes(CHUNK_LIMIT))))
-            await witness.frame()
-            while (await witness.ask("counters"))["counters"]["viewers"] > 1:
+            await witness.next_frame()
+            while (await witness.request("counters"))["counters"]["viewers"] > 1:
                 pass
-            assert server.show.stage.scene is old
-            await witness.take()
+            assert server.session.renderer.scene is old
+            await witness.take_control()
             await witness.upload(mem_files(scene("new")), ignore)
 
-    run(visiting())
+    run(check())
 
 
 def test_control_lost_while_a_scene_is_made(run):
-    async def visiting():
+    async def check():
         reading, may_read = asyncio.Event(), asyncio.Event()
         loop = asyncio.get_running_loop()
 
-        class SlowReader(BoardReader):
+        class SlowReader(MemoryReader):
             def __call__(self, files, progress):
                 loop.call_soon_threadsafe(reading.set)
                 asyncio.run_coroutine_threadsafe(may_read.wait(), loop).result()
                 return super().__call__(files, progress)
 
-        async with served(running=scene(), reader=SlowReader()) as server, visit(server.url) as client:
-            await client.take()
+        async with served(loaded=scene(), reader=SlowReader()) as server, open_client(server.url) as client:
+            await client.take_control()
             upload = asyncio.create_task(client.upload(mem_files(scene("new")), ignore))
             await reading.wait()
-            server.show.handover.leave(client.hello["viewer"])
+            server.session.control.release(client.hello["viewer"])
             may_read.set()
-            with pytest.raises(Refused, match="control passed to another viewer"):
+            with pytest.raises(Refused, match="another viewer took control"):
                 await upload
-            assert server.show.stage.scene.name == "scene"
+            assert server.session.renderer.scene.name == "scene"
 
-    run(visiting())
+    run(check())
 
 
 def test_library(run):
-    async def visiting():
-        library = {"a": lambda: scene("a", material=6)}
-        async with served(running=scene(), library=library) as server, visit(server.url) as client:
+    async def check():
+        scenes = {"a": lambda: scene("a", material=6)}
+        async with served(loaded=scene(), scenes=scenes) as server, open_client(server.url) as client:
             assert client.hello["scenes"] == ["a"]
-            await client.take()
+            await client.take_control()
             number = await client.send("show", scene="a")
             while (await client._answer(number))["type"] != "done":
                 pass
-            assert server.show.stage.scene.name == "a"
+            assert server.session.renderer.scene.name == "a"
             number = await client.send("show", scene="b")
             with pytest.raises(Refused, match="there is no scene 'b'; there are a"):
                 await client._answer(number)
 
-    run(visiting())
+    run(check())
 
 
 def test_trouble_is_told_and_passes(run):
-    async def visiting():
-        device = PaintedDevice()
-        async with served(device, scene()) as server, visit(server.url) as client:
-            await client.take()
-            await client.frame()
+    async def check():
+        device = FakeDevice()
+        async with served(device, scene()) as server, open_client(server.url) as client:
+            await client.take_control()
+            await client.next_frame()
             device.fail_frames = True
-            await client.ask("view", camera=CAMERA, nonstop=True)
+            await client.request("view", camera=CAMERA, nonstop=True)
             while not client.state or client.state["trouble"] != "the lanes hang":
                 await client._receive()
             device.fail_frames = False
@@ -293,34 +298,34 @@ def test_trouble_is_told_and_passes(run):
             await frame_where(client, lambda packet: packet.request == request)
             while client.state["trouble"] is not None:
                 await client._receive()
-            assert server.show.stage.trouble is None
+            assert server.session.renderer.trouble is None
 
-    run(visiting())
+    run(check())
 
 
 def test_a_slow_viewer_stalls_nobody(run):
-    async def visiting():
-        device = PaintedDevice(size=(640, 480))
+    async def check():
+        device = FakeDevice(size=(640, 480))
         async with (
             served(device, scene()) as server,
-            visit(server.url) as fast,
+            open_client(server.url) as fast,
             connect(f"ws://127.0.0.1:{server.port}/v1", max_queue=1, proxy=None, compression=None) as slow,
         ):
             slow.transport.pause_reading()
-            await fast.take()
-            await fast.ask("view", nonstop=True)
+            await fast.take_control()
+            await fast.request("view", nonstop=True)
             for _ in range(60):
-                await fast.frame()
-            viewers = server.show.audience._viewers
-            assert server.show.audience.dropped > 20
-            assert sum(viewer._frame is not None for viewer in viewers.values()) <= 2
+                await fast.next_frame()
+            clients = server.session.clients._clients
+            assert server.session.clients.dropped_frames > 20
+            assert sum(client._frame is not None for client in clients.values()) <= 2
             slow.transport.abort()
 
-    run(visiting())
+    run(check())
 
 
-def test_who_may_come_in(run):
-    async def visiting():
+def test_access(run):
+    async def check():
         async def status(server, query="", **headers):
             try:
                 async with connect(f"ws://127.0.0.1:{server.port}/v1{query}", additional_headers=headers, proxy=None):
@@ -329,35 +334,35 @@ def test_who_may_come_in(run):
                 return error.response.status_code
 
         with pytest.raises(Refused, match=r"0\.0\.0\.0 can be reached from other machines; give a token"):
-            FrameServer(PaintedDevice(), Program(BoardReader()), Listening(host="0.0.0.0"))
+            FrameServer(FakeDevice(), SceneLibrary(MemoryReader()), ServerOptions(host="0.0.0.0"))
         async with served(token="sesame") as server:
             assert await status(server) == 401
             assert await status(server, "?token=sesame") == 101
             assert await status(server, "?token=sesame", Origin="http://evil.example") == 403
             assert await status(server, "?token=sesame", Origin=f"http://127.0.0.1:{server.port}") == 101
             assert server.url.endswith("/#token=sesame")
-            async with visit(server.url) as client:
+            async with open_client(server.url) as client:
                 assert client.hello["viewer"] > 0
-            with pytest.raises(Refused, match="this server wants its token"):
-                async with visit(f"http://127.0.0.1:{server.port}/"):
+            with pytest.raises(Refused, match="the token is missing or wrong"):
+                async with open_client(f"http://127.0.0.1:{server.port}/"):
                     pass
-        async with served(limits=Limits(viewers=2)) as server, visit(server.url), visit(server.url) as last:
+        async with served(limits=Limits(clients=2)) as server, open_client(server.url), open_client(server.url) as last:
             assert await status(server) == 503
-            assert (await last.ask("counters"))["counters"]["viewers"] == 2
-        async with served(limits=Limits(arrivals=1)) as server:
+            assert (await last.request("counters"))["counters"]["viewers"] == 2
+        async with served(limits=Limits(new_clients_per_second=1)) as server:
             assert [await status(server) for _ in range(4)].count(503) >= 1
 
-    run(visiting())
+    run(check())
 
 
 async def http(port, request):
-    async with stranger(port) as (reader, writer):
+    async with raw_connection(port) as (reader, writer):
         writer.write(request)
         return await reader.read()
 
 
 def test_page(run):
-    async def visiting():
+    async def check():
         async with served() as server:
             answer = await http(server.port, b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
             assert answer.startswith(b"HTTP/1.1 200 OK")
@@ -369,70 +374,72 @@ def test_page(run):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             assert b" 426 " in await http(server.port, b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n")
 
-    run(visiting())
+    run(check())
 
 
-def test_garbage_and_crowds(run):
-    """Malformed, truncated, oversized and abandoned clients, and more of them than fit; an honest one sees frames."""
+def test_malformed_and_excess_connections(run):
+    """Malformed, truncated, oversized and abandoned connections, and too many; a correct client still gets frames."""
 
-    async def visiting():
+    async def check():
         random = np.random.default_rng(7)
         async with (
-            served(running=scene(), limits=Limits(sockets=120, arrivals=1000, patience=0.5)) as server,
-            visit(server.url) as honest,
+            served(
+                loaded=scene(), limits=Limits(connections=120, new_clients_per_second=1000, handshake_seconds=0.5)
+            ) as server,
+            open_client(server.url) as correct,
         ):
-            await honest.take()
+            await correct.take_control()
 
-            async def noise(length):
+            async def send_noise(length):
                 try:
                     return await http(server.port, random.bytes(length))
                 except ConnectionError:
                     return b""
 
-            await asyncio.gather(*(noise(length + 1) for length in range(60)), return_exceptions=True)
+            await asyncio.gather(*(send_noise(length + 1) for length in range(60)), return_exceptions=True)
             oversized = b"GET / HTTP/1.1\r\nX: " + b"a" * 100_000 + b"\r\n\r\n"
             await asyncio.gather(http(server.port, oversized), return_exceptions=True)
-            # Abandoned before, in the middle of and after the handshake.
+            # Abandoned before, during and after the handshake.
             for opening in (b"", b"GET /v1 HTTP/1.1\r\nHost:", b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n"):
-                async with stranger(server.port) as (_, writer):
+                async with raw_connection(server.port) as (_, writer):
                     writer.write(opening)
-            # More sockets than are borne: the rest is cut off, and all of them go.
-            async with contextlib.AsyncExitStack() as crowd:
-                readers = [(await crowd.enter_async_context(stranger(server.port)))[0] for _ in range(300)]
-                await honest.ask("counters")
+            # More connections than the limit: the server closes the excess ones.
+            async with contextlib.AsyncExitStack() as stack:
+                readers = [(await stack.enter_async_context(raw_connection(server.port)))[0] for _ in range(300)]
+                await correct.request("counters")
                 assert all(await asyncio.gather(*(ended(reader) for reader in readers[150:])))
-            # Visitors that talk nonsense.
-            async with connect(f"ws://127.0.0.1:{server.port}/v1", proxy=None) as visitor:
+            # Malformed messages.
+            async with connect(f"ws://127.0.0.1:{server.port}/v1", proxy=None) as malformed:
                 for _ in range(50):
-                    await visitor.send(random.bytes(int(random.integers(0, 200))))
-                    await visitor.send('{"type": "view", "camera": 3}')
-                await visitor.send(bytes(CHUNK_LIMIT + 100))
-                await visitor.wait_closed()
-                assert visitor.close_code == 1009
-            while len(server.sockets) > 1:
-                await honest.ask("counters")
-            request = await honest.send("view", camera=CAMERA)
-            await frame_where(honest, lambda packet: packet.request == request)
-            assert len(server.show.audience) == 1
+                    await malformed.send(random.bytes(int(random.integers(0, 200))))
+                    await malformed.send('{"type": "view", "camera": 3}')
+                await malformed.send(bytes(CHUNK_LIMIT + 100))
+                await malformed.wait_closed()
+                assert malformed.close_code == 1009
+            while len(server.connections) > 1:
+                await correct.request("counters")
+            request = await correct.send("view", camera=CAMERA)
+            await frame_where(correct, lambda packet: packet.request == request)
+            assert len(server.session.clients) == 1
 
-    run(visiting())
+    run(check())
 
 
-def test_answers_that_nobody_reads(run):
-    async def visiting():
-        class Blocked:
+def test_backlog_of_answers(run):
+    async def check():
+        class BlockedConnection:
             async def send(self, _message):
                 await asyncio.Event().wait()
 
-        viewer = Viewer(1, lambda: None, dict)
-        sending = asyncio.create_task(viewer.send_all(Blocked()))
+        client = Client(1, lambda: None, dict)
+        sending = asyncio.create_task(client.send_all(BlockedConnection()))
         for number in range(1000):
-            viewer.answer({"type": "done", "request": number})
-            viewer.refresh()
-            viewer.show(b"frame")
-        assert viewer.overrun
-        assert len(viewer._answers) == 256
-        assert viewer.dropped == 999
+            client.queue_answer({"type": "done", "request": number})
+            client.queue_state()
+            client.queue_frame(b"frame")
+        assert client.backlog_exceeded
+        assert len(client._answers) == 256
+        assert client.dropped_frames == 999
         sending.cancel()
 
-    run(visiting())
+    run(check())

@@ -1,4 +1,4 @@
-"""The soak of bench/soak.py, a few rounds of it."""
+"""A few rounds of the load test bench/soak.py."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def test_rounds():
     counted = dict(re.findall(r"^\| (.+?) \| ([\d,]+) \|$", finished.stdout, re.MULTILINE))
     for what, times in (
         ("rounds", 1),
-        ("visits", 4),
-        ("scenes put on", 1),
-        ("strangers", 5),
-        ("visitors who read nothing", 1),
-        ("visitors who talk nonsense", 1),
-        ("pictures for the original's client", 1),
+        ("short connections", 4),
+        ("scenes uploaded", 1),
+        ("faulty connections", 5),
+        ("clients that read nothing", 1),
+        ("clients that send malformed messages", 1),
+        ("pictures by the legacy protocol", 1),
     ):
         assert counted[what] == str(times * rounds), what
-    assert int(counted["frames seen"].replace(",", "")) >= rounds * (10 + 4 + 4)
+    assert int(counted["frames received"].replace(",", "")) >= rounds * (10 + 4 + 4)

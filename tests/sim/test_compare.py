@@ -8,7 +8,7 @@ import pytest
 
 from voxrt.octree import Rom, from_dense
 from voxrt.sim import Camera, SimulatorError, compare, comparison_sheet, frame_scene, render
-from voxrt.voxelize import EMPTY, Coat, Grid, Material, Mesh, Paint, Scene, SceneObject
+from voxrt.voxelize import EMPTY, Appearance, Grid, Material, Mesh, Scene, SceneObject, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import linear_from_srgb
 
 SIZE = (96, 72)
@@ -71,8 +71,8 @@ def test_painted_meshes_show_their_paint():
     for item in scene.objects:
         linear = linear_from_srgb(np.array(MATERIALS[item.mesh.materials[0]].colour, np.uint8))
         colours = np.broadcast_to(np.append(linear, 1.0).astype(np.float32), (12, 3, 4))
-        coat = Coat((Paint("p"),), np.zeros(12, np.int32), np.zeros((12, 3, 2)), colours)
-        painted.append(replace(item, mesh=replace(item.mesh, coat=coat)))
+        appearance = SurfaceAppearance((Appearance("p"),), np.zeros(12, np.int32), np.zeros((12, 3, 2)), colours)
+        painted.append(replace(item, mesh=replace(item.mesh, appearance=appearance)))
     black = (EMPTY, *[Material("black", (0, 0, 0))] * 2)
     found = compare(replace(scene, objects=tuple(painted), materials=black), rom, camera, SIZE).meshes.colour
     np.testing.assert_array_equal(found, bare)
@@ -122,5 +122,5 @@ def test_a_memory_without_a_place_is_refused():
 def test_a_missing_open3d_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "open3d", None)
     rom = box_rom(*BOXES)
-    with pytest.raises(SimulatorError, match=r"needs Open3D.*pip install 'voxrt\[compare\]'"):
+    with pytest.raises(SimulatorError, match=r"needs Open3D.*pip install 'voxrt-build\[compare\]'"):
         compare(box_scene(*BOXES), rom, frame_scene(rom, SIZE), SIZE)

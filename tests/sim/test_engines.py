@@ -60,7 +60,7 @@ def test_the_ray_tracer_reads_no_word_in_vain(name):
         directions = pixel_directions(camera, SIZE).reshape(-1, 3).astype(np.int32)
         origins = np.ascontiguousarray(np.broadcast_to(registers[0], directions.shape))
         traced = _model.Memory(rom.octree.words, rom.octree.depth).trace(origins, directions)
-        assert render(rom, camera, SIZE, engine="rtl").cost.words_read == traced["words_read"]
+        assert render(rom, camera, SIZE, engine="rtl").cost.words_read == traced.words_read
 
 
 @pytest.mark.parametrize("name", ["cubes", "dog", "house"])

@@ -28,7 +28,7 @@ def test_every_ray_meets_what_the_walk_meets(world):
     origins, directions = adversarial_rays(len(world), RAYS_A_WORLD, seed=len(world))
     material, face, cell = trace_batch(world, origins, directions)
     traced = trace(world, origins, directions)
-    wrong = (traced["material"] != material) | (traced["face"] != face) | np.any(traced["cell"] != cell, axis=1)
+    wrong = (traced.material != material) | (traced.face != face) | np.any(traced.cell != cell, axis=1)
     rays = [(origins[i].tolist(), directions[i].tolist()) for i in np.flatnonzero(wrong)[:3]]
     assert not np.any(wrong), f"{np.count_nonzero(wrong)} rays are wrong, such as {rays}"
 
@@ -46,7 +46,7 @@ def test_the_hit_does_not_depend_on_how_the_octree_is_cut(world):
     for cut in ({"share": False}, {"split": True}, {"share": False, "split": True}):
         other = trace(world, origins, directions, **cut)
         for what in ("material", "face", "cell"):
-            np.testing.assert_array_equal(whole[what], other[what])
+            np.testing.assert_array_equal(getattr(whole, what), getattr(other, what))
 
 
 def test_rays_from_far_away_meet_what_they_meet_from_near(world):
@@ -63,7 +63,7 @@ def test_rays_from_far_away_meet_what_they_meet_from_near(world):
     near = trace(world, origins.astype(np.int32), directions.astype(np.int32))
     away = trace(world, far.astype(np.int32), directions.astype(np.int32))
     for what in ("material", "face", "cell"):
-        np.testing.assert_array_equal(near[what], away[what])
+        np.testing.assert_array_equal(getattr(near, what), getattr(away, what))
 
 
 def test_a_world_of_depth_16_is_walked_to_its_voxels():
@@ -80,9 +80,9 @@ def test_a_world_of_depth_16_is_walked_to_its_voxels():
     directions = np.array([[0, 0, 1], [0, 0, -(2**20) + 1], [0, 0, -1], [2**20 - 1, 2**20 - 1, 2**20 - 1]], np.int32)
     traced = _model.Memory(words, depth).trace(origins, directions)
     last = (1 << depth) - 1
-    assert traced["cell"].tolist() == [[0, 0, 0], [last, last, last], [0, 0, 0], [0, 0, 0]]
-    assert traced["material"].tolist() == [5, 12, 5, 5]
-    assert traced["face"].tolist() == [2, 2, 2, 2]
+    assert traced.cell.tolist() == [[0, 0, 0], [last, last, last], [0, 0, 0], [0, 0, 0]]
+    assert traced.material.tolist() == [5, 12, 5, 5]
+    assert traced.face.tolist() == [2, 2, 2, 2]
 
 
 CAMERAS = {
@@ -103,9 +103,9 @@ def test_a_frame_is_the_oracles_pixel_by_pixel(camera, size):
     registers = np.array(camera, np.int32)
     frame = _model.Memory(memory_of(voxels), 5).render(palette, registers, *size)
     colour, material, face = ray.render(voxels, registers, *size, palette)
-    np.testing.assert_array_equal(frame["material"], material)
-    np.testing.assert_array_equal(frame["face"], face)
-    np.testing.assert_array_equal(frame["colour"], colour)
+    np.testing.assert_array_equal(frame.material, material)
+    np.testing.assert_array_equal(frame.face, face)
+    np.testing.assert_array_equal(frame.colour, colour)
 
 
 @pytest.mark.parametrize("instructions", _model.INSTRUCTION_SETS)
@@ -121,9 +121,9 @@ def test_frames_are_what_the_walk_meets_with_every_instruction_set(name, instruc
         camera = Camera(*(tuple(triple) for triple in registers.tolist()))
         directions = pixel_directions(camera, size).reshape(-1, 3)
         material, face, _ = trace_batch(voxels, np.broadcast_to(registers[0], directions.shape), directions)
-        np.testing.assert_array_equal(frame["material"].reshape(-1), material)
-        np.testing.assert_array_equal(frame["face"].reshape(-1), face)
-        np.testing.assert_array_equal(frame["colour"].reshape(-1, 3), shades(palette[material], directions, face))
+        np.testing.assert_array_equal(frame.material.reshape(-1), material)
+        np.testing.assert_array_equal(frame.face.reshape(-1), face)
+        np.testing.assert_array_equal(frame.colour.reshape(-1, 3), shades(palette[material], directions, face))
 
 
 def shades(colours, directions, face):
@@ -154,9 +154,9 @@ def test_the_shade_is_rounded_half_up(colour, direction):
     middle = [16 - 40 * d // max(map(abs, direction)) for d in direction]
     registers = np.array([middle, direction, [0, 0, 0], [0, 0, 0]], np.int32)
     frame = _model.Memory(words, 1).render(palette, registers, 1, 1)
-    if frame["material"][0, 0]:
-        expected = ray.shade([colour] * 3, direction, int(frame["face"][0, 0]))
-        assert tuple(frame["colour"][0, 0]) == expected
+    if frame.material[0, 0]:
+        expected = ray.shade([colour] * 3, direction, int(frame.face[0, 0]))
+        assert tuple(frame.colour[0, 0]) == expected
 
 
 @pytest.mark.parametrize("threads", [1, 2, 7])
@@ -166,8 +166,8 @@ def test_the_frame_does_not_depend_on_the_threads(threads):
     registers = np.array(([-300, 900, 1500], [40, -20, -60], [2, 0, 1], [0, 2, 0]), np.int32)
     frames = [_model.Memory(words, 6).render(palette, registers, 75, 50, count) for count in (1, threads)]
     for what in ("colour", "material", "face", "words_read"):
-        np.testing.assert_array_equal(frames[0][what], frames[1][what])
-    assert len(np.unique(frames[0]["material"])) > 3
+        np.testing.assert_array_equal(getattr(frames[0], what), getattr(frames[1], what))
+    assert len(np.unique(frames[0].material)) > 3
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_any_memory_is_traced_or_refused(words):
     except ValueError:
         return
     traced = memory.trace(origins, directions)
-    assert set(np.unique(traced["material"])) <= {0, 3}
+    assert set(np.unique(traced.material)) <= {0, 3}
 
 
 def test_directions_out_of_range_are_refused():

@@ -35,8 +35,8 @@ def test_a_ray_reads_the_words_that_the_walk_reads(name, cut):
         traced = _model.Memory(tree.words, tree.depth).trace(
             np.array([origin], np.int32), np.array([direction], np.int32)
         )
-        assert len(path.readings) == traced["words_read"]
-        assert path.cell == (tuple(traced["cell"][0].tolist()) if path.material else None)
+        assert len(path.readings) == traced.words_read
+        assert path.cell == (tuple(traced.cell[0].tolist()) if path.material else None)
         for step in path.readings:
             place = path.point(step.time)
             if step.axis != sim.FACE_NONE:  # on the octant's near side, or within its block at the least

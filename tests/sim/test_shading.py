@@ -74,10 +74,10 @@ def test_every_pixel_has_the_oracles_colour(world, shader):
     oracle = Shader(PALETTE, mirrors=EVERY_OTHER, **options)
     for registers in cameras_of(voxels, seed=len(shader)):
         frame = rendered(voxels, registers, options)
-        for (row, column), _ in np.ndenumerate(frame["face"]):
+        for (row, column), _ in np.ndenumerate(frame.face):
             direction = ray.directions(registers, *SIZE)[row, column]
             colour, material, face = shaded_pixel(voxels, oracle, registers[0], direction)
-            found = (*frame["colour"][row, column].tolist(), frame["material"][row, column], frame["face"][row, column])
+            found = (*frame.colour[row, column].tolist(), frame.material[row, column], frame.face[row, column])
             assert found == (*colour, material, face), (registers.tolist(), (row, column), direction.tolist())
 
 
@@ -87,14 +87,14 @@ def test_the_picture_does_not_depend_on_how_the_octree_is_cut(shader):
     for registers in cameras_of(voxels, seed=3):
         whole = rendered(voxels, registers, SHADERS[shader])
         split = rendered(voxels, registers, SHADERS[shader], share=False, split=True)
-        np.testing.assert_array_equal(whole["colour"], split["colour"])
+        np.testing.assert_array_equal(whole.colour, split.colour)
 
 
 def test_no_bounce_means_no_mirror():
     registers = cameras_of(WORLDS["room"], 1)[0]
     with_mirrors = rendered(WORLDS["room"], registers, {"bounces": 0})
     without = _model.Memory(memory_of(WORLDS["room"]), 3).render(PALETTE, registers, *SIZE)
-    np.testing.assert_array_equal(with_mirrors["colour"], without["colour"])
+    np.testing.assert_array_equal(with_mirrors.colour, without.colour)
 
 
 @pytest.mark.parametrize(("what", "value"), [("ambient", 256), ("ambient", -1), ("bounces", 16), ("bounces", -1)])

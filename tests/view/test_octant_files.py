@@ -31,7 +31,7 @@ def rom_of(cube, grid=None):
 
 @pytest.fixture(scope="module")
 def _pyvista():
-    pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -128,7 +128,7 @@ def test_pages_need_nothing_else_and_hold_the_octants(file, cube):
 
 
 def test_names_in_pages_are_text(file):
-    pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
     rom = octree.Rom("</script><b>", octree.from_dense(np.ones((2, 2, 2), np.uint8)), MATERIALS)
     write_page(file / "o.html", rom, view.octants(rom))
     assert "</script><b>" not in (file / "o.html").read_text()

@@ -32,7 +32,7 @@ def rom_of(cube):
 
 @pytest.fixture(scope="module")
 def _pyvista():
-    pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -262,7 +262,7 @@ def test_too_many_octants(monkeypatch):
 
 def test_without_pyvista(monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    with pytest.raises(view.ViewerError, match=r"pip install 'voxrt\[view\]'"):
+    with pytest.raises(view.ViewerError, match=r"pip install 'voxrt-build\[view\]'"):
         view.octants(rom_of(three_towers()))
 
 

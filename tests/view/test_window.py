@@ -14,7 +14,7 @@ SIZE = (320, 240)
 
 @pytest.fixture(autouse=True)
 def _canvas():
-    pytest.importorskip("pyvista", reason="the extra voxrt[view] is not installed")
+    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
     try:
         check_screen(off_screen=True)
     except view.ViewerError as problem:

@@ -8,7 +8,7 @@ from voxrt.voxelize import AssetError, load
 def test_unknown_suffix_is_refused_with_the_known_ones(tmp_path):
     path = tmp_path / "house.max"
     path.write_bytes(b"")
-    with pytest.raises(AssetError, match=r"house\.max: unknown kind of file '\.max'; give one of \.gltf, \.glb, "):
+    with pytest.raises(AssetError, match=r"house\.max: unknown kind of file '\.max'; use one of \.gltf, \.glb, "):
         load(path)
 
 
@@ -37,7 +37,7 @@ def test_formats_say_which_options_they_ignore(tmp_path):
     writer.show(mesh=writer.mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
     scene = load(str(writer.save(tmp_path / "a.glb")), up="z", unit=0.5)
     assert [warning.message for warning in scene.warnings if warning.kind == "ignored-option"] == [
-        "the up axis was ignored: glb files say it themselves",
-        "the unit was ignored: glb files say it themselves",
+        "the up axis was ignored: glb files define it",
+        "the unit was ignored: glb files define it",
     ]
     assert np.ptp(scene.objects[0].mesh.positions, axis=0).tolist() == [1, 1, 0]

@@ -1,6 +1,6 @@
-"""Solids to build scenes from: primitives, booleans and hulls, each surface remembering its material.
+"""Solids: primitives, booleans and hulls, whose surfaces keep their materials.
 
-The geometry is manifold3d's: every solid is closed, and a boolean of closed solids is closed again.
+manifold3d does the geometry: every solid is closed, and a boolean of closed solids is closed.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import manifold3d
 import numpy as np
 
-from voxrt.voxelize import primitives
+from voxrt.voxelize import arguments, primitive_meshes
+from voxrt.voxelize.mesh import checked_surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,21 +21,30 @@ if TYPE_CHECKING:
 
 Axis: TypeAlias = Literal["x", "y", "z"]
 
+_AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 FARTHEST = 1e9
-"""Metres: no scene goes beyond, and products of three lengths stay finite."""
+"""The largest length and coordinate, in metres; products of three lengths stay finite."""
 
 
 class SolidError(ValueError):
-    """Measures or a surface of which no solid can be made; one line, without full stop."""
+    """Dimensions or a surface that make no solid; the message is one line, without a full stop."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Solid:
     """A closed solid in metres. Operators: ``a | b`` union, ``a - b`` difference, ``a & b`` intersection.
 
-    Make one with :func:`box`, :func:`sphere`, :func:`cylinder`, :func:`cone`, :func:`extrude`, :func:`hull` or
-    :func:`closed`. A cut face takes the material of the solid that cut it.
+    :func:`box`, :func:`sphere`, :func:`cylinder`, :func:`cone`, :func:`extrude`, :func:`hull` and :func:`closed` make
+    solids. A cut face takes the material of the solid that cut it.
+
+    Examples
+    --------
+    >>> well = cylinder(1, 1.5, material="stone") - box((1, 2, 1), material="brick")
+    >>> round(well.volume, 2)
+    3.21
+    >>> sorted({material for material, _ in well.surface()[2]})
+    ['brick', 'stone']
     """
 
     _manifold: manifold3d.Manifold
@@ -50,7 +60,7 @@ class Solid:
         return Solid(self._manifold ^ other._manifold, self._materials | other._materials)
 
     def of(self, material: str) -> Solid:
-        """Return the solid with `material` where it has none yet."""
+        """Return the solid with `material` on the surfaces that have none."""
         return Solid(self._manifold, {key: material if old is None else old for key, old in self._materials.items()})
 
     def placed(
@@ -59,23 +69,23 @@ class Solid:
         rotate: Sequence[float] = (0, 0, 0),
         scale: float | Sequence[float] = 1,
     ) -> Solid:
-        """Return the solid scaled, then turned, then moved; see :func:`placement`."""
+        """Return the solid scaled, then rotated, then moved, as :func:`placement` describes."""
         return self.transformed(placement(translate, rotate, scale))
 
     def transformed(self, matrix: NDArray[np.float64]) -> Solid:
-        """Return the solid moved by `matrix` (float64, shape (4, 4), affine, column vectors)."""
+        """Return the solid transformed by `matrix` (shape (4, 4), affine, column vectors)."""
         if np.array_equal(matrix, np.eye(4)):
             return self
         return Solid(self._manifold.transform(np.ascontiguousarray(matrix[:3])), self._materials)
 
     @classmethod
     def around(cls, solids: Sequence[Solid], material: str | None = None) -> Solid:
-        """Return the convex hull around `solids`."""
+        """Return the convex hull of `solids`."""
         return _original(manifold3d.Manifold.batch_hull([one._manifold for one in solids]), material)  # noqa: SLF001 -- its own class's
 
     @property
     def volume(self) -> float:
-        """Cubic metres."""
+        """The volume in cubic metres."""
         return float(self._manifold.volume())
 
     def surface(self) -> tuple[NDArray[np.float64], NDArray[np.int32], list[tuple[str | None, int]]]:
@@ -88,15 +98,15 @@ class Solid:
         triangles
             int32, shape (T, 3), counter-clockwise seen from outside.
         runs
-            (material, count): the materials of the triangles in their order; None where none was given.
+            (material, count) of consecutive triangles; None for triangles without a material.
 
         Raises
         ------
         SolidError
-            There is nothing left of it.
+            The solid is empty.
         """
         if self._manifold.is_empty():
-            raise SolidError("nothing is left of the solid")
+            raise SolidError("the solid is empty")
         mesh = self._manifold.to_mesh64()
         triangles = mesh.tri_verts.astype(np.int32)
         same = np.arange(len(mesh.vert_properties), dtype=np.int32)
@@ -113,28 +123,40 @@ class Solid:
 def placement(
     translate: Sequence[float] = (0, 0, 0), rotate: Sequence[float] = (0, 0, 0), scale: float | Sequence[float] = 1
 ) -> NDArray[np.float64]:
-    """Return the matrix that scales, then turns, then moves: float64, shape (4, 4), column vectors.
+    """Return the matrix that scales, then rotates, then moves: float64, shape (4, 4), column vectors.
 
     Parameters
     ----------
     translate
         Metres along x, y and z.
     rotate
-        Degrees about x, then y, then z, each counter-clockwise seen against the axis. Quarter turns are exact.
+        Degrees about x, then y, then z, counter-clockwise as seen from the positive end of the axis. Quarter turns are
+        exact.
     scale
-        One factor, or one an axis; a negative one mirrors.
+        One factor, or one per axis; a negative factor mirrors.
 
     Raises
     ------
+    TypeError, ValueError
+        An argument that is not finite numbers of that shape.
     SolidError
-        A scale of 0, or of two numbers.
+        A scale of 0, or a number beyond :data:`FARTHEST`.
+
+    Examples
+    --------
+    >>> placement(translate=(1, 2, 3), scale=2)
+    array([[2., 0., 0., 1.],
+           [0., 2., 0., 2.],
+           [0., 0., 2., 3.],
+           [0., 0., 0., 1.]])
     """
-    factors = np.asarray(scale, dtype=np.float64)
-    if factors.shape not in ((), (3,)) or not factors.all():
-        raise SolidError(f"scale {factors.tolist()} is not one number or three, none of them 0")
-    for name, values in (("translate", translate), ("rotate", rotate), ("scale", np.atleast_1d(factors))):
-        if not (np.abs(np.asarray(values, dtype=np.float64)) <= FARTHEST).all():
-            raise SolidError(f"{name} {np.asarray(values).tolist()} goes beyond {FARTHEST:g}")
+    factors = arguments.real_array("scale", scale, (3,) if np.ndim(scale) else ())
+    if not factors.all():
+        raise SolidError(f"scale must not be 0, not {factors.tolist()}")
+    rotate, translate = arguments.vector("rotate", rotate), arguments.vector("translate", translate)
+    for name, values in (("translate", translate), ("rotate", rotate), ("scale", factors)):
+        if not (np.abs(np.asarray(values)) <= FARTHEST).all():
+            raise SolidError(f"{name} {np.asarray(values).tolist()} is beyond {FARTHEST:g}")
     turn = np.eye(3)
     for axis, degrees in enumerate(rotate):
         cosine, sine = _exact_cosine(degrees), _exact_cosine(degrees - 90)
@@ -149,41 +171,128 @@ def placement(
 
 
 def box(size: ArrayLike, *, centre: ArrayLike = (0, 0, 0), material: str | None = None) -> Solid:
-    """Return a box of `size` metres along x, y and z."""
+    """Return a box.
+
+    Parameters
+    ----------
+    size
+        Metres along x, y and z.
+    centre
+        Metres: the middle of the box.
+    material
+        The name of its material; None for none yet.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument of the wrong kind or shape.
+    SolidError
+        A size that is not positive.
+
+    Examples
+    --------
+    >>> box((1, 2, 3)).volume
+    6.0
+    """
     sides = _lengths("size", size, 3)
-    positions, triangles = primitives.cube(1.0)
-    return _made(positions * sides + np.asarray(centre, dtype=np.float64), triangles, material)
+    positions, triangles = primitive_meshes.cube(1.0)
+    return _made(positions * sides + _point("centre", centre), triangles, material)
 
 
 def box_between(minimum: ArrayLike, maximum: ArrayLike, *, material: str | None = None) -> Solid:
-    """Return the box from corner `minimum` to corner `maximum`, which it meets exactly."""
-    low, high = np.asarray(minimum, dtype=np.float64), np.asarray(maximum, dtype=np.float64)
+    """Return the box between two corners, whose coordinates it has exactly.
+
+    Parameters
+    ----------
+    minimum, maximum
+        Metres: the lowest and the highest corner.
+    material
+        As for :func:`box`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument of the wrong kind or shape.
+    SolidError
+        A side that is not positive.
+
+    Examples
+    --------
+    >>> box_between((0, 0, 0), (0.1, 0.2, 0.3)).surface()[0].max(axis=0)
+    array([0.1, 0.2, 0.3])
+    """
+    low, high = _point("minimum", minimum), _point("maximum", maximum)
     _lengths("size", high - low, 3)
-    positions, triangles = primitives.cube(2.0)
+    positions, triangles = primitive_meshes.cube(2.0)
     return _made(np.where(positions > 0, high, low), triangles, material)
 
 
 def sphere(radius: float, *, centre: ArrayLike = (0, 0, 0), material: str | None = None) -> Solid:
-    """Return a ball of `radius` metres."""
-    positions, triangles = primitives.sphere(_length("radius", radius))
-    return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
+    """Return a ball.
+
+    Parameters
+    ----------
+    radius
+        Metres.
+    centre, material
+        As for :func:`box`.
+
+    Examples
+    --------
+    >>> sphere(1, centre=(0, 5, 0)).surface()[0].max(axis=0)
+    array([1., 6., 1.])
+    """
+    positions, triangles = primitive_meshes.sphere(_length("radius", radius))
+    return _made(positions + _point("centre", centre), triangles, material)
 
 
 def cylinder(
     radius: float, height: float, *, axis: Axis = "y", centre: ArrayLike = (0, 0, 0), material: str | None = None
 ) -> Solid:
-    """Return a cylinder along `axis`."""
+    """Return a cylinder.
+
+    Parameters
+    ----------
+    radius, height
+        Metres.
+    axis
+        ``"x"``, ``"y"`` or ``"z"``.
+    centre, material
+        As for :func:`box`; `centre` is half way up.
+
+    Examples
+    --------
+    >>> cylinder(1, 3, axis="z").surface()[0].max(axis=0)
+    array([1. , 1. , 1.5])
+    """
     across, along = _length("radius", radius), _length("height", height)
-    positions, triangles = primitives.cylinder(across, across, along, axis.upper())
-    return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
+    positions, triangles = primitive_meshes.cylinder(across, across, along, _axis(axis).upper())
+    return _made(positions + _point("centre", centre), triangles, material)
 
 
 def cone(
     radius: float, height: float, *, axis: Axis = "y", centre: ArrayLike = (0, 0, 0), material: str | None = None
 ) -> Solid:
-    """Return a cone along `axis`, tip towards its positive end; `centre` is half way up."""
-    positions, triangles = primitives.cone(_length("radius", radius), _length("height", height), axis.upper())
-    return _made(positions + np.asarray(centre, dtype=np.float64), triangles, material)
+    """Return a cone whose tip points to the positive end of `axis`.
+
+    Parameters
+    ----------
+    radius, height
+        Metres.
+    axis
+        ``"x"``, ``"y"`` or ``"z"``.
+    centre, material
+        As for :func:`box`; `centre` is half way up.
+
+    Examples
+    --------
+    >>> cone(1, 2).surface()[0].max(axis=0)
+    array([1., 1., 1.])
+    """
+    positions, triangles = primitive_meshes.cone(
+        _length("radius", radius), _length("height", height), _axis(axis).upper()
+    )
+    return _made(positions + _point("centre", centre), triangles, material)
 
 
 def extrude(outline: ArrayLike, height: float, *, axis: Axis = "y", material: str | None = None) -> Solid:
@@ -192,35 +301,73 @@ def extrude(outline: ArrayLike, height: float, *, axis: Axis = "y", material: st
     Parameters
     ----------
     outline
-        Shape (N, 2), metres, either way round: (y, z) for the x axis, (x, z) for y, (x, y) for z. Where it crosses
-        itself, what it goes around an odd number of times is inside.
+        Shape (N, 2), N ≥ 3, metres, in either orientation: (y, z) for the x axis, (x, z) for y, (x, y) for z. An
+        outline that crosses itself fills by the even-odd rule.
+    height
+        Metres.
+    axis
+        ``"x"``, ``"y"`` or ``"z"``.
+    material
+        As for :func:`box`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument of the wrong kind or shape.
+    SolidError
+        Fewer than three points, a point beyond :data:`FARTHEST`, or a height that is not positive.
+
+    Examples
+    --------
+    >>> extrude([(0, 0), (4, 0), (0, 3)], 2).volume
+    12.0
     """
-    points = np.asarray(outline, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3 or not (np.abs(points) <= FARTHEST).all():
-        raise SolidError("an outline needs three points of two numbers or more")
+    points = arguments.real_array("outline", outline, ("N", 2)).astype(np.float64, copy=False)
+    if len(points) < 3 or not (np.abs(points) <= FARTHEST).all():
+        raise SolidError(f"an outline needs three points or more, and no coordinate beyond {FARTHEST:g}")
     flat = manifold3d.CrossSection([points], manifold3d.FillRule.EvenOdd)
     prism = manifold3d.Manifold.extrude(flat, _length("height", height))
-    # Rows: where the outline's two coordinates and the height go; each mirrors nothing or is turned back below.
-    columns = {"x": [1, 2, 0], "y": [0, 2, 1], "z": [0, 1, 2]}[axis]
+    # The rows to which the outline's two coordinates and the height go.
+    columns = {"x": [1, 2, 0], "y": [0, 2, 1], "z": [0, 1, 2]}[_axis(axis)]
     matrix = np.zeros((3, 4))
     matrix[columns, [0, 1, 2]] = 1.0
     return _original(prism.transform(matrix), material)
 
 
 def hull(solids: Sequence[Solid], *, material: str | None = None) -> Solid:
-    """Return the convex hull around `solids`."""
+    """Return the convex hull of solids.
+
+    Examples
+    --------
+    >>> hull([box((1, 1, 1)), box((1, 1, 1), centre=(3, 0, 0))]).volume
+    4.0
+    """
     return Solid.around(solids, material)
 
 
-def closed(positions: NDArray[np.floating], triangles: NDArray[np.int32], material: str | None = None) -> Solid:
+def closed(positions: ArrayLike, triangles: ArrayLike, material: str | None = None) -> Solid:
     """Return the solid that a closed surface encloses.
+
+    Parameters
+    ----------
+    positions, triangles
+        As in :class:`voxrt.voxelize.Mesh`.
+    material
+        As for :func:`box`.
 
     Raises
     ------
+    TypeError, ValueError
+        An array of the wrong kind, shape or range.
     SolidError
         The surface has holes, or edges with more than two faces.
+
+    Examples
+    --------
+    >>> closed([[0, 0, 0], [3, 0, 0], [0, 2, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]).volume
+    1.0
     """
-    return _made(positions, triangles, material)
+    return _made(*checked_surface("closed", positions, triangles), material)
 
 
 def _made(positions: NDArray[np.floating], triangles: NDArray[np.int32], material: str | None) -> Solid:
@@ -244,13 +391,23 @@ def _exact_cosine(degrees: float) -> float:
     return float(np.cos(np.deg2rad(degrees)))
 
 
+def _axis(axis: Axis) -> Axis:
+    return arguments.choice("axis", axis, _AXES)
+
+
+def _point(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    return np.array(arguments.vector(name, value))
+
+
 def _length(name: str, value: float) -> float:
-    return float(_lengths(name, [value], 1)[0])
+    return float(_lengths(name, [arguments.real(name, value)], 1)[0])
 
 
 def _lengths(name: str, values: ArrayLike, count: int) -> NDArray[np.float64]:
-    lengths = np.asarray(values, dtype=np.float64)
-    if lengths.shape != (count,) or not ((lengths > 0) & (lengths <= FARTHEST)).all():
+    lengths = arguments.real_array(name, values, (count,)).astype(np.float64, copy=False)
+    if not ((lengths > 0) & (lengths <= FARTHEST)).all():
         many = f"{count} positive lengths" if count > 1 else "a positive length"
-        raise SolidError(f"{name} {np.asarray(values).tolist()} is not {many}")
+        raise SolidError(
+            f"{name} {lengths.tolist() if count > 1 else lengths[0]:} is not {many} of at most {FARTHEST:g} m"
+        )
     return lengths

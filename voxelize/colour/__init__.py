@@ -1,1 +1,1 @@
-"""Colours of surfaces: sRGB and linear light, textures, palettes, the material of each voxel."""
+"""Colours of surfaces: sRGB and linear light, textures, surface appearance, palettes, colours per voxel."""

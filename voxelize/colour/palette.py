@@ -1,8 +1,7 @@
-"""Many colours to few: the palette of a scene whose surfaces are painted.
+"""Colour quantization: a palette for the textures and vertex colours of a scene.
 
-The choice is Pillow's, in sRGB, which is near enough to what the eye tells apart: colours as far from each other as can
-be, refined by k-means. (Its median cut misses clusters when entries are few.) Each entry is then the mean, in linear
-light, of the colours it stands for.
+Pillow chooses the groups in sRGB, which is nearly uniform to the eye: maximum coverage, refined by k-means. (Its median
+cut misses clusters when entries are few.) Each entry is then the mean, in linear light, of the colours of its group.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 _PIXELS = 1 << 14
 _FEW = 1 << 16
 _UNTIL_CHANGES = 1
-# Beyond this many colours, k-means sees them at 5 bits a channel: it is slow, and entries lie farther apart than that.
+# Beyond this many colours, k-means works at 5 bits per channel: it is slow, and entries are farther apart than that.
 _DISTINCT = 1 << 13
 _COARSE, _MIDDLE = np.uint32(0xF8F8F8), np.uint32(0x040404)
 
@@ -28,18 +27,18 @@ _COARSE, _MIDDLE = np.uint32(0xF8F8F8), np.uint32(0x040404)
 def quantize(
     colours: NDArray[np.uint8], weights: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Choose at most `count` colours that stand for `colours`, deterministically.
+    """Choose at most `count` colours that represent `colours`, deterministically.
 
-    Where no more than `count` colours are in use, each keeps its own.
+    Where there are no more than `count` distinct colours, each is its own entry.
 
     Parameters
     ----------
     colours
         uint8, shape (N, 3): sRGB.
     weights
-        float64, shape (N,), not negative: how much of the surface each covers.
+        float64, shape (N,), not negative: the area that each covers.
     count
-        How many entries the palette may have, 1 … 255.
+        The most entries of the palette, 1 … 255.
 
     Returns
     -------
@@ -55,7 +54,7 @@ def quantize(
     cover = np.bincount(inverse, weights, minlength=len(packed))
     groups = _grouped(_unpacked(coarse), np.bincount(cells, cover).astype(np.float64), count)[cells]
     total = np.bincount(groups, cover)
-    cover = np.where(total[groups] > 0, cover, 1.0)  # a group that covers nothing has a mean all the same
+    cover = np.where(total[groups] > 0, cover, 1.0)  # a group of no area has a mean too
     linear = linear_from_srgb(_unpacked(packed))
     means = np.stack([np.bincount(groups, cover * linear[:, channel]) for channel in range(3)], axis=1)
     entries, merged = np.unique(
@@ -65,7 +64,7 @@ def quantize(
 
 
 def _distinct(packed: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[np.int32]]:
-    """Return the distinct colours in ascending order, and the place of each among them; many are not sorted."""
+    """Return the distinct colours in ascending order, and the index of each colour among them."""
     if len(packed) < _FEW:
         found, places = np.unique(packed, return_inverse=True)
         return found, places.astype(np.int32)
@@ -78,7 +77,7 @@ def _distinct(packed: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[n
 
 
 def _packed(srgb: NDArray[np.uint8]) -> NDArray[np.uint32]:
-    """Put rows of red, green and blue into one number each, which sorts as they do."""
+    """Pack rows of red, green and blue into one number each, in the same order."""
     wide = srgb.astype(np.uint32)
     packed: NDArray[np.uint32] = wide[:, 0] << np.uint32(16) | wide[:, 1] << np.uint32(8) | wide[:, 2]
     return packed
@@ -89,7 +88,7 @@ def _unpacked(packed: NDArray[np.uint32]) -> NDArray[np.uint8]:
 
 
 def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: int) -> NDArray[np.int64]:
-    """Put each of the `distinct` colours into one of at most `count` groups, numbered from 0 without gaps."""
+    """Return the group of each of the `distinct` colours: at most `count` groups, numbered from 0 without gaps."""
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]

@@ -1,4 +1,4 @@
-"""Linear light to sRGB and back, by the exact curve.
+"""Conversion between linear light and sRGB, by the exact curve.
 
 Source: IEC 61966-2-1:1999, with its amendment's thresholds 0.0031308 and 0.04045.
 """
@@ -14,17 +14,22 @@ if TYPE_CHECKING:
 
 
 def srgb_from_linear(linear: ArrayLike) -> NDArray[np.uint8]:
-    """Encode linear light as sRGB of 8 bits, rounded to the nearest (halves up), clipped to 0 … 1 before.
+    """Encode linear light as sRGB of 8 bits, clipped to 0 … 1 first and rounded to the nearest (halves up).
 
     Parameters
     ----------
     linear
-        Linear components, any shape, 1 for full.
+        Linear components, any shape; 1 is the brightest.
 
     Returns
     -------
     srgb
         uint8, of the same shape.
+
+    Examples
+    --------
+    >>> srgb_from_linear([0.0, 0.5, 1.0])
+    array([  0, 188, 255], dtype=uint8)
     """
     light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
     encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.power(light, 1 / 2.4) - 0.055)

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from voxrt.voxelize import arguments
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8, srgb_from_linear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Wrap: TypeAlias = Literal["repeat", "mirror", "clamp"]
+
+WRAPS: tuple[Wrap, ...] = ("repeat", "mirror", "clamp")
 
 _STRIP = 1 << 22  # pixels
 _LINEAR = LINEAR_OF_SRGB8.astype(np.float32)
@@ -27,16 +30,43 @@ class Texture:
     Attributes
     ----------
     pixels
-        uint8, shape (H, W, 4): sRGB colour and linear alpha. Row 0 stands at v = 0, column 0 at u = 0.
+        uint8, shape (H, W, 4): sRGB colour and linear alpha. Row 0 is at v = 0, column 0 at u = 0.
     wrap
-        What happens outside 0 … 1, along u and along v.
+        How texture coordinates outside 0 … 1 are treated, along u and along v: the image repeats, is mirrored, or its
+        border continues (``"clamp"``).
     nearest
-        Samples take the nearest pixel's colour instead of mixing four.
+        Whether a sample takes the nearest pixel's colour instead of mixing four.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Pixels of another shape or range, or another wrap mode.
+
+    Examples
+    --------
+    >>> texture = Texture(np.full((2, 2, 4), 255, np.uint8), ("clamp", "clamp"))
+    >>> look_up(texture, np.array([[0.5, 0.5]]))
+    array([[1., 1., 1., 1.]])
     """
 
     pixels: NDArray[np.uint8]
     wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
     nearest: bool = False
+
+    def __post_init__(self) -> None:
+        pixels = arguments.whole_array("Texture.pixels", self.pixels, ("H", "W", 4), np.uint8, low=0, high=255)
+        if not pixels.size:
+            raise ValueError(f"Texture.pixels must hold one pixel or more, not {pixels.shape}")
+        wrap = tuple(arguments.choice("Texture.wrap", one, WRAPS) for one in self.wrap)
+        if len(wrap) != 2:
+            raise ValueError(f"Texture.wrap must be two modes, for u and v, not {len(wrap)}")
+        object.__setattr__(self, "pixels", pixels)
+        object.__setattr__(self, "wrap", wrap)
+        object.__setattr__(self, "nearest", arguments.flag("Texture.nearest", self.nearest))
+
+    def __repr__(self) -> str:
+        height, width = self.pixels.shape[:2]
+        return f"Texture(width={width}, height={height}, wrap={self.wrap}, nearest={self.nearest})"
 
 
 def look_up(texture: Texture, uv: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -62,13 +92,13 @@ def look_up(texture: Texture, uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def halved(texture: Texture) -> Texture:
-    """Return a texture of half as many pixels a side, each the mean of 2 by 2, rounded to 8 bits.
+    """Return a texture with half as many pixels per side, each the mean of 2 by 2, rounded to 8 bits.
 
-    They are mixed in linear light. Alpha weighs colours, so that what cannot be seen does not tint what can.
+    The mean is taken in linear light and weighted by alpha, so that transparent pixels do not change the colour.
     """
     height, width = texture.pixels.shape[:2]
     pixels = np.pad(texture.pixels, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge")
-    strip = max(2, _STRIP // width // 2 * 2)  # rows, to bound the memory
+    strip = max(2, _STRIP // width // 2 * 2)  # rows, to limit the memory
     strips = [_halved(pixels[top : top + strip]) for top in range(0, len(pixels), strip)]
     return Texture(np.concatenate(strips), texture.wrap)
 
@@ -96,7 +126,7 @@ def _mean(plane: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _wrapped(coordinate: NDArray[np.float64], wrap: Wrap) -> NDArray[np.float64]:
-    """Bring coordinates into 0 … 1, or 0 … 2 for mirrored ones, where they are exact however far out they were."""
+    """Return coordinates wrapped into 0 … 1, or 0 … 2 for mirrored ones; exact for coordinates of any size."""
     if wrap == "clamp":
         return np.nan_to_num(np.clip(coordinate, 0.0, 1.0))
     with np.errstate(invalid="ignore"):
@@ -120,7 +150,7 @@ def _columns(x: NDArray[np.int64], texture: Texture) -> NDArray[np.int64]:
 
 
 def _index(pixel: NDArray[np.int64], size: int, wrap: Wrap) -> NDArray[np.int64]:
-    """Bring pixels, -1 … size or to twice the size for mirrored ones, into the image."""
+    """Return pixel indices wrapped into the image; they are -1 … size, or up to twice the size for mirrored ones."""
     if wrap == "clamp":
         clipped: NDArray[np.int64] = np.clip(pixel, 0, size - 1)
         return clipped

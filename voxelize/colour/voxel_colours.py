@@ -1,9 +1,10 @@
-"""From paint to materials voxel by voxel: a palette for what a grid can show of a scene's textures and vertex colours.
+"""Colours per voxel: one palette for the textures and vertex colours of a scene, as finely as a grid can show them.
 
-Each painted triangle gets a raster whose cells are about a voxel wide: its columns run along a side of the triangle,
-its rows towards the corner across. So there are about two cells a voxel that it covers, slivers included. A cell has
-the colour of the paint in its middle; textures finer than cells are reduced first. All cells of the scene share one
-palette. Then the voxelizer gives each voxel of the shell the material of the cell nearest to it (src/tint.h).
+Each triangle with an appearance gets a raster whose cells are about one voxel wide. Its columns run along one side of
+the triangle, its rows towards the opposite corner, so there are about two cells per covered voxel, also on slivers. A
+cell has the colour of the appearance at its centre; finer textures are reduced first. All cells of the scene share one
+palette. The voxelizer gives each voxel of the shell the material of the cell nearest to its centre
+(src/material_raster.h).
 """
 
 from __future__ import annotations
@@ -13,27 +14,31 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colliders import stand_ins
-from voxrt.voxelize.colour.paint import shade
+from voxrt.voxelize import arguments
+from voxrt.voxelize.colour.appearance import shade
 from voxrt.voxelize.colour.palette import quantize
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.colour.texture import Texture, halved
 from voxrt.voxelize.errors import DoesNotFitError
-from voxrt.voxelize.scene import MATERIAL_LIMIT, Material, Tints
+from voxrt.voxelize.grid import Grid
+from voxrt.voxelize.materials import MATERIAL_LIMIT, Material
+from voxrt.voxelize.mesh import MaterialMap
+from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
+from voxrt.voxelize.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.colliders import Geometry
-    from voxrt.voxelize.colour.paint import Coat, Paint
-    from voxrt.voxelize.grid import Grid
-    from voxrt.voxelize.scene import Mesh, Scene
+    from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
+    from voxrt.voxelize.mesh import Mesh
+    from voxrt.voxelize.object_proxies import Geometry
 
 DEFAULT_COLOURS = 32
-"""How many colours painted surfaces get together, where nobody says: pictures of models then differ from those with all
-254 by 45 to 63 dB (38 for a photograph); twice as many take up to a quarter more words for 2 to 4 dB."""
+"""The default number of colours for all textures and vertex colours of a scene. Pictures of test models with 32 colours
+differ from those with 254 by 45 to 63 dB (38 dB for a photograph); 64 colours gain 2 to 4 dB and cost up to a quarter
+more memory words."""
 
 _MOST_CELLS = 1 << 23
 _LONGEST = 1 << 16
@@ -41,82 +46,108 @@ _CHUNK = 1 << 18
 _RIGHT = 1e-6
 
 
-def tint(scene: Scene, grid: Grid, *, colours: int = DEFAULT_COLOURS, geometry: Geometry = "auto") -> Scene:
-    """Give painted surfaces materials that vary over triangles as finely as a grid shows.
+def assign_colours(scene: Scene, grid: Grid, *, colours: int = DEFAULT_COLOURS, geometry: Geometry = "auto") -> Scene:
+    """Give textured and vertex-coloured triangles materials that vary as finely as a grid shows.
 
-    What the voxelizer covers does not change, but for surface below its paint's alpha cutoff, which is cut away.
+    The voxels that are covered stay the same, except where the alpha of a surface is below its cutoff: there it is cut
+    away.
 
     Parameters
     ----------
     scene
-        As it was loaded.
+        A scene as it was loaded.
     grid
-        The grid that it will be voxelized on.
+        The grid on which it will be voxelized.
     colours
-        The most materials to add, 1 … 254: they share what the scene's own leave of 255. Where there are fewer
-        colours of 8 bits, each keeps its own.
+        The most materials to add, 1 … 254; fewer where the scene's own materials leave fewer of the 255 ids. Where
+        there are no more sRGB colours than that, each is kept exactly.
     geometry
-        As for :func:`voxrt.voxelize.voxelize`: objects whose colliders stand for them are not tinted.
+        As for :func:`voxrt.voxelize.voxelize`: objects that colliders represent keep their materials.
 
     Returns
     -------
-    The scene with :attr:`Mesh.tints`, and its materials with the palette appended, each named after the paint that it
-    covers most of. Its own materials keep their ids.
+    Scene
+        The scene with :attr:`Mesh.material_map <voxrt.voxelize.Mesh>` set, and the palette appended to its materials.
+        A palette entry is named after the material that it covers most of, and its colour. Materials of the scene keep
+        their ids.
 
     Raises
     ------
-    ValueError
-        `colours` is out of range.
+    TypeError, ValueError
+        An argument of the wrong kind or range.
     DoesNotFitError
-        The scene's own materials leave no id to the palette.
+        The scene's own materials leave no id for the palette.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from voxrt.voxelize import EMPTY, Appearance, Grid, Material, Mesh, Scene, SceneObject, SurfaceAppearance
+    >>> red, blue = (1, 0, 0, 1), (0, 0, 1, 1)
+    >>> surface = SurfaceAppearance([Appearance("flag")], [0, 0], np.zeros((2, 3, 2)), [[red] * 3, [blue] * 3])
+    >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2], [0, 1, 3]], [1, 1], surface)
+    >>> scene = Scene("flag", [SceneObject("flag", mesh)], [EMPTY, Material("flag", (128, 0, 128))])
+    >>> [material.name for material in assign_colours(scene, Grid(2, (0, 0, 0), 0.25)).materials]
+    ['empty', 'flag', 'flag #0000ff', 'flag #ff0000']
     """
-    if not 1 <= colours < MATERIAL_LIMIT:
-        raise ValueError(f"colours must be 1 … {MATERIAL_LIMIT - 1}, not {colours}")
-    frames = _frames(scene, grid, geometry)
-    if not frames:
+    arguments.instance("scene", scene, Scene)
+    arguments.instance("grid", grid, Grid)
+    arguments.choice("geometry", geometry, GEOMETRIES)
+    colours = arguments.whole("colours", colours, 1, MATERIAL_LIMIT - 1)
+    meshes = _varied_meshes(scene, grid, geometry)
+    if not meshes:
         return scene
-    outlines = _outlines(frames.values())
-    brushes: dict[tuple[int, int], Texture] = {}
-    cells = [_paint_cells(one, outline, brushes) for one, outline in zip(frames.values(), outlines, strict=True)]
-    materials, ids = _materials(scene, cells, colours)
-    tinted = {
+    outlines = _outlines(meshes.values())
+    reduced: dict[tuple[int, int], Texture] = {}
+    cells = [_cells_of(one, outline, reduced) for one, outline in zip(meshes.values(), outlines, strict=True)]
+    materials, cell_ids = _materials(scene, cells, colours)
+    mapped = {
         key: replace(
-            frame.mesh,
-            materials=_inner(frame, worn, painted),
-            tints=Tints(outline.sizes, outline.places.astype(np.float32), worn),
+            varied.mesh,
+            materials=_uniform_materials(varied, ids, own_cells),
+            material_map=MaterialMap(outline.sizes, outline.corners.astype(np.float32), ids),
         )
-        for (key, frame), outline, painted, worn in zip(frames.items(), outlines, cells, ids, strict=True)
+        for (key, varied), outline, own_cells, ids in zip(meshes.items(), outlines, cells, cell_ids, strict=True)
     }
-    objects = tuple(replace(item, mesh=tinted.get(id(item.mesh), item.mesh)) for item in scene.objects)
+    objects = tuple(replace(item, mesh=mapped.get(id(item.mesh), item.mesh)) for item in scene.objects)
     return replace(scene, objects=objects, materials=materials)
 
 
 @dataclass(eq=False, slots=True)
-class _Frame:
-    """A painted mesh, the largest of the ways from it to voxels, shape (3, 3), and how many objects show it."""
+class _VariedMesh:
+    """A mesh whose colours vary over triangles.
+
+    Attributes
+    ----------
+    mesh, appearance
+        The mesh and its appearance.
+    linear
+        float64, shape (3, 3): the linear part from its frame to voxels, of the object that shows it largest.
+    objects
+        The number of objects that show it.
+    """
 
     mesh: Mesh
-    coat: Coat
+    appearance: SurfaceAppearance
     linear: NDArray[np.float64]
     objects: int = 0
 
 
-def _frames(scene: Scene, grid: Grid, geometry: Geometry) -> dict[int, _Frame]:
-    frames: dict[int, _Frame] = {}
+def _varied_meshes(scene: Scene, grid: Grid, geometry: Geometry) -> dict[int, _VariedMesh]:
+    meshes: dict[int, _VariedMesh] = {}
     for item in scene.objects:
-        if item.mesh.coat is None or stand_ins(item, geometry) is not None:
+        if item.mesh.appearance is None or proxies(item, geometry) is not None:
             continue
         linear = item.transform[:3, :3] / grid.voxel_size
-        frame = frames.setdefault(id(item.mesh), _Frame(item.mesh, item.mesh.coat, linear))
-        frame.objects += 1
-        if np.abs(linear).sum() > np.abs(frame.linear).sum():
-            frame.linear = linear
-    return frames
+        varied = meshes.setdefault(id(item.mesh), _VariedMesh(item.mesh, item.mesh.appearance, linear))
+        varied.objects += 1
+        if np.abs(linear).sum() > np.abs(varied.linear).sum():
+            varied.linear = linear
+    return meshes
 
 
 @dataclass(eq=False, slots=True)
 class _Outline:
-    """How the triangles of a mesh lie in their rasters.
+    """The placement of a mesh's triangles in their rasters.
 
     Attributes
     ----------
@@ -126,19 +157,19 @@ class _Outline:
         intp, shape (T,): the corner at which that side begins.
     foot
         float64, shape (T,): where the height stands on it, 0 … 1.
-    sizes, places
-        As in :class:`Tints`.
+    sizes, corners
+        As in :class:`MaterialMap`.
     """
 
     lengths: NDArray[np.float64]
     base: NDArray[np.intp]
     foot: NDArray[np.float64]
     sizes: NDArray[np.int32]
-    places: NDArray[np.float64]
+    corners: NDArray[np.float64]
 
 
-def _outlines(frames: Iterable[_Frame]) -> list[_Outline]:
-    outlines = [_outline(frame) for frame in frames]
+def _outlines(meshes: Iterable[_VariedMesh]) -> list[_Outline]:
+    outlines = [_outline(varied) for varied in meshes]
     scale = 1.0
     while True:
         for outline in outlines:
@@ -151,15 +182,15 @@ def _outlines(frames: Iterable[_Frame]) -> list[_Outline]:
     for outline in outlines:
         rows = np.arange(len(outline.base))
         second, apex = (outline.base + 1) % 3, (outline.base + 2) % 3
-        outline.places[rows, second, 0] = outline.sizes[:, 0]
-        outline.places[rows, apex, 0] = outline.foot * outline.sizes[:, 0]
-        outline.places[rows, apex, 1] = outline.sizes[:, 1]
+        outline.corners[rows, second, 0] = outline.sizes[:, 0]
+        outline.corners[rows, apex, 0] = outline.foot * outline.sizes[:, 0]
+        outline.corners[rows, apex, 1] = outline.sizes[:, 1]
     return outlines
 
 
-def _outline(frame: _Frame) -> _Outline:
+def _outline(varied: _VariedMesh) -> _Outline:
     with np.errstate(over="ignore", invalid="ignore"):
-        corners = (frame.mesh.positions @ frame.linear.T)[frame.mesh.triangles]
+        corners = (varied.mesh.positions @ varied.linear.T)[varied.mesh.triangles]
         corners = np.clip(np.nan_to_num(corners), -1e9, 1e9)
     sides = np.roll(corners, -1, axis=1) - corners
     squares = np.einsum("tki,tki->tk", sides, sides)
@@ -173,8 +204,8 @@ def _outline(frame: _Frame) -> _Outline:
     foot = np.clip(feet[rows, base], 0.0, 1.0)
     along, across = sides[rows, base], -sides[rows, (base + 2) % 3]
     height = np.linalg.norm(across - foot[:, None] * along, axis=1)
-    painted = (frame.coat.rows >= 0)[:, None]
-    sizes = np.where(painted, 1, 0).astype(np.int32) * np.ones((1, 2), np.int32)
+    mapped = (varied.appearance.rows >= 0)[:, None]
+    sizes = np.where(mapped, 1, 0).astype(np.int32) * np.ones((1, 2), np.int32)
     lengths = np.stack([np.sqrt(squares[rows, base]), height], axis=1)
     return _Outline(lengths, base, foot, sizes, np.zeros((len(base), 3, 2)))
 
@@ -201,7 +232,7 @@ class _Cells:
     owners: NDArray[np.uint8]
 
 
-def _paint_cells(frame: _Frame, outline: _Outline, brushes: dict[tuple[int, int], Texture]) -> _Cells:
+def _cells_of(varied: _VariedMesh, outline: _Outline, reduced: dict[tuple[int, int], Texture]) -> _Cells:
     counts = np.prod(outline.sizes, axis=1, dtype=np.int64)
     starts = np.cumsum(counts) - counts
     total = int(counts.sum())
@@ -209,33 +240,35 @@ def _paint_cells(frame: _Frame, outline: _Outline, brushes: dict[tuple[int, int]
         np.empty((total, 3), np.uint8),
         np.empty(total, np.bool_),
         np.empty(total, np.float32),
-        np.repeat(frame.mesh.materials, counts),
+        np.repeat(varied.mesh.materials, counts),
     )
-    areas = np.prod(outline.lengths, axis=1) / np.maximum(counts, 1) * frame.objects
-    for row, paint in enumerate(frame.coat.paints):
-        members = np.flatnonzero(frame.coat.rows == row)
-        steps = _steps(paint, frame.coat, outline, members)
+    areas = np.prod(outline.lengths, axis=1) / np.maximum(counts, 1) * varied.objects
+    for row, appearance in enumerate(varied.appearance.entries):
+        members = np.flatnonzero(varied.appearance.rows == row)
+        steps = _steps(appearance, varied.appearance, outline, members)
         for step in np.unique(steps).tolist():
-            texture = _brush(paint, step, brushes)
+            texture = _reduced_texture(appearance, step, reduced)
             for some in _chunks(members[steps == step], counts):
                 shares, inside = _centres(outline, some, counts[some])
-                colours = _colours(frame.coat, paint, texture, np.repeat(some, counts[some]), shares)
+                colours = _colours(varied.appearance, appearance, texture, np.repeat(some, counts[some]), shares)
                 at = np.arange(len(shares)) + np.repeat(
                     starts[some] - (np.cumsum(counts[some]) - counts[some]), counts[some]
                 )
                 cells.colours[at] = srgb_from_linear(colours[:, :3])
-                cells.solid[at] = colours[:, 3] >= paint.cutoff if paint.cutoff > 0 else True
+                cells.solid[at] = colours[:, 3] >= appearance.cutoff if appearance.cutoff > 0 else True
                 cells.weights[at] = np.repeat(areas[some], counts[some]) * inside
     return cells
 
 
-def _steps(paint: Paint, coat: Coat, outline: _Outline, members: NDArray[np.intp]) -> NDArray[np.int64]:
-    """Tell how many pixels of its texture are as wide as the cells of triangles: powers of two."""
-    if paint.texture is None:
+def _steps(
+    appearance: Appearance, surface: SurfaceAppearance, outline: _Outline, members: NDArray[np.intp]
+) -> NDArray[np.int64]:
+    """Return the width of each triangle's cells in pixels of the texture, rounded down to a power of two."""
+    if appearance.texture is None:
         return np.ones(len(members), np.int64)
-    height, width = paint.texture.pixels.shape[:2]
+    height, width = appearance.texture.pixels.shape[:2]
     with np.errstate(over="ignore", invalid="ignore"):
-        uv = coat.uv[members] * (width, height)
+        uv = surface.uv[members] * (width, height)
         one, other = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
         pixels = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
     across = np.sqrt(np.nan_to_num(pixels) / np.prod(outline.sizes[members], axis=1, dtype=np.int64))
@@ -244,16 +277,16 @@ def _steps(paint: Paint, coat: Coat, outline: _Outline, members: NDArray[np.intp
     return found
 
 
-def _brush(paint: Paint, step: int, brushes: dict[tuple[int, int], Texture]) -> Texture | None:
-    """Return the texture of a paint, reduced; it is kept in `brushes`, since triangles and meshes share it."""
-    if paint.texture is None or step == 1:
-        return paint.texture
-    key = id(paint.texture), step
-    if key not in brushes:
-        finer = _brush(paint, step // 2, brushes)
+def _reduced_texture(appearance: Appearance, step: int, reduced: dict[tuple[int, int], Texture]) -> Texture | None:
+    """Return an appearance's texture with `step` pixels averaged into one; `reduced` keeps it for other meshes."""
+    if appearance.texture is None or step == 1:
+        return appearance.texture
+    key = id(appearance.texture), step
+    if key not in reduced:
+        finer = _reduced_texture(appearance, step // 2, reduced)
         assert finer is not None
-        brushes[key] = halved(finer)
-    return brushes[key]
+        reduced[key] = halved(finer)
+    return reduced[key]
 
 
 def _chunks(triangles: NDArray[np.intp], counts: NDArray[np.int64]) -> Iterator[NDArray[np.intp]]:
@@ -266,7 +299,7 @@ def _chunks(triangles: NDArray[np.intp], counts: NDArray[np.int64]) -> Iterator[
 def _centres(
     outline: _Outline, triangles: NDArray[np.intp], counts: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return the middles of the triangles' cells as barycentric coordinates, and which lay inside of themselves."""
+    """Return the cells' centres, moved into their triangles (barycentric coordinates), and which needed no move."""
     first = np.cumsum(counts) - counts
     number = np.arange(int(counts.sum())) - np.repeat(first, counts)
     columns = np.repeat(outline.sizes[triangles, 0], counts)
@@ -288,15 +321,19 @@ def _centres(
 
 
 def _colours(
-    coat: Coat, paint: Paint, texture: Texture | None, triangles: NDArray[np.intp], shares: NDArray[np.float64]
+    surface: SurfaceAppearance,
+    appearance: Appearance,
+    texture: Texture | None,
+    triangles: NDArray[np.intp],
+    shares: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    uv = np.einsum("nk,nkc->nc", shares, coat.uv[triangles])
-    mixed = np.einsum("nk,nkc->nc", shares, coat.colours[triangles].astype(np.float64))
-    return shade(paint, texture, uv, mixed)
+    uv = np.einsum("nk,nkc->nc", shares, surface.uv[triangles])
+    mixed = np.einsum("nk,nkc->nc", shares, surface.colours[triangles].astype(np.float64))
+    return shade(appearance, texture, uv, mixed)
 
 
 def _materials(scene: Scene, cells: list[_Cells], colours: int) -> tuple[tuple[Material, ...], list[NDArray[np.uint8]]]:
-    """Return the scene's materials with a palette appended, and the cells' ids, mesh by mesh."""
+    """Return the scene's materials with the palette appended, and the material ids of the cells, mesh by mesh."""
     solid = np.concatenate([one.solid for one in cells])
     owners = np.concatenate([one.owners for one in cells])[solid]
     weights = np.concatenate([one.weights for one in cells])[solid].astype(np.float64)
@@ -305,8 +342,8 @@ def _materials(scene: Scene, cells: list[_Cells], colours: int) -> tuple[tuple[M
     free = _free_ids(scene)
     if len(free) < kinds:
         raise DoesNotFitError(
-            f"{scene.name}: the scene's own materials leave none of the {MATERIAL_LIMIT} to its painted surfaces; "
-            "merge some in the asset"
+            f"{scene.name}: its own materials take all {MATERIAL_LIMIT} ids and leave none for textures and vertex "
+            "colours; merge some in the asset"
         )
     found = np.concatenate([one.colours for one in cells])[solid]
     palette, rows = quantize(found, weights, min(colours, len(free) // kinds))
@@ -323,22 +360,22 @@ def _materials(scene: Scene, cells: list[_Cells], colours: int) -> tuple[tuple[M
         if ids[entry] != owner:
             name = f"{named.name} #{red:02x}{green:02x}{blue:02x}"
             materials[int(ids[entry])] = Material(name, (red, green, blue), named.mirror)
-    worn = np.zeros(len(solid), np.uint8)
-    worn[solid] = ids[entries]
-    return tuple(materials.values()), np.split(worn, np.cumsum([len(one.solid) for one in cells])[:-1])
+    of_cells = np.zeros(len(solid), np.uint8)
+    of_cells[solid] = ids[entries]
+    return tuple(materials.values()), np.split(of_cells, np.cumsum([len(one.solid) for one in cells])[:-1])
 
 
-def _inner(frame: _Frame, worn: NDArray[np.uint8], cells: _Cells) -> NDArray[np.uint8]:
-    """Return the materials of a mesh's triangles where they have one each: its inside takes the first of them."""
-    cover = np.bincount(worn, cells.weights + np.float32(1e-12), minlength=256)
+def _uniform_materials(varied: _VariedMesh, ids: NDArray[np.uint8], cells: _Cells) -> NDArray[np.uint8]:
+    """Return one material per triangle: the inside of an object takes that of its first triangle."""
+    cover = np.bincount(ids, cells.weights + np.float32(1e-12), minlength=256)
     most = int(cover[1:].argmax()) + 1
     if not cover[most]:  # all is cut away
-        return frame.mesh.materials
-    return np.where(frame.coat.rows >= 0, np.uint8(most), frame.mesh.materials)
+        return varied.mesh.materials
+    return np.where(varied.appearance.rows >= 0, np.uint8(most), varied.mesh.materials)
 
 
 def _free_ids(scene: Scene) -> list[int]:
-    """Return the ids behind the scene's materials, then those that it left out between them."""
+    """Return the ids above the scene's materials, then unused ids among them."""
     used = {item.collider_material for item in scene.objects}
     for mesh in {id(item.mesh): item.mesh for item in scene.objects}.values():
         used.update(np.unique(mesh.materials).tolist())

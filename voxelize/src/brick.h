@@ -1,14 +1,16 @@
-// Bricks of 8x8x8 voxels as the voxelizer works on them: eight slices along z, a bit of a slice is a column.
+// Bricks of 8x8x8 voxels as the voxelizer works on them: eight slices along z; each bit of a slice is a column.
 //
-// The slice order makes a column sweep eight steps of 64 columns; columns stand in Morton order within a slice, so
-// that the result's order, Morton in all three axes, is little work at the end.
+// With slices, a sweep along z takes eight steps of 64 columns. Columns are in Morton order within a slice, so that
+// little is left to do for the Morton order of the result.
 #pragma once
+
+#include "morton.h"
 
 #include <array>
 #include <bit>
 #include <cstdint>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 using Slices = std::array<uint64_t, 8>;
 
@@ -26,23 +28,11 @@ inline int count(const Slices& s) {
     for (uint64_t v : s) {
         v -= v >> 1 & ones;
         v = (v & pairs) + (v >> 2 & pairs);
-        bytes += (v + (v >> 4)) & nibbles; // at most 64 a byte
+        bytes += (v + (v >> 4)) & nibbles; // at most 64 per byte
     }
     bytes = (bytes & 0x00FF'00FF'00FF'00FF) + (bytes >> 8 & 0x00FF'00FF'00FF'00FF);
     return int(bytes * 0x0001'0001'0001'0001 >> 48);
 }
-
-/// Spreads the low 16 bits so that bit k goes to bit 3k.
-constexpr uint64_t spread3(uint64_t v) {
-    v &= 0xFFFF;
-    v = (v | v << 16) & 0x0000'00FF'0000'00FF;
-    v = (v | v << 8) & 0x0000'F00F'0000'F00F;
-    v = (v | v << 4) & 0x000C'30C3'000C'30C3;
-    v = (v | v << 2) & 0x0000'2492'4924'9249;
-    return v;
-}
-
-constexpr uint64_t morton(uint32_t x, uint32_t y, uint32_t z) { return spread3(x) | spread3(y) << 1 | spread3(z) << 2; }
 
 /// The bit of a slice that stands for column (x, y) of a brick, and back.
 inline constexpr std::array<uint8_t, 8> kSpread2 = {0, 1, 4, 5, 16, 17, 20, 21};
@@ -50,7 +40,7 @@ constexpr int column_bit(int x, int y) { return kSpread2[x & 7] | kSpread2[y & 7
 constexpr int column_x(int bit) { return (bit & 1) | (bit >> 1 & 2) | (bit >> 2 & 4); }
 constexpr int column_y(int bit) { return column_x(bit >> 1); }
 
-/// The other way to hold 512 voxels: a byte a column, its bits along z. An interval of a column is one operation.
+/// The other way to hold 512 voxels: a byte per column, its bits along z. An interval of a column is one operation.
 using Columns = std::array<uint8_t, 64>;
 
 /// The voxels from … to of a column.
@@ -115,4 +105,4 @@ inline Slices morton_order(const Slices& slices) {
     return words;
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

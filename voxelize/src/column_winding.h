@@ -1,16 +1,17 @@
-// The winding number of 64 columns at once, as bit planes, swept upwards through the crossings of a surface.
+// The winding numbers of 64 columns at once, as bit planes (bit-sliced counters), swept upwards through the crossings
+// of a surface.
 //
-// A voxel that the surface does not cover lies wholly inside or outside, so the number at its column's ray decides it.
-// Bound: two word operations a slice and changed bit plane; slices without crossings cost nothing.
+// A voxel that the surface does not cover lies wholly inside or outside, so the winding number at its column's ray
+// decides it. Cost: two word operations per slice and changed bit plane; slices without crossings cost nothing.
 #pragma once
 
 #include "brick.h"
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 class ColumnWinding {
 public:
-    /// Adds one to the columns of `up`, takes one from those of `down`.
+    /// Adds one to the columns of `up`, subtracts one from those of `down`.
     void add(uint64_t up, uint64_t down) {
         for (int i = 0; up != 0 && i < kPlanes; ++i) {
             const uint64_t carry = planes_[i] & up;
@@ -61,4 +62,4 @@ private:
     uint64_t positive_ = 0, negative_ = 0, overlap_ = 0;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 namespace {
 
 using Face = std::array<int32_t, 3>;
@@ -133,4 +133,4 @@ std::vector<Face> convex_hull(const std::vector<Vertex>& points) {
     return result;
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -9,14 +9,14 @@
 #include <cstdlib>
 #include <optional>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 /// The voxels of a column that a solid overlaps (lo … hi), and those wholly within it (inner_lo … inner_hi).
 struct ColumnSpan {
     int lo = 0, hi = -1, inner_lo = 0, inner_hi = -1;
 };
 
-/// A box along the axes of the grid, 1/4096 voxel. A side of no thickness is the layer of voxels above it.
+/// A box along the axes of the grid, 1/4096 voxel. Where it has no thickness it covers the voxels above it.
 struct AxisBox {
     int64_t min[3], max[3];
 
@@ -35,7 +35,7 @@ struct AxisBox {
     }
 };
 
-/// A round ball, 1/4096 voxel; |centre| <= kReach, 0 < radius <= kReach.
+/// A round ball, 1/4096 voxel; |centre| <= kCoordinateLimit, 0 < radius <= kCoordinateLimit.
 struct Ball {
     int64_t centre[3], radius;
 
@@ -60,10 +60,10 @@ struct Ball {
         const int64_t square = radius * radius;
         if (near_square >= square)
             return {};
-        const int64_t reach = root(square - near_square - 1); // largest distance along z with its square below
+        const int64_t extent = root(square - near_square - 1); // largest distance along z with its square below
         ColumnSpan span;
-        span.lo = voxel_below(centre[2] - reach);
-        span.hi = voxel_floor(centre[2] + reach);
+        span.lo = voxel_below(centre[2] - extent);
+        span.hi = voxel_floor(centre[2] + extent);
         if (far_within && far_square <= square) {
             const int64_t depth = root(square - far_square);
             span.inner_lo = voxel_below(centre[2] - depth) + 1;
@@ -84,7 +84,7 @@ private:
     }
 };
 
-/// The image of the unit ball under an affine map, in voxels. Its shape matrix S = M M^T: the reach along n is
+/// The image of the unit ball under an affine map, in voxels. Its shape matrix is S = M M^T. The extent along n is
 /// sqrt(n^T S n), and a slice x = const is again an ellipsoid, with the Schur complement of S.
 class Ellipsoid {
 public:
@@ -141,28 +141,28 @@ private:
         return centre_[2] + mean + sign * std::sqrt(std::max(spread, 0.0) * left);
     }
 
-    /// Highest or lowest point over the cell x … x+1, y … y+1: at the ellipsoid's own, or on the cell's rim.
+    /// Highest or lowest point over the cell x … x+1, y … y+1: that of the ellipsoid, or on an edge of the cell.
     std::optional<double> extreme(int x, int y, int sign) const {
-        const double reach = sign / std::sqrt(shape_[2][2]);
-        const double px = centre_[0] + shape_[0][2] * reach, py = centre_[1] + shape_[1][2] * reach;
+        const double extent = sign / std::sqrt(shape_[2][2]);
+        const double px = centre_[0] + shape_[0][2] * extent, py = centre_[1] + shape_[1][2] * extent;
         if (px >= x && px <= x + 1 && py >= y && py <= y + 1)
-            return centre_[2] + shape_[2][2] * reach;
+            return centre_[2] + shape_[2][2] * extent;
         std::optional<double> best;
         auto offer = [&](std::optional<double> z) {
             if (z && (!best || sign * *z > sign * *best))
                 best = z;
         };
         for (int side = 0; side < 2; ++side) {
-            if (auto v = rim(0, 1, x + side, sign))
+            if (auto v = edge_extreme(0, 1, x + side, sign))
                 offer(chord(x + side, std::clamp(*v, double(y), double(y + 1)), sign));
-            if (auto u = rim(1, 0, y + side, sign))
+            if (auto u = edge_extreme(1, 0, y + side, sign))
                 offer(chord(std::clamp(*u, double(x), double(x + 1)), y + side, sign));
         }
         return best;
     }
 
     /// In the slice where coordinate `fixed` has a value: where along `free` the slice is highest or lowest.
-    std::optional<double> rim(int fixed, int free, double value, int sign) const {
+    std::optional<double> edge_extreme(int fixed, int free, double value, int sign) const {
         const double d = value - centre_[fixed], left = 1 - d * d / shape_[fixed][fixed];
         if (left < 0)
             return std::nullopt;
@@ -179,7 +179,7 @@ private:
 
 /// Claims a convex solid's voxels in one tile; returns how many were free.
 ///
-/// Bound: the columns under the solid; whole bricks within it are claimed 512 voxels at a time.
+/// Cost: the columns under the solid; bricks within it are claimed whole.
 template <class Solid>
 int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool fill, uint8_t material) {
     int64_t claimed = 0;
@@ -229,4 +229,4 @@ int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool
     return claimed;
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,15 +1,18 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
 #include "convex_hull.h"
+#include "python.h"
 #include "voxelizer.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
-using namespace voxrt;
+using namespace voxrt::voxelize;
+using voxrt::python::LongCall;
+using voxrt::python::NamedTuple;
+using voxrt::python::to_numpy;
 
 namespace {
 
@@ -17,37 +20,37 @@ template <typename T> using InputOf = nb::ndarray<const T, nb::numpy, nb::c_cont
 using MeshArrays =
     std::tuple<InputOf<double>, InputOf<int32_t>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<float>, InputOf<uint8_t>>;
 
-void require(bool holds, const char* what) {
-    if (!holds)
-        throw nb::value_error(what);
+void require(bool condition, const char* message) {
+    if (!condition)
+        throw nb::value_error(message);
 }
 
 constexpr int32_t kLongestRaster = 1 << 16;
 
-template <typename Array> void require_rows(const Array& array, size_t columns, const char* what) {
-    require(array.ndim() == 2 && array.shape(1) == columns, what);
+template <typename Array> void require_rows(const Array& array, size_t columns, const char* message) {
+    require(array.ndim() == 2 && array.shape(1) == columns, message);
 }
 
 /// The first cell of each triangle's raster.
 std::vector<int64_t> raster_starts(const MeshArrays& arrays) {
-    const auto& [positions, triangles, materials, sizes, places, tints] = arrays;
+    const auto& [positions, triangles, materials, sizes, coordinates, cells] = arrays;
     std::vector<int64_t> starts(sizes.size() / 2);
-    int64_t cells = 0;
+    int64_t total = 0;
     for (size_t t = 0; t < starts.size(); ++t) {
         const int64_t columns = sizes.data()[2 * t], rows = sizes.data()[2 * t + 1];
         require(columns >= 0 && columns <= kLongestRaster && rows >= 0 && rows <= kLongestRaster &&
                     (columns == 0) == (rows == 0),
                 "rasters must have 1 … 65536 columns and rows, or none");
-        starts[t] = cells;
-        cells += columns * rows;
-        require(cells <= int64_t(tints.size()), "rasters have more cells than there are materials");
+        starts[t] = total;
+        total += columns * rows;
+        require(total <= int64_t(cells.size()), "rasters have more cells than there are materials");
     }
-    require(tints.ndim() == 1 && int64_t(tints.size()) == cells, "rasters have fewer cells than there are materials");
+    require(cells.ndim() == 1 && int64_t(cells.size()) == total, "rasters have fewer cells than there are materials");
     return starts;
 }
 
 MeshView view_mesh(const MeshArrays& arrays, const std::vector<int64_t>& starts) {
-    const auto& [positions, triangles, materials, sizes, places, tints] = arrays;
+    const auto& [positions, triangles, materials, sizes, coordinates, cells] = arrays;
     require_rows(positions, 3, "positions must have shape (V, 3)");
     require_rows(triangles, 3, "triangles must have shape (T, 3)");
     require(materials.ndim() == 1 && (materials.size() == triangles.shape(0) || materials.size() == 0),
@@ -63,30 +66,29 @@ MeshView view_mesh(const MeshArrays& arrays, const std::vector<int64_t>& starts)
     for (size_t i = 0; i < materials.size(); ++i)
         require(materials.data()[i] != 0, "material 0 is empty space");
     require_rows(sizes, 2, "raster sizes must have shape (T, 2)");
-    require(places.ndim() == 3 && places.shape(0) == sizes.shape(0) && places.shape(1) == 3 && places.shape(2) == 2,
-            "places in rasters must have shape (T, 3, 2)");
+    require(coordinates.ndim() == 3 && coordinates.shape(0) == sizes.shape(0) && coordinates.shape(1) == 3 &&
+                coordinates.shape(2) == 2,
+            "raster coordinates must have shape (T, 3, 2)");
     require(sizes.shape(0) == triangles.shape(0) || sizes.shape(0) == 0, "raster sizes must have shape (T, 2)");
-    return {{positions.data(), positions.size()},
-            {corner, triangles.size()},
-            {materials.data(), materials.size()},
-            {{sizes.data(), sizes.size()}, {places.data(), places.size()}, {tints.data(), tints.size()}, starts}};
+    return {
+        {positions.data(), positions.size()},
+        {corner, triangles.size()},
+        {materials.data(), materials.size()},
+        {{sizes.data(), sizes.size()}, {coordinates.data(), coordinates.size()}, {cells.data(), cells.size()}, starts}};
 }
 
-template <typename T> nb::ndarray<nb::numpy, T> give(SparseVoxels::Array<T>& array) {
-    T* data = array.data.release();
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-    return nb::ndarray<nb::numpy, T>(data, {array.size}, owner);
+template <typename T> nb::object take(SparseVoxels::Array<T>& array) {
+    return to_numpy(std::move(array.data), {array.size});
+}
+template <typename T, size_t N> nb::object take(SparseVoxels::Array<std::array<T, N>>& array) {
+    return to_numpy(std::move(array.data), array.size);
 }
 
-template <typename T, size_t N> nb::ndarray<nb::numpy, T> give(SparseVoxels::Array<std::array<T, N>>& array) {
-    std::array<T, N>* data = array.data.release();
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<std::array<T, N>*>(p); });
-    return nb::ndarray<nb::numpy, T>(data, {array.size, N}, owner);
-}
+NamedTuple voxelized;
 
-nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
-                         InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
-                         InputOf<int32_t> objects_of, int objects, bool fill, int threads) {
+nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
+                          InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
+                          InputOf<int32_t> objects_of, int objects, bool fill, int threads) {
     require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
     require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024");
     require(objects >= 0, "objects must not be negative");
@@ -122,34 +124,29 @@ nb::tuple voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Input
 
     SparseVoxels out;
     {
-        nb::gil_scoped_release release;
-        Workers workers(threads, [] {
-            nb::gil_scoped_acquire acquire;
-            if (PyErr_CheckSignals() != 0)
-                throw nb::python_error();
-        });
-        out = voxelize(depth, parts, size_t(objects), fill, workers);
+        const LongCall call;
+        out = voxelize(depth, parts, size_t(objects), fill, threads);
     }
     nb::dict seconds;
     const StageSeconds& took = out.seconds;
     for (const auto& [stage, value] :
-         {std::pair{"survey", took.survey}, std::pair{"bin", took.bin}, std::pair{"coverage", took.coverage},
+         {std::pair{"analysis", took.analysis}, std::pair{"bin", took.bin}, std::pair{"coverage", took.coverage},
           std::pair{"fill", took.fill}, std::pair{"holes", took.holes}, std::pair{"order", took.order},
           std::pair{"gather", took.gather}})
         seconds[stage] = value;
-    return nb::make_tuple(give(out.brick_codes), give(out.brick_masks), give(out.brick_materials), give(out.brick_rows),
-                          give(out.cells), give(out.octant_codes), give(out.octant_levels), give(out.octant_materials),
-                          give(out.object_voxels), give(out.object_modes), give(out.object_turned), seconds);
+    return voxelized(take(out.brick_codes), take(out.brick_masks), take(out.brick_materials), take(out.brick_rows),
+                     take(out.cells), take(out.octant_codes), take(out.octant_levels), take(out.octant_materials),
+                     take(out.object_voxels), take(out.object_modes), take(out.object_flipped), seconds);
 }
 
-nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<double> frame) {
+nb::object hull_of(InputOf<double> positions, InputOf<double> frame) {
     require_rows(positions, 3, "positions must have shape (V, 3)");
     require(frame.size() == 12, "frame must have shape (3, 4)");
     const MeshView view{{positions.data(), positions.size()}, {}, {}};
     const PartView part{PartKind::mesh, &view, frame.data(), 1, 0};
     SparseVoxels::Array<std::array<int32_t, 3>> out;
     {
-        nb::gil_scoped_release release;
+        const LongCall call;
         std::vector<Vertex> points(view.vertex_count());
         for (size_t v = 0; v < points.size(); ++v)
             points[v] = snap_vertex(part, v);
@@ -157,7 +154,7 @@ nb::ndarray<nb::numpy, int32_t> hull_of(InputOf<double> positions, InputOf<doubl
         out.allocate(triangles.size());
         std::copy(triangles.begin(), triangles.end(), out.data.get());
     }
-    return give(out);
+    return take(out);
 }
 
 constexpr auto kVoxelizeManual = R"(Voxelize P parts; where they compete, the first keeps the voxel.
@@ -167,10 +164,11 @@ Parameters
 depth
     The grid's depth, 1 … 16.
 meshes
-    Positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their objects' frames; shared by parts. Then, for
-    materials that vary over triangles, the columns and rows of each triangle's raster (T, 2), 0 where it has none;
-    its corners' places in it (T, 3, 2); and the materials of all rasters' cells, as src/tint.h says. The three are
-    without rows where no triangle has a raster. They count in parts whose material is 0.
+    :class:`MeshArrays` (or plain tuples): positions (V, 3), triangles (T, 3), materials (T,) or (0,), in their
+    objects' frames; parts share them. Then, for materials that vary over triangles (src/material_raster.h), the
+    columns and rows of each triangle's raster (T, 2), 0 where it has none; the raster coordinates of its corners
+    (T, 3, 2); and the materials of the cells of all rasters. The last three have no rows where no triangle has a
+    raster. Rasters apply to parts whose material is 0.
 kinds
     Shape (P,): 0 mesh, 1 axis-aligned box, 2 ball, 3 ellipsoid.
 mesh_of
@@ -183,19 +181,21 @@ materials
 objects_of
     Shape (P,): ascending, below `objects`.
 fill
-    Claim what parts enclose, not their shells alone.
+    Whether parts claim what they enclose, not their shells alone.
 threads
     0 takes as many as the machine has. The result does not depend on it.
 
 Returns
 -------
-The arrays of :class:`voxrt.voxelize.Voxels` in the order of its attributes, then int64 voxels and uint8 modes
-(0 surface, 1 exact, 2 winding, 3 open, 4 turned) and int64 pieces turned by object, then wall seconds by stage.
+Voxelized
+    The arrays of :class:`voxrt.voxelize.Voxels` under their names; by object: the voxels that belong to it (int64),
+    its mode (uint8, an index of OBJECT_MODES) and how many of its components were flipped (int64); the wall seconds
+    per stage.
 
 Raises
 ------
-OutOfReachError
-    See there.
+OutOfRangeError
+    A part reaches beyond 2**18 voxels from the grid's corner, or is not a number.
 ValueError
     An array of the wrong shape or with an index out of range.)";
 
@@ -216,17 +216,29 @@ polygon twice, facing both ways; points on one line give nothing.)";
 } // namespace
 
 NB_MODULE(_native, m) {
-    static PyObject* out_of_reach = PyErr_NewExceptionWithDoc(
-        "voxrt.voxelize._native.OutOfReachError",
+    static PyObject* out_of_range = PyErr_NewExceptionWithDoc(
+        "voxrt.voxelize._native.OutOfRangeError",
         "A part reaches beyond 2**18 voxels from the grid's corner, or is not a number; the argument is its object.",
         PyExc_ValueError, nullptr);
-    m.attr("OutOfReachError") = nb::handle(out_of_reach);
+    m.attr("OutOfRangeError") = nb::handle(out_of_range);
+    nb::list modes;
+    for (const char* mode : kObjectModeNames)
+        modes.append(mode);
+    m.attr("OBJECT_MODES") = nb::tuple(modes);
+    NamedTuple(m, "MeshArrays",
+               {"positions", "triangles", "materials", "raster_sizes", "raster_coordinates", "raster_materials"},
+               "A mesh as voxelize() takes it.");
+    voxelized =
+        NamedTuple(m, "Voxelized",
+                   {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
+                    "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_flipped", "seconds"},
+                   "What voxelize() returns.");
     nb::register_exception_translator(
         [](const std::exception_ptr& failure, void*) {
             try {
                 std::rethrow_exception(failure);
-            } catch (const OutOfReach& e) {
-                PyErr_SetObject(out_of_reach, nb::int_(e.object).ptr());
+            } catch (const OutOfRange& e) {
+                PyErr_SetObject(out_of_range, nb::int_(e.object).ptr());
             }
         },
         nullptr);

@@ -1,14 +1,13 @@
-// Where the voxelizer's time goes: wall seconds by stage.
+// Where the voxelizer's time goes: wall seconds per stage. voxelizer.h says what each stage does and what bounds it.
 #pragma once
 
 #include <chrono>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-/// What bounds each: voxelizer.h.
 struct StageSeconds {
-    double survey = 0, bin = 0;                          // one after the other
-    double coverage = 0, fill = 0, holes = 0, order = 0; // of a tile
+    double analysis = 0, bin = 0;                        // one after the other
+    double coverage = 0, fill = 0, holes = 0, order = 0; // per tile, added up
     double gather = 0;
 
     double of_tiles() const { return coverage + fill + holes + order; }
@@ -20,8 +19,8 @@ struct StageSeconds {
     }
 };
 
-/// Gives the time since it was last asked. Bound: a reading of the clock, 25 ns.
-class Lap {
+/// Returns the seconds since the last call, or since construction. A call takes about 25 ns.
+class Stopwatch {
 public:
     double operator()() {
         const auto now = std::chrono::steady_clock::now();
@@ -34,4 +33,4 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,11 +1,12 @@
 // A tile's voxels in Morton order: bricks where the content is mixed, octants where it is uniform.
 //
-// The order is made cube by cube (64 voxels a side, 512 brick places); a grid's cubes are put in order afterwards.
+// A tile is sorted cube by cube (64 voxels per side, 512 slots of bricks); voxelize() then sorts the cubes of all
+// tiles.
 #pragma once
 
 #include "tile_voxels.h"
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
 /// A run of one tile's bricks and octants that make up a cube.
 struct CubeRun {
@@ -14,7 +15,7 @@ struct CubeRun {
     uint32_t bricks_from, bricks_to, octants_from, octants_to;
 };
 
-/// One tile's part of the result.
+/// The content of one tile.
 struct TileResult {
     std::vector<uint64_t> brick_codes;
     std::vector<Slices> brick_masks; // Morton order
@@ -26,10 +27,10 @@ struct TileResult {
     std::vector<CubeRun> runs;
 };
 
-class TileOrder {
+class TileSorter {
 public:
-    /// Orders the content of a tile (number `index`, at (tile_x, tile_y) in tiles).
-    void order(const TileVoxels& tile, uint32_t index, int tile_x, int tile_y, TileResult& out) {
+    /// Appends the content of a tile (number `index`, at (tile_x, tile_y) in tiles) to `out`.
+    void sort(const TileVoxels& tile, uint32_t index, int tile_x, int tile_y, TileResult& out) {
         for (int cube = 0; cube * kTileBricks < tile.height(); ++cube) {
             CubeRun run{morton(tile_x, tile_y, cube),      index, uint32_t(out.brick_codes.size()), 0,
                         uint32_t(out.octant_codes.size()), 0};
@@ -43,57 +44,57 @@ public:
     }
 
 private:
-    /// Reads the places of a cube in Morton order; false where it is empty.
+    /// Reads the slots of a cube in Morton order; false where it is empty.
     bool read_cube(const TileVoxels& tile, int k) {
         const int levels = std::min(kTileBricks, tile.height() - k);
         uint32_t any = 0;
-        places_[0].fill(0);
+        slots_[0].fill(0);
         for (int column = 0; column < kTileColumns; ++column) {
-            const uint32_t* places = tile.places(column, k);
+            const uint32_t* slots = tile.slots(column, k);
             uint32_t found = 0;
             for (int z = 0; z < levels; ++z)
-                found |= places[z];
+                found |= slots[z];
             if (found == 0)
                 continue;
             any |= found;
             const size_t base = morton(column % kTileBricks, column / kTileBricks, 0);
             for (int z = 0; z < levels; ++z)
-                places_[0][base | kAlongZ[z]] = places[z];
+                slots_[0][base | kAlongZ[z]] = slots[z];
         }
         if (any == 0)
             return false;
         for (int level = 1; level <= 3; ++level)
             for (int i = 0; i < kBrickVoxels >> 3 * level; ++i) {
-                const uint32_t* children = &places_[level - 1][8 * i];
+                const uint32_t* children = &slots_[level - 1][8 * i];
                 uint32_t differ = 0;
                 for (int c = 1; c < 8; ++c)
                     differ |= children[c] ^ children[0];
-                places_[level][i] = differ == 0 ? children[0] : kMixed;
+                slots_[level][i] = differ == 0 ? children[0] : kMixed;
             }
         return true;
     }
 
     void emit(const TileVoxels& tile, int level, int i, uint64_t code, TileResult& out) {
-        const uint32_t place = places_[level][i];
-        if (place == 0)
+        const uint32_t slot = slots_[level][i];
+        if (slot == 0)
             return;
-        if (place < TileVoxels::kFirstBrick) {
+        if (slot < TileVoxels::kFirstBrick) {
             out.octant_codes.push_back(code);
             out.octant_levels.push_back(uint8_t(level + kBrickBits));
-            out.octant_materials.push_back(uint8_t(place));
+            out.octant_materials.push_back(uint8_t(slot));
         } else if (level > 0) {
             for (int c = 0; c < 8; ++c)
                 emit(tile, level - 1, 8 * i + c, code << 3 | uint64_t(c), out);
         } else {
-            pulse(10);
-            const OwnedBrick& brick = tile.brick(place);
+            count_work(10);
+            const VoxelBrick& brick = tile.brick(slot);
             out.brick_codes.push_back(code);
             out.brick_masks.push_back(morton_order(brick.mask));
             emit_materials(tile, brick, out);
         }
     }
 
-    void emit_materials(const TileVoxels& tile, const OwnedBrick& brick, TileResult& out) {
+    void emit_materials(const TileVoxels& tile, const VoxelBrick& brick, TileResult& out) {
         if (brick.cells == kNone) {
             out.brick_materials.push_back(brick.material);
             out.brick_rows.push_back(-1);
@@ -120,10 +121,10 @@ private:
     }
 
     static constexpr std::array<uint16_t, 8> kAlongZ = {0, 4, 32, 36, 256, 260, 288, 292}; // morton(0, 0, z)
-    static constexpr uint32_t kMixed = 0xFFFF'FFFF; // stands for no single brick, and is not below kFirstBrick
+    static constexpr uint32_t kMixed = 0xFFFF'FFFF; // no slot: the bricks below differ. Not below kFirstBrick
 
-    /// By level, in Morton order: the place of a brick, and of 8, 64, 512 where they are all alike.
-    std::array<std::array<uint32_t, kBrickVoxels>, 4> places_;
+    /// By level, in Morton order: the slot of a brick, and of 8, 64 or 512 where these are all equal.
+    std::array<std::array<uint32_t, kBrickVoxels>, 4> slots_;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,14 +1,14 @@
 // The voxels of one tile, after the objects have competed: the first in authored order keeps what it claims.
 //
-// Every brick place of the tile is empty, full of one material, or a brick; the table takes 4 bytes a place (1/128 of a
-// byte a voxel) and is cleared column by column.
+// Each slot of the tile is empty, full of one material, or a brick. The table takes 4 bytes per slot (1/128 byte per
+// voxel) and is cleared column by column.
 #pragma once
 
-#include "object_layer.h"
+#include "tile_surface.h"
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-struct OwnedBrick {
+struct VoxelBrick {
     Slices mask{};
     uint32_t cells = kNone; // row of materials where the brick has several
     uint8_t material = 0;   // the only material, else 0
@@ -16,11 +16,13 @@ struct OwnedBrick {
 
 class TileVoxels {
 public:
+    /// For tiles of a grid of `side` voxels.
     explicit TileVoxels(int side)
         : height_((side + kBrickSide - 1) / kBrickSide), table_(size_t(kTileColumns) * height_, 0) {}
 
     int height() const { return height_; }
 
+    /// Empties the tile.
     void clear() {
         for (int column = 0; column < kTileColumns; ++column)
             if (used_ >> column & 1)
@@ -32,19 +34,19 @@ public:
 
     bool empty() const { return used_ == 0; }
 
-    /// Claims whole bricks from <= k < to of a column; returns how many voxels were free.
+    /// Claims whole bricks from <= k < to of a column; returns how many were free before.
     int64_t claim_full(int column, int from, int to, uint8_t material) {
         used_ |= uint64_t{1} << column;
         int64_t claimed = 0;
         for (int k = from; k < to; ++k) {
-            uint32_t& place = table_[size_t(column) * height_ + k];
-            if (place == 0) {
-                place = material;
+            uint32_t& slot = table_[size_t(column) * height_ + k];
+            if (slot == 0) {
+                slot = material;
                 claimed += kBrickVoxels;
-            } else if (place >= kFirstBrick) {
+            } else if (slot >= kFirstBrick) {
                 Slices all;
                 all.fill(~uint64_t{0});
-                claimed += claim_in(place, all, material, nullptr);
+                claimed += claim_in(slot, all, material, nullptr);
             }
         }
         return claimed;
@@ -53,15 +55,15 @@ public:
     /// Claims the voxels of `mask` for `material`, or for `cells` (by voxel) where given; returns how many were free.
     int64_t claim(int column, int k, const Slices& mask, uint8_t material, const Cells* cells) {
         used_ |= uint64_t{1} << column;
-        uint32_t& place = table_[size_t(column) * height_ + k];
-        if (place != 0)
-            return place < kFirstBrick ? 0 : claim_in(place, mask, material, cells);
+        uint32_t& slot = table_[size_t(column) * height_ + k];
+        if (slot != 0)
+            return slot < kFirstBrick ? 0 : claim_in(slot, mask, material, cells);
         if (cells == nullptr && is_full(mask)) {
-            place = material;
+            slot = material;
             return kBrickVoxels;
         }
-        place = uint32_t(bricks_.size()) + kFirstBrick;
-        OwnedBrick& brick = bricks_.emplace_back();
+        slot = uint32_t(bricks_.size()) + kFirstBrick;
+        VoxelBrick& brick = bricks_.emplace_back();
         brick.mask = mask;
         brick.material = material;
         if (cells != nullptr) {
@@ -72,10 +74,10 @@ public:
         return count(mask);
     }
 
-    /// What stands at the places of a column from place `k` on: a material below kFirstBrick (0 is empty), else
-    /// kFirstBrick plus the number of a brick.
-    const uint32_t* places(int column, int k) const { return &table_[size_t(column) * height_ + k]; }
-    const OwnedBrick& brick(uint32_t place) const { return bricks_[place - kFirstBrick]; }
+    /// The slots of a column from slot `k` on: a material below kFirstBrick (0 is empty), else kFirstBrick plus the
+    /// number of a brick.
+    const uint32_t* slots(int column, int k) const { return &table_[size_t(column) * height_ + k]; }
+    const VoxelBrick& brick(uint32_t slot) const { return bricks_[slot - kFirstBrick]; }
 
     static constexpr uint32_t kFirstBrick = 256;
 
@@ -83,8 +85,8 @@ public:
     const Cells& cells(uint32_t row) const { return cells_[row]; }
 
 private:
-    int64_t claim_in(uint32_t& place, const Slices& mask, uint8_t material, const Cells* cells) {
-        OwnedBrick& brick = bricks_[place - kFirstBrick];
+    int64_t claim_in(uint32_t& slot, const Slices& mask, uint8_t material, const Cells* cells) {
+        VoxelBrick& brick = bricks_[slot - kFirstBrick];
         Slices fresh;
         for (int z = 0; z < kBrickSide; ++z)
             fresh[z] = mask[z] & ~brick.mask[z];
@@ -92,7 +94,7 @@ private:
             return 0;
         if (cells != nullptr || brick.cells != kNone || brick.material != material) {
             if (brick.cells == kNone)
-                spread(brick);
+                expand(brick);
             Cells& row = cells_[brick.cells];
             for (int z = 0; z < kBrickSide; ++z)
                 for (uint64_t left = fresh[z]; left != 0; left &= left - 1) {
@@ -103,12 +105,12 @@ private:
         for (int z = 0; z < kBrickSide; ++z)
             brick.mask[z] |= fresh[z];
         if (brick.cells == kNone && is_full(brick.mask))
-            place = brick.material;
+            slot = brick.material;
         return count(fresh);
     }
 
-    /// Writes a brick's one material out voxel by voxel.
-    void spread(OwnedBrick& brick) {
+    /// Writes a brick's single material out voxel by voxel.
+    void expand(VoxelBrick& brick) {
         brick.cells = uint32_t(cells_.size());
         Cells& row = cells_.emplace_back();
         for (int z = 0; z < kBrickSide; ++z)
@@ -118,10 +120,10 @@ private:
     }
 
     int height_;
-    uint64_t used_ = 0; // brick columns that hold something
+    uint64_t used_ = 0; // brick columns that are not empty
     std::vector<uint32_t> table_;
-    std::vector<OwnedBrick> bricks_;
+    std::vector<VoxelBrick> bricks_;
     std::vector<Cells> cells_;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

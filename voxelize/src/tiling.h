@@ -4,22 +4,24 @@
 #include "parts.h"
 #include "triangle_coverage.h"
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-inline constexpr uint32_t kWhole = 0xFFFF'FFFF;
+/// In BinnedTriangle: all triangles of the part.
+inline constexpr uint32_t kWholePart = 0xFFFF'FFFF;
 
-/// One entry of a tile: a triangle of a part, or the part as a whole. Triangles are followed by the caps of an open
-/// part, and these by one number that stands for nothing: it brings the tile to look inside.
-struct Item {
+/// One entry of a tile: a triangle of a part, or the part as a whole. The numbers of a mesh's triangles are followed by
+/// those of its caps (CappedSurface), and these by one number without geometry: it brings the tile to look for inside.
+struct BinnedTriangle {
     uint32_t part, triangle;
 };
 
-struct TiledItem {
+/// The same with its tile, before sorting by tile.
+struct TileEntry {
     uint32_t tile;
-    Item item;
+    BinnedTriangle triangle;
 };
 
-/// A box in grid space, 1/4096 voxel.
+/// A box in grid space, 1/4096 voxel, both ends included; empty at first.
 struct Bounds {
     int64_t min[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, max[3] = {INT64_MIN, INT64_MIN, INT64_MIN};
 
@@ -44,15 +46,15 @@ struct TileRange {
     size_t count() const { return x0 > x1 || y0 > y1 ? 0 : size_t(x1 - x0 + 1) * size_t(y1 - y0 + 1); }
 };
 
-/// How a grid of `side` voxels is cut into tiles.
+/// How a grid of `side` voxels is cut into tiles of kTileSide columns per side.
 class Tiling {
 public:
     explicit Tiling(int side) : side_(side), tiles_((side + kTileSide - 1) / kTileSide) {}
 
-    int tiles_a_side() const { return tiles_; }
+    int tiles_per_side() const { return tiles_; }
 
-    /// Tiles that geometry within some bounds may cover or, lying below the grid, enclose. A surface in the plane below
-    /// a voxel may belong to the voxel on either side, and on the grid's rim to its last.
+    /// Tiles that geometry within some bounds may cover or, where it lies below the grid, enclose. A surface in the
+    /// plane below a voxel may belong to the voxel on either side, and on the grid's border to its last.
     TileRange touched(const Bounds& b) const {
         const int64_t end = side_ * kUnit;
         for (int i = 0; i < 3; ++i)
@@ -62,14 +64,15 @@ public:
         return {tile(b.min[0] - 1), tile(b.max[0]), tile(b.min[1] - 1), tile(b.max[1])};
     }
 
-    void list(std::vector<TiledItem>& out, const TileRange& range, Item item) const {
+    /// Appends an entry for each tile of a range.
+    void list(std::vector<TileEntry>& out, const TileRange& range, BinnedTriangle triangle) const {
         for (int y = range.y0; y <= range.y1; ++y)
             for (int x = range.x0; x <= range.x1; ++x)
-                out.push_back({uint32_t(y * tiles_ + x), item});
+                out.push_back({uint32_t(y * tiles_ + x), triangle});
     }
 
 private:
     int side_, tiles_;
 };
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,27 +1,28 @@
-// Which voxels a triangle covers, and which columns it crosses: exact, a column at a time.
+// Which voxels a triangle covers, and which columns it crosses: exact, one column at a time.
 //
 // A voxel is covered when the closed triangle meets the voxel's open interior. Thirteen axes can separate a box from a
-// triangle (3 box normals, the triangle's normal, 9 products of edges); for the voxels of one column along z each test
-// is linear in z, so the covered voxels are one interval (Schwarz and Seidel, "Fast Parallel Surface and Solid
-// Voxelization on GPUs", 2010). The edge products come in three projections. In each, the tests say how far the
-// triangle reaches inside a slab one voxel wide: per row y the reach in x and in z, per column x the reach in z. They
-// are walked along the edges, plane by plane, with exact integer remainders; the plane test likewise along each row.
+// triangle (3 box normals, the triangle's normal, 9 products of edges; Akenine-Moeller, "Fast 3D Triangle-Box Overlap
+// Testing", 2001). For the voxels of one column along z each test is linear in z, so the covered voxels are one
+// interval (Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010). The edge products come
+// in three projections. In each, the tests are the triangle's extent inside slabs one voxel wide (slab_extent.h): per
+// row y the extent in x and in z, per column x the extent in z. Edges are walked plane by plane with exact integer
+// remainders, and the plane of the triangle likewise along each row.
 //
-// A triangle in a plane between voxels meets no interior; it belongs to the voxels behind it, against its normal.
+// A triangle in a plane between voxels meets no interior. It belongs to the voxels behind it, against its normal.
 //
-// For solids the triangle is also crossed by the columns' sample rays. A ray runs through its column 1/8192 voxel
-// beside the centre, where no vertex can lie; on an edge the column belongs to the triangle on its right. So rays
-// through a closed surface enter as often as they leave. The crossing may be marked at any voxel of the covered
-// interval, since what a covered voxel holds is settled: the lowest is marked and no division is spent on the height.
+// For solids the columns' sample rays also cross the triangle. A ray runs through its column 1/8192 voxel beside the
+// centre, where no vertex can lie; on an edge the column belongs to the triangle on its right. So rays through a closed
+// surface enter as often as they leave. A crossing may be marked at any voxel of the covered interval, since a covered
+// voxel is solid in any case: the lowest is marked, and no division is spent on the height.
 //
-// Bound: about 100 cycles a triangle, 40 a row or column of its bounding box, 10 a column covered.
+// Cost: about 100 cycles per triangle, 40 per row or column of its bounding box, 10 per covered column.
 #pragma once
 
-#include "slab_reach.h"
+#include "slab_extent.h"
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-/// Voxels x0 … x1, y0 … y1, 0 … top along z (inclusive); at most kTileSide columns a side.
+/// Voxels x0 … x1, y0 … y1, 0 … top along z (inclusive); at most kTileSide columns per side.
 struct Window {
     int x0, x1, y0, y1, top;
 };
@@ -52,12 +53,12 @@ template <typename Wide> void crossed_columns(const Wide* x, const Wide* y, int 
 }
 
 /// A triangle relative to the voxel corner (bx, by, bz) below it, so that all coordinates are >= 0 and small.
-template <typename Wide> struct Local {
+template <typename Wide> struct LocalTriangle {
     Wide x[3], y[3], z[3];
     int bx, by, bz;
     int x0, x1, y0, y1, z0, z1; // covered range of its bounding box, local; empty where flat on a plane
 
-    Local(const Vertex& a, const Vertex& b, const Vertex& c) {
+    LocalTriangle(const Vertex& a, const Vertex& b, const Vertex& c) {
         bx = voxel_floor(std::min({a.x, b.x, c.x}));
         by = voxel_floor(std::min({a.y, b.y, c.y}));
         bz = voxel_floor(std::min({a.z, b.z, c.z}));
@@ -77,24 +78,24 @@ template <typename Wide> struct Local {
     Wide normal_z() const { return (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]); }
 };
 
-/// The triangle's reach along q in the slabs first … last along p.
-template <typename Wide> void reach_of(Reach& reach, int first, int last, const Wide* p, const Wide* q) {
-    reach.clear(last - first + 1);
+/// The triangle's extent along q in the slabs first … last along p.
+template <typename Wide> void extents_of(SlabExtent& extent, int first, int last, const Wide* p, const Wide* q) {
+    extent.clear(last - first + 1);
     for (int i = 0; i < 3; ++i) {
-        extend_vertex<Wide>(reach, first, last, p[i], q[i]);
+        extend_vertex<Wide>(extent, first, last, p[i], q[i]);
         int a = i, b = i == 2 ? 0 : i + 1;
         if (p[a] == p[b])
             continue;
         if (p[a] > p[b])
             std::swap(a, b);
-        EdgeWalk<Wide>(p[a], p[b]).extend(reach, first, last, q[a], q[b] - q[a]);
+        EdgeWalk<Wide>(p[a], p[b]).extend(extent, first, last, q[a], q[b] - q[a]);
     }
 }
 
 /// The voxels of a column that a plane passes, walked along a row: exact, by remainders.
 ///
 /// The plane of normal n (n.z > 0) lies above a voxel's bottom corner and below its top corner where
-/// floor(below / unit) <= z <= floor((below + spread - 1) / unit); `below` falls by n.x * kUnit a column.
+/// floor(below / unit) <= z <= floor((below + spread - 1) / unit); `below` falls by n.x * kUnit per column.
 template <typename Wide> class PlaneWalk {
 public:
     PlaneWalk(Wide nx, Wide unit, Wide spread) : unit_(unit), spread_(spread) {
@@ -132,9 +133,9 @@ private:
     Wide low_ = 0, low_part_ = 0, high_ = 0, high_part_ = 0;
 };
 
-/// The same by float64 reciprocal, for triangles up to kTinyExtent wide: below < 2^49, so that float64 errs by less
-/// than half of what parts a quotient from the next integer. Quotients below 0 come out below 1, and need no more: lo
-/// >= 0.
+/// The same by float64 reciprocal, for triangles up to kTinyExtent wide: below < 2^49, so that the error of float64 is
+/// less than half the distance of a quotient from the next integer. Quotients below 0 come out below 1, which is enough
+/// since lo >= 0.
 class TinyPlaneWalk {
 public:
     TinyPlaneWalk(int64_t nx, int64_t unit, int64_t spread)
@@ -159,56 +160,56 @@ inline int layer_behind(int plane, bool facing_up, int top) {
     return std::clamp(facing_up ? plane - 1 : plane, 0, top);
 }
 
-template <typename Wide, bool Cross, class Sink>
-void cover_flat(const Local<Wide>& t, const Window& w, bool inverted, Sink& sink) {
-    Reach rows_x, rows_z, columns_z;
+template <typename Wide, bool Cross, class Receiver>
+void cover_flat(const LocalTriangle<Wide>& t, const Window& w, bool inverted, Receiver& receiver) {
+    SlabExtent rows_x, rows_z, columns_z;
     const Wide nx = t.normal_x(), ny = t.normal_y(), nz = t.normal_z();
     const int flat_axes = (t.x1 < 0) + (t.y1 < 0) + (t.z1 < 0);
     if (flat_axes > 1)
-        return; // a segment or a point on an edge: no interior, no behind
+        return; // a segment or a point on an edge: no interior, and no side behind it
     const int y0 = std::max(w.y0 - t.by, 0), y1 = std::min(w.y1 - t.by, t.y1);
     const int x0 = std::max(w.x0 - t.bx, 0), x1 = std::min(w.x1 - t.bx, t.x1);
     if (t.x1 < 0) {
-        const int layer = layer_behind(t.bx, (nx > 0) != inverted, sink.side() - 1);
+        const int layer = layer_behind(t.bx, (nx > 0) != inverted, receiver.side() - 1);
         if (nx == 0 || layer < w.x0 || layer > w.x1 || y0 > y1)
             return;
-        reach_of<Wide>(rows_z, y0, y1, t.y, t.z);
+        extents_of<Wide>(rows_z, y0, y1, t.y, t.z);
         for (int y = y0; y <= y1; ++y) {
             const int lo = std::max(rows_z.lo[y - y0] + t.bz, 0), hi = std::min(rows_z.hi[y - y0] + t.bz, w.top);
             if (lo <= hi)
-                sink.cover(layer, y + t.by, lo, hi);
+                receiver.cover(layer, y + t.by, lo, hi);
         }
     } else if (t.y1 < 0) {
-        const int layer = layer_behind(t.by, (ny > 0) != inverted, sink.side() - 1);
+        const int layer = layer_behind(t.by, (ny > 0) != inverted, receiver.side() - 1);
         if (ny == 0 || layer < w.y0 || layer > w.y1 || x0 > x1)
             return;
-        reach_of<Wide>(columns_z, x0, x1, t.x, t.z);
+        extents_of<Wide>(columns_z, x0, x1, t.x, t.z);
         for (int x = x0; x <= x1; ++x) {
             const int lo = std::max(columns_z.lo[x - x0] + t.bz, 0), hi = std::min(columns_z.hi[x - x0] + t.bz, w.top);
             if (lo <= hi)
-                sink.cover(x + t.bx, layer, lo, hi);
+                receiver.cover(x + t.bx, layer, lo, hi);
         }
     } else {
         if (nz == 0 || y0 > y1 || x0 > x1)
             return;
         const int layer = layer_behind(t.bz, (nz > 0) != inverted, w.top);
-        reach_of<Wide>(rows_x, y0, y1, t.y, t.x);
+        extents_of<Wide>(rows_x, y0, y1, t.y, t.x);
         for (int y = y0; y <= y1; ++y) {
             if (layer >= 0)
                 for (int x = std::max(rows_x.lo[y - y0], x0); x <= std::min(rows_x.hi[y - y0], x1); ++x)
-                    sink.cover(x + t.bx, y + t.by, layer, layer);
+                    receiver.cover(x + t.bx, y + t.by, layer, layer);
             if constexpr (Cross) {
                 int first, last;
                 crossed_columns<Wide>(t.x, t.y, y, first, last);
                 for (int x = std::max(first, x0); x <= std::min(last, x1) && t.bz <= w.top; ++x)
-                    sink.cross(x + t.bx, y + t.by, std::max(t.bz, 0), nz < 0);
+                    receiver.cross(x + t.bx, y + t.by, std::max(t.bz, 0), nz < 0);
             }
         }
     }
 }
 
-template <typename Wide, class Plane, bool Cross, class Sink>
-void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
+template <typename Wide, class Plane, bool Cross, class Receiver>
+void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiver) {
     const int x0 = std::max(w.x0 - t.bx, 0), x1 = std::min(w.x1 - t.bx, t.x1);
     const int y0 = std::max(w.y0 - t.by, 0), y1 = std::min(w.y1 - t.by, t.y1);
     if (x0 > x1 || y0 > y1)
@@ -225,15 +226,15 @@ void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
                 crossed_columns<Wide>(t.x, t.y, y, first, last);
             for (int x = x0; x <= x1; ++x) {
                 if (Cross && x >= first && x <= last && lo <= w.top)
-                    sink.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
+                    receiver.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
                 if (hi >= 0 && lo <= w.top)
-                    sink.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
+                    receiver.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
             }
         }
         return;
     }
 
-    Reach rows_x, rows_z, columns_z, ends;
+    SlabExtent rows_x, rows_z, columns_z, ends;
     rows_x.clear(y1 - y0 + 1);
     rows_z.clear(y1 - y0 + 1);
     if (Cross)
@@ -252,12 +253,12 @@ void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
         if (Cross)
             edge.cross(ends, y0, y1, t.x[a], t.x[b] - t.x[a]);
     }
-    reach_of<Wide>(columns_z, x0, x1, t.x, t.z);
+    extents_of<Wide>(columns_z, x0, x1, t.x, t.z);
 
-    // The plane, its normal turned upwards: lowest z with the box's top corner above it, highest with the bottom below.
-    const bool steep = signed_nz == 0; // then the projection along z is a segment and the rows' reach says it all
-    const Wide turn = enters ? -1 : 1;
-    const Wide nx = turn * t.normal_x(), ny = turn * t.normal_y(), nz = turn * signed_nz;
+    // The plane, its normal upwards: lowest z with the box's top corner above it, highest with the bottom below.
+    const bool steep = signed_nz == 0; // then the projection along z is a segment, and the rows' extents decide
+    const Wide sign = enters ? -1 : 1;
+    const Wide nx = sign * t.normal_x(), ny = sign * t.normal_y(), nz = sign * signed_nz;
     const Wide offset = nx * t.x[0] + ny * t.y[0] + nz * t.z[0];
     Plane plane(nx, steep ? Wide{1} : nz * kUnit, ((nx < 0 ? -nx : nx) + (ny < 0 ? -ny : ny)) * kUnit);
 
@@ -282,52 +283,54 @@ void cover_local(const Local<Wide>& t, const Window& w, Sink& sink) {
             if (lo > w.top)
                 continue;
             if (Cross && x >= first && x < end)
-                sink.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
+                receiver.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
             if (hi >= 0)
-                sink.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
+                receiver.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
         }
     }
 }
 
-template <typename Wide, class Plane, bool Cross, class Sink>
-void cover(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool inverted, Sink& sink) {
-    const Local<Wide> t(a, b, c);
+template <typename Wide, class Plane, bool Cross, class Receiver>
+void cover(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool inverted, Receiver& receiver) {
+    const LocalTriangle<Wide> t(a, b, c);
     if (t.x1 < 0 || t.y1 < 0 || t.z1 < 0)
-        cover_flat<Wide, Cross>(t, w, inverted, sink);
+        cover_flat<Wide, Cross>(t, w, inverted, receiver);
     else
-        cover_local<Wide, Plane, Cross>(t, w, sink);
+        cover_local<Wide, Plane, Cross>(t, w, receiver);
 }
 
 } // namespace coverage
 
-/// Reports what triangle abc covers inside a window.
+/// Reports to a receiver what triangle abc covers inside a window.
 ///
-/// sink.cover(x, y, lo, hi): voxels lo … hi of column (x, y) are covered.
-/// sink.cross(x, y, z, enters): the ray of column (x, y) crosses the surface below the first voxel above z that the
+/// receiver.cover(x, y, lo, hi): voxels lo … hi of column (x, y) are covered.
+/// receiver.cross(x, y, z, enters): the ray of column (x, y) crosses the surface below the first voxel above z that the
 /// triangle does not cover; `enters` when the ray goes against the normal. Only where Cross.
-/// sink.side(): voxels a side of the grid.
+/// receiver.side(): voxels per side of the grid.
 /// `inverted`: the surface's normals point into the solid.
-template <bool Cross, class Sink>
-void cover_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool inverted, Sink& sink) {
+template <bool Cross, class Receiver>
+void cover_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, bool inverted,
+                    Receiver& receiver) {
     const int64_t extent = std::max({int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x}),
                                      int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y}),
                                      int64_t{std::max({a.z, b.z, c.z})} - std::min({a.z, b.z, c.z})});
     if (extent < kTinyExtent)
-        coverage::cover<int64_t, coverage::TinyPlaneWalk, Cross>(a, b, c, w, inverted, sink);
+        coverage::cover<int64_t, coverage::TinyPlaneWalk, Cross>(a, b, c, w, inverted, receiver);
     else if (extent < kNarrowExtent)
-        coverage::cover<int64_t, coverage::PlaneWalk<int64_t>, Cross>(a, b, c, w, inverted, sink);
+        coverage::cover<int64_t, coverage::PlaneWalk<int64_t>, Cross>(a, b, c, w, inverted, receiver);
     else
-        coverage::cover<int128, coverage::PlaneWalk<int128>, Cross>(a, b, c, w, inverted, sink);
+        coverage::cover<int128, coverage::PlaneWalk<int128>, Cross>(a, b, c, w, inverted, receiver);
 }
 
-/// Reports the columns whose rays cross triangle abc, which covers nothing: it only closes a hole.
+/// Reports the columns whose rays cross triangle abc, a cap: it closes a hole and covers nothing.
 ///
-/// sink.cross(x, y, z, enters): z is the first voxel whose sample point, 1/8192 voxel beside its centre, lies above.
-template <class Sink>
-void cross_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Sink& sink) {
-    const coverage::Local<int128> t(a, b, c);
-    const int128 turn = t.normal_z() < 0 ? -1 : 1;
-    const int128 nx = turn * t.normal_x(), ny = turn * t.normal_y(), nz = turn * t.normal_z();
+/// receiver.cross(x, y, z, enters): z is the first voxel whose sample point, 1/8192 voxel beside its centre, lies
+/// above.
+template <class Receiver>
+void cross_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, Receiver& receiver) {
+    const coverage::LocalTriangle<int128> t(a, b, c);
+    const int128 sign = t.normal_z() < 0 ? -1 : 1;
+    const int128 nx = sign * t.normal_x(), ny = sign * t.normal_y(), nz = sign * t.normal_z();
     if (nz == 0)
         return;
     const int128 offset = 2 * (nx * t.x[0] + ny * t.y[0] + nz * t.z[0]) - (kUnit + 1) * nz;
@@ -338,9 +341,9 @@ void cross_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Win
             const int128 above = offset - nx * (2 * kUnit * x + kUnit + 1) - ny * (2 * kUnit * y + kUnit + 1);
             const int z = static_cast<int>(floor_div<int128>(above, 2 * kUnit * nz)) + 1 + t.bz;
             if (z <= w.top)
-                sink.cross(x + t.bx, y + t.by, std::max(z, 0), turn < 0);
+                receiver.cross(x + t.bx, y + t.by, std::max(z, 0), sign < 0);
         }
     }
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,58 +1,58 @@
 #include "voxelizer.h"
 
 #include "convex_solids.h"
+#include "material_raster.h"
 #include "solid_fill.h"
-#include "survey.h"
 #include "tile_order.h"
-#include "tint.h"
+#include "triangle_bins.h"
 
 #include <optional>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 namespace {
 
 /// What a thread keeps from tile to tile.
 struct Scratch {
     explicit Scratch(int side, size_t objects, size_t parts)
-        : layer(side), tile(side), object_voxels(objects, 0), complex(parts, 0) {}
-    ObjectLayer layer;
+        : surface(side), tile(side), object_voxels(objects, 0), overlaps_itself(parts, 0) {}
+    TileSurface surface;
     TileVoxels tile;
     SolidFill fill;
-    TileOrder order;
+    TileSorter sorter;
     std::vector<Vertex> vertices;
     std::vector<int64_t> object_voxels;
-    std::vector<uint8_t> complex; // by part: winding numbers beyond 0 and 1 were seen
+    std::vector<uint8_t> overlaps_itself; // by part: ObjectFindings
     StageSeconds seconds;
 };
 
 class TileWorker {
 public:
-    TileWorker(const std::vector<PartView>& parts, const Survey& survey, int side, bool fill)
-        : parts_(parts), survey_(survey), side_(side), fill_(fill) {}
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, bool fill)
+        : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
 
     void work(uint32_t index, Scratch& s, TileResult& out) const {
-        const int tile_x = int(index) % survey_.tiles_a_side, tile_y = int(index) / survey_.tiles_a_side;
+        const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         const Window window{tile_x * kTileSide, std::min(tile_x * kTileSide + kTileSide, side_) - 1, tile_y * kTileSide,
                             std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
         s.tile.clear();
-        for (uint32_t i = survey_.starts[index], end = survey_.starts[index + 1]; i < end;) {
-            const uint32_t part = survey_.items[i].part;
+        for (uint32_t i = bins_.starts[index], end = bins_.starts[index + 1]; i < end;) {
+            const uint32_t part = bins_.triangles[i].part;
             uint32_t next = i + 1;
-            while (next < end && survey_.items[next].part == part)
+            while (next < end && bins_.triangles[next].part == part)
                 ++next;
-            const Item* items = survey_.items.data() + i;
+            const BinnedTriangle* triangles = bins_.triangles.data() + i;
             if (parts_[part].kind == PartKind::mesh) {
-                add_mesh(part, {items, next - i}, window, s);
+                add_mesh(part, {triangles, next - i}, window, s);
             } else {
-                Lap lap;
+                Stopwatch lap;
                 add_solid(parts_[part], window, s);
                 s.seconds.coverage += lap();
             }
             i = next;
         }
-        Lap lap;
+        Stopwatch lap;
         if (!s.tile.empty())
-            s.order.order(s.tile, index, tile_x, tile_y, out);
+            s.sorter.sort(s.tile, index, tile_x, tile_y, out);
         s.seconds.order += lap();
     }
 
@@ -73,43 +73,43 @@ private:
         s.object_voxels[part.object] += claimed;
     }
 
-    void add_mesh(uint32_t index, std::span<const Item> items, const Window& window, Scratch& s) const {
+    void add_mesh(uint32_t index, std::span<const BinnedTriangle> triangles, const Window& window, Scratch& s) const {
         const PartView& part = parts_[index];
-        const SurveyedMesh& surveyed = survey_.meshes[index];
-        const std::vector<Vertex>* vertices = &surveyed.vertices;
+        const MeshAnalysis& analysis = bins_.meshes[index];
+        const std::vector<Vertex>* vertices = &analysis.vertices;
         if (vertices->empty()) {
             s.vertices.resize(part.mesh->vertex_count());
             for (size_t v = 0; v < s.vertices.size(); ++v)
                 s.vertices[v] = snap_vertex(part, v);
             vertices = &s.vertices;
         }
-        s.layer.start(window.x0, window.y0);
-        Lap lap;
-        // What every instance kept of its holes would be more than all the rest.
-        std::optional<OpenSurface> own;
-        if (!surveyed.open && surveyed.boundary)
-            own.emplace(surveyed.boundary, [vertices](uint32_t v) { return (*vertices)[v]; });
-        const OpenSurface* open = own ? &*own : surveyed.open.get();
+        s.surface.reset(window.x0, window.y0);
+        Stopwatch lap;
+        // An instance makes its caps anew in each tile: to keep those of all instances would take too much memory.
+        std::optional<CappedSurface> own;
+        if (!analysis.capped && analysis.hole_caps)
+            own.emplace(analysis.hole_caps, [vertices](uint32_t v) { return (*vertices)[v]; });
+        const CappedSurface* capped = own ? &*own : analysis.capped.get();
         s.seconds.holes += lap();
         if (fill_)
-            cover<true>(part, surveyed, open, *vertices, items, window, s.layer);
+            cover<true>(part, analysis, capped, *vertices, triangles, window, s.surface);
         else
-            cover<false>(part, surveyed, open, *vertices, items, window, s.layer);
+            cover<false>(part, analysis, capped, *vertices, triangles, window, s.surface);
         s.seconds.coverage += lap();
-        const bool has_holes = open != nullptr && !open->holes.empty();
-        if (s.layer.empty() && !has_holes)
+        const bool has_holes = capped != nullptr && !capped->cap_winding.empty();
+        if (s.surface.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = !fill_ ? s.fill.claim_shell(s.tile, s.layer)
-                            : has_holes
-                                ? s.fill.claim_open_solid(s.tile, s.layer, interior, open->holes, surveyed.box, window)
-                                : s.fill.claim_solid(s.tile, s.layer, interior);
+        const Claim claim = !fill_      ? s.fill.claim_shell(s.tile, s.surface)
+                            : has_holes ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
+                                                                    analysis.box, window)
+                                        : s.fill.claim_solid(s.tile, s.surface, interior);
         s.object_voxels[part.object] += claim.voxels;
-        s.complex[index] |= !claim.simple;
+        s.overlaps_itself[index] |= !claim.simple;
         (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
-    /// At most, in a tile.
+    /// An upper bound of the columns of one tile that a triangle covers.
     static uint32_t columns_under(const Vertex& a, const Vertex& b, const Vertex& c) {
         const int64_t x = int64_t{std::max({a.x, b.x, c.x})} - std::min({a.x, b.x, c.x});
         const int64_t y = int64_t{std::max({a.y, b.y, c.y})} - std::min({a.y, b.y, c.y});
@@ -118,53 +118,53 @@ private:
     }
 
     template <bool Cross>
-    void cover(const PartView& part, const SurveyedMesh& surveyed, const OpenSurface* open,
-               const std::vector<Vertex>& vertices, std::span<const Item> items, const Window& window,
-               ObjectLayer& layer) const {
+    void cover(const PartView& part, const MeshAnalysis& analysis, const CappedSurface* capped,
+               const std::vector<Vertex>& vertices, std::span<const BinnedTriangle> triangles, const Window& window,
+               TileSurface& surface) const {
         const MeshView& mesh = *part.mesh;
-        layer.set_material(part.material);
-        const TurnedPieces* turned = surveyed.turned.get();
-        auto close = [&](size_t cap) {
-            pulse(10);
-            const auto& [a, b, c] = open->caps[cap];
-            cross_triangle(a, b, c, window, layer);
+        surface.set_material(part.material);
+        const FlippedComponents* flipped = analysis.flipped.get();
+        auto add_cap = [&](size_t cap) {
+            count_work(10);
+            const auto& [a, b, c] = capped->caps[cap];
+            cross_triangle(a, b, c, window, surface);
         };
         auto add = [&](size_t t) {
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
-            pulse(10 + columns_under(a, b, c));
+            count_work(10 + columns_under(a, b, c));
             if (part.material == 0)
-                layer.set_material(mesh.materials[t]);
-            auto add_to = [&](auto& sink) {
-                if (open != nullptr && open->is_shell_only(t))
-                    cover_triangle<false>(a, b, c, window, false, sink);
-                else if (turned != nullptr && turned->is_turned(t))
-                    cover_triangle<Cross>(a, c, b, window, surveyed.inverted, sink);
+                surface.set_material(mesh.materials[t]);
+            auto cover_with = [&](auto& receiver) {
+                if (capped != nullptr && capped->is_shell_only(t))
+                    cover_triangle<false>(a, b, c, window, false, receiver);
+                else if (flipped != nullptr && flipped->is_flipped(t))
+                    cover_triangle<Cross>(a, c, b, window, analysis.inverted, receiver);
                 else
-                    cover_triangle<Cross>(a, b, c, window, surveyed.inverted, sink);
+                    cover_triangle<Cross>(a, b, c, window, analysis.inverted, receiver);
             };
-            if (part.material != 0 || !mesh.tints.covers(t)) {
-                add_to(layer);
+            if (part.material != 0 || !mesh.rasters.has_raster(t)) {
+                cover_with(surface);
             } else {
-                const TintedTriangle triangle(a, b, c, mesh.tints, t);
-                TintedLayer tinted(layer, triangle);
-                add_to(tinted);
+                const TriangleRaster raster(a, b, c, mesh.rasters, t);
+                RasterSurface rastered(surface, raster);
+                cover_with(rastered);
             }
         };
-        if (items[0].triangle != kWhole) {
-            for (const Item& item : items)
-                if (item.triangle < mesh.triangle_count())
-                    add(item.triangle);
-                else if (item.triangle - mesh.triangle_count() < open->caps.size())
-                    close(item.triangle - mesh.triangle_count());
+        if (triangles[0].triangle != kWholePart) {
+            for (const BinnedTriangle& binned : triangles)
+                if (binned.triangle < mesh.triangle_count())
+                    add(binned.triangle);
+                else if (binned.triangle - mesh.triangle_count() < capped->caps.size())
+                    add_cap(binned.triangle - mesh.triangle_count());
             return;
         }
-        for (size_t cap = 0; open != nullptr && cap < open->caps.size(); ++cap)
-            close(cap);
+        for (size_t cap = 0; capped != nullptr && cap < capped->caps.size(); ++cap)
+            add_cap(cap);
         const int64_t x0 = window.x0 * kUnit, x1 = (window.x1 + 1) * kUnit;
         const int64_t y0 = window.y0 * kUnit, y1 = (window.y1 + 1) * kUnit;
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-            pulse(1);
+            count_work(1);
             const int32_t* corner = mesh.triangles.data() + 3 * t;
             const Vertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
             if (std::max({a.x, b.x, c.x}) >= x0 && std::min({a.x, b.x, c.x}) <= x1 && std::max({a.y, b.y, c.y}) >= y0 &&
@@ -174,7 +174,7 @@ private:
     }
 
     const std::vector<PartView>& parts_;
-    const Survey& survey_;
+    const TriangleBins& bins_;
     int side_;
     bool fill_;
 };
@@ -198,12 +198,13 @@ void push_octant(std::vector<uint64_t>& codes, std::vector<uint8_t>& levels, std
     }
 }
 
-template <typename T> void keep(SparseVoxels::Array<T>& to, const std::vector<T>& from) {
+template <typename T> void copy(SparseVoxels::Array<T>& to, const std::vector<T>& from) {
     to.allocate(from.size());
     std::copy(from.begin(), from.end(), to.data.get());
 }
 
-void gather(std::vector<TileResult>& tiles, SparseVoxels& out, Workers& workers) {
+/// Lays the bricks and octants of all tiles out one after another.
+void gather(std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
     std::vector<CubeRun> runs;
     for (const TileResult& tile : tiles)
         runs.insert(runs.end(), tile.runs.begin(), tile.runs.end());
@@ -221,9 +222,9 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, Workers& workers)
             push_octant(octant_codes, octant_levels, octant_materials, tile.octant_codes[i], tile.octant_levels[i],
                         tile.octant_materials[i]);
     }
-    keep(out.octant_codes, octant_codes);
-    keep(out.octant_levels, octant_levels);
-    keep(out.octant_materials, octant_materials);
+    copy(out.octant_codes, octant_codes);
+    copy(out.octant_levels, octant_levels);
+    copy(out.octant_materials, octant_materials);
 
     out.brick_codes.allocate(bricks);
     out.brick_masks.allocate(bricks);
@@ -255,24 +256,57 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, Workers& workers)
     });
 }
 
+/// Sets the voxels, modes and flipped components of all objects.
+void report_objects(const std::vector<PartView>& parts, size_t objects, bool fill, const TriangleBins& bins,
+                    const std::vector<std::unique_ptr<Scratch>>& scratch, SparseVoxels& out) {
+    out.object_voxels.allocate(objects);
+    out.object_modes.allocate(objects);
+    out.object_flipped.allocate(objects);
+    std::fill_n(out.object_voxels.data.get(), objects, 0);
+    std::fill_n(out.object_flipped.data.get(), objects, 0);
+    std::vector<ObjectFindings> found(objects);
+    for (const auto& s : scratch) {
+        if (!s)
+            continue;
+        for (size_t i = 0; i < objects; ++i)
+            out.object_voxels.data[i] += s->object_voxels[i];
+        for (size_t p = 0; p < parts.size(); ++p)
+            found[parts[p].object].overlaps_itself |= s->overlaps_itself[p] != 0;
+    }
+    for (size_t p = 0; p < parts.size(); ++p) {
+        const MeshAnalysis& mesh = bins.meshes[p];
+        ObjectFindings& object = found[parts[p].object];
+        object.has_boundary |= parts[p].kind == PartKind::mesh && !mesh.closed;
+        object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
+        if (mesh.flipped) {
+            object.has_flipped_components |= mesh.closed;
+            out.object_flipped.data[parts[p].object] += mesh.flipped->count;
+        }
+    }
+    for (size_t i = 0; i < objects; ++i)
+        out.object_modes.data[i] = uint8_t(object_mode(fill, found[i]));
+}
+
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, Workers& workers) {
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, int threads) {
     const int side = 1 << depth;
-    Lap lap;
+    const Workers workers(threads);
+    Stopwatch lap;
     SparseVoxels out;
-    Survey survey = survey_parts(parts, side, fill, workers);
+    out.depth = unsigned(depth);
+    TriangleBins bins = bin_triangles(parts, side, fill, workers);
 
-    out.seconds.bin = survey.bin_seconds;
-    out.seconds.survey = lap() - survey.bin_seconds;
+    out.seconds.bin = bins.seconds;
+    out.seconds.analysis = lap() - bins.seconds;
 
     std::vector<uint32_t> occupied;
-    for (uint32_t t = 0; t + 1 < survey.starts.size(); ++t)
-        if (survey.starts[t] < survey.starts[t + 1])
+    for (uint32_t t = 0; t + 1 < bins.starts.size(); ++t)
+        if (bins.starts[t] < bins.starts[t + 1])
             occupied.push_back(t);
-    std::vector<TileResult> results(survey.starts.size() - 1);
+    std::vector<TileResult> results(bins.starts.size() - 1);
     std::vector<std::unique_ptr<Scratch>> scratch(workers.threads());
-    const TileWorker worker(parts, survey, side, fill);
+    const TileWorker worker(parts, bins, side, fill);
     workers.run(occupied.size(), [&](size_t job, int thread) {
         if (!scratch[thread])
             scratch[thread] = std::make_unique<Scratch>(side, objects, parts.size());
@@ -285,38 +319,12 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
             sum.add_tiles(s->seconds, 1);
     if (sum.of_tiles() > 0)
         out.seconds.add_tiles(sum, lap() / sum.of_tiles());
-    out.object_voxels.allocate(objects);
-    out.object_modes.allocate(objects);
-    std::fill_n(out.object_voxels.data.get(), objects, 0);
-    std::fill_n(out.object_modes.data.get(), objects, uint8_t(fill ? Mode::exact : Mode::surface));
-    for (const auto& s : scratch) {
-        if (!s)
-            continue;
-        for (size_t i = 0; i < objects; ++i)
-            out.object_voxels.data[i] += s->object_voxels[i];
-        for (size_t p = 0; fill && p < parts.size(); ++p)
-            if (s->complex[p] != 0)
-                out.object_modes.data[parts[p].object] = uint8_t(Mode::winding);
-    }
-    for (size_t p = 0; fill && p < parts.size(); ++p)
-        if (parts[p].kind == PartKind::mesh && !survey.meshes[p].closed)
-            out.object_modes.data[parts[p].object] = uint8_t(Mode::winding);
-    out.object_turned.allocate(objects);
-    std::fill_n(out.object_turned.data.get(), objects, 0);
-    for (size_t p = 0; p < parts.size(); ++p)
-        if (survey.meshes[p].turned) {
-            out.object_turned.data[parts[p].object] += survey.meshes[p].turned->count;
-            if (survey.meshes[p].closed && fill)
-                out.object_modes.data[parts[p].object] = uint8_t(Mode::turned);
-        }
-    for (size_t p = 0; fill && p < parts.size(); ++p)
-        if (parts[p].kind == PartKind::mesh && survey.meshes[p].boundary && survey.meshes[p].boundary->stands_open)
-            out.object_modes.data[parts[p].object] = uint8_t(Mode::open);
+    report_objects(parts, objects, fill, bins, scratch, out);
     scratch.clear();
-    survey = {}; // memory stands highest in what follows
+    bins = {}; // the peak of memory use is in what follows
     gather(results, out, workers);
     out.seconds.gather = lap();
     return out;
 }
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

@@ -1,62 +1,47 @@
-// The voxelizer: parts in grid space to sparse voxels.
+// The voxelizer: parts in grid space to sparse voxels. This is the entry of the library voxrt::voxelize.
+//
+// A voxel is solid where the closed solid of an object overlaps the voxel's interior at all; touching is not overlap.
+// Where objects compete, the first in authored order keeps the voxel. Coverage of triangles is exact
+// (triangle_coverage.h). Inside is where the winding number is not zero, or, for surfaces with holes, where the
+// generalized winding number exceeds 1/2 (generalized_inside.h).
+//
+//     const MeshView mesh{positions, triangles, materials};            // spans, borrowed
+//     const double frame[12] = {s, 0, 0, x, 0, s, 0, y, 0, 0, s, z};   // mesh to grid space, in 1/4096 voxel
+//     const SparseVoxels voxels = voxelize(8, {{PartKind::mesh, &mesh, frame, 0, 0}}, 1, true, 0);
+//     const std::vector<octree::Word> words = octree::build(voxels.view(), 0);
 //
 // The grid is cut into tiles of 64 x 64 columns over its whole height. A column's voxels depend on that column's
 // triangles alone, so tiles are independent: threads take tiles, need no atomics, and the result does not depend on
-// who took which. Steps and what bounds them:
+// which thread took which tile. Stages and what bounds them:
 //
-//   survey    vertices snapped, closure tested, holes capped                     triangles; memory bandwidth
+//   analysis  vertices snapped, closed surfaces recognized, holes capped         triangles; memory bandwidth
 //   bin       triangles listed by tile                                           triangles; one thread
 // then tile by tile
 //   coverage  triangles to shell bricks and crossings; boxes and balls           columns under triangles; L2 cache
 //   fill      brick columns swept, the inside claimed                            surface bricks; L2 cache
-//   holes     the same for open surfaces, their holes looked at                  surface bricks, voxels near holes
+//   holes     the same for surfaces with holes                                   surface bricks, voxels near holes
 //   order     bricks put in Morton order                                         surface bricks; L2 cache
 // and at last
-//   gather    tiles' bricks laid out one after another                           surface bricks; memory bandwidth
+//   gather    the bricks of all tiles laid out one after another                 surface bricks; memory bandwidth
 //
-// Parts that touch few tiles are not expanded: the tile takes the part as a whole and snaps its vertices again.
+// A part that touches few tiles is not binned by triangle: its tiles take it whole and snap its vertices themselves.
 #pragma once
 
-#include "parallel.h"
+#include "interrupt.h"
+#include "object_mode.h"
 #include "parts.h"
-#include "stage_seconds.h"
+#include "sparse_voxels.h"
 
-#include <array>
-#include <memory>
+#include <vector>
 
-namespace voxrt {
+namespace voxrt::voxelize {
 
-/// What `Voxels` in voxels.py holds, and what became of each object.
-struct SparseVoxels {
-    template <typename T> struct Array {
-        std::unique_ptr<T[]> data;
-        size_t size = 0;
-        void allocate(size_t n) {
-            data = std::make_unique_for_overwrite<T[]>(n);
-            size = n;
-        }
-    };
-    Array<uint64_t> brick_codes;
-    Array<std::array<uint64_t, 8>> brick_masks;
-    Array<uint8_t> brick_materials;
-    Array<int32_t> brick_rows;
-    Array<std::array<uint8_t, 512>> cells;
-    Array<uint64_t> octant_codes;
-    Array<uint8_t> octant_levels;
-    Array<uint8_t> octant_materials;
-    Array<int64_t> object_voxels;
-    Array<uint8_t> object_modes;  // Mode
-    Array<int64_t> object_turned; // connected pieces taken the other way round
-    StageSeconds seconds;
-};
-
-/// open: what it encloses stands open, like a room without a front, and was not filled. turned: it closes, and some of
-/// its pieces were inside out.
-enum class Mode : uint8_t { surface = 0, exact = 1, winding = 2, open = 3, turned = 4 };
-
-/// Voxelizes parts (ascending by object) on a grid of 2^depth voxels a side, depth 1 … 16.
+/// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
-/// fill: claim what a part encloses, not its shell alone. Throws OutOfReach.
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, Workers& workers);
+/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: claim what parts enclose, not their shells
+/// alone. `threads`: 0 takes as many as the machine has; the result does not depend on it. The arguments are not
+/// checked. Throws OutOfRange (parts.h), std::length_error where the tiles would list 2^32 triangles or more, and what
+/// the caller's interrupt check throws (interrupt.h).
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, int threads);
 
-} // namespace voxrt
+} // namespace voxrt::voxelize

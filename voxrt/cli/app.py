@@ -98,6 +98,11 @@ _add_command(
 _add_command("convert", "Write a memory in another format.", "voxrt convert courtyard.mem courtyard.blob")
 _add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
 _add_command(
+    "core",
+    "Show the configurations of the hardware, or give its sources to a design of your own.",
+    "voxrt core --config octo --verilog octo.v",
+)
+_add_command(
     "completion",
     "Print a script that completes command lines, for a shell to read at its start.",
     'echo "source <(voxrt completion bash)" >> ~/.bashrc',
@@ -147,7 +152,7 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
             code = ExitCode.DOES_NOT_FIT
         case MemoryError():
             problem, code = "out of memory; use a smaller --depth or a larger --voxel-size", ExitCode.DOES_NOT_FIT
-        case voxrt.SimulatorError() | voxrt.ViewerError():
+        case voxrt.SimulatorError() | voxrt.ViewerError() | voxrt.ToolError():
             code = ExitCode.SIMULATOR
         case _:
             system = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import signal
+from functools import partial
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -20,8 +21,8 @@ from voxrt.cli.results import print_json
 if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.serve.server import Listening
-    from voxrt.serve.show import Program
+    from voxrt.serve.scene_library import SceneLibrary
+    from voxrt.serve.server_options import ServerOptions
 
 _port = Parameter(converter=whole, metavar="PORT")
 
@@ -39,38 +40,39 @@ def serve(
     depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Show scenes live in the browser, until interrupted.
+    """Show scenes live in the browser until Ctrl-C.
 
     Parameters
     ----------
     scenes
-        Blobs, memories (.mem) and assets; the first runs at once, the others stand in the page's list. None: drop one
+        Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, drop a file
         on the page.
     device
-        What renders: the exact model, the verilated hardware, which is slow, or the PYNQ board that this runs on.
+        The renderer: the exact model, the simulated hardware, which is slow, or the PYNQ board that runs this command.
     config
-        The configuration of the verilated hardware: tiny has no features, lit has all of them.
+        The configuration of the simulated hardware: tiny has no optional features, lit has all of them.
     bitstream
-        The .bit of the PYNQ board, its .hwh beside it.
+        The .bit of the PYNQ board, with its .hwh in the same folder.
     host
-        Address to listen on. Any but loopback asks every viewer for the token.
+        Address to listen on. Every address but loopback needs a token.
     port
         TCP port of the page; 0 takes a free one.
     token
-        What viewers must know. Made up and printed where it is needed and not given.
+        The token that clients must send. Where one is needed and not given, a random one is made and printed.
     origin
         Further origins (http://NAME:PORT) whose pages may connect: names by which browsers reach this machine.
     legacy_port
-        TCP port for the original's desktop client: 28 bytes in, a raw picture of 512x512 out, no token.
+        TCP port of the legacy protocol, for the desktop client of the original project: 28 bytes in, a raw picture of
+        512x512 pixels out, no token.
     depth
         Levels of the octrees of assets.
     reporting
-        How to tell what is done: --json prints the page's address on standard output.
+        The form of the output: --json prints the address of the page on standard output.
     """
-    from voxrt.serve.admission import is_loopback  # noqa: PLC0415 - websockets comes with it
-    from voxrt.serve.server import Listening  # noqa: PLC0415
-    from voxrt.serve.show import Program  # noqa: PLC0415
-    from voxrt.staging import BuildingReader  # noqa: PLC0415
+    from voxrt.board_scenes import AssetReader  # noqa: PLC0415 - it imports NumPy
+    from voxrt.serve.access_control import is_loopback  # noqa: PLC0415
+    from voxrt.serve.scene_library import SceneLibrary  # noqa: PLC0415
+    from voxrt.serve.server_options import ServerOptions  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
         if value is not None and not 0 <= value < 1 << 16:
@@ -79,17 +81,17 @@ def serve(
         raise UsageError(f"--depth {depth} is not 1 to 16")
     if token is None and not is_loopback(host):
         token = secrets.token_urlsafe(16)
-    first = _first(scenes[0], depth) if scenes else None
-    library = {path.stem: (lambda path=path: _listed(path, depth)) for path in scenes}
-    listening = Listening(host, port, token, origin, legacy_port)
+    first = _read_first(scenes[0], depth) if scenes else None
+    library = SceneLibrary(AssetReader(depth), {path.stem: partial(_read_listed, path, depth) for path in scenes})
+    options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
-        asyncio.run(_serve(opened, first, Program(BuildingReader(depth), library), listening, json=reporting.json))
+        asyncio.run(_serve(opened, first, library, options, json=reporting.json))
 
 
 def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
     """Open a device of this machine: ``model``, ``sim`` or ``pynq``."""
-    from voxrt.board.errors import DeviceError  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.board.errors import DeviceError  # noqa: PLC0415 - it imports NumPy
     from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
     from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
@@ -99,26 +101,26 @@ def open_device(name: str, config: str, bitstream: Path | None = None) -> Device
     if name == "sim":
         return open_rtl(config)
     if bitstream is None:
-        raise UsageError("--device pynq wants the ray tracer's --bitstream")
+        raise UsageError("--device pynq needs the ray tracer's --bitstream FILE")
     try:
         return open_pynq(str(bitstream))
     except DeviceError as error:
         raise voxrt.SimulatorError(str(error)) from error
 
 
-def _first(path: Path, depth: int | None) -> Scene:
+def _read_first(path: Path, depth: int | None) -> Scene:
     from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.staging import load_scene  # noqa: PLC0415
+    from voxrt.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path, depth)
-    except (Refused, OSError) as error:  # of a blob, which the board's own reader reads
+    except (Refused, OSError) as error:  # a blob is read by serve.blob, which raises Refused
         raise voxrt.RomError(f"{path}: {error}") from error
 
 
-def _listed(path: Path, depth: int | None) -> Scene:
+def _read_listed(path: Path, depth: int | None) -> Scene:
     from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.staging import load_scene  # noqa: PLC0415
+    from voxrt.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path, depth)
@@ -126,22 +128,24 @@ def _listed(path: Path, depth: int | None) -> Scene:
         raise Refused(str(error)) from error
 
 
-async def _serve(device: Device, first: Scene | None, program: Program, listening: Listening, *, json: bool) -> None:
+async def _serve(
+    device: Device, first: Scene | None, library: SceneLibrary, options: ServerOptions, *, json: bool
+) -> None:
     from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415
     from voxrt.serve.server import FrameServer  # noqa: PLC0415
 
     interrupted = asyncio.Event()
     loop = asyncio.get_running_loop()
     try:
-        async with FrameServer(device, program, listening) as server:
+        async with FrameServer(device, library, options) as server:
             if first is not None:
-                await server.show.stage.put_on(first, lambda _stage, _done, _total: None)
+                await server.session.renderer.load(first, lambda _stage, _done, _total: None)
             for number in (signal.SIGINT, signal.SIGTERM):
                 loop.add_signal_handler(number, interrupted.set)
             if json:
                 print_json(ServeResult(server.url, server.port, server.legacy_port))
             summarize(
-                f"serving {first.name if first else 'no scene yet'} by {device.identity.name}; Ctrl-C ends it:",
+                f"serving {first.name if first else 'no scene'} on {device.identity.name}; Ctrl-C ends it:",
                 [("page", server.url)]
                 + ([("legacy", f"port {server.legacy_port}")] if server.legacy_port is not None else []),
             )
@@ -152,5 +156,5 @@ async def _serve(device: Device, first: Scene | None, program: Program, listenin
         raise voxrt.SimulatorError(str(error)) from error
     except OSError as error:
         raise UsageError(
-            f"cannot listen on {listening.host} port {listening.port}: {error.strerror or error}; name another --port"
+            f"cannot listen on {options.host} port {options.port}: {error.strerror or error}; choose another --port"
         ) from error

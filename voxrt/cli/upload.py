@@ -31,22 +31,22 @@ def upload(
     dry_run: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Let a running board show another scene: written at a frame boundary, read back, compared.
+    """Show another scene on a running board: its words are written, read back and compared.
 
     Parameters
     ----------
     rom
-        A blob, or a .mem file; its manifest, the .json beside it, goes with it.
+        A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.
     to
-        The page's address, as the frame server printed it, with its token.
+        The address of the page, with its token, as the frame server printed it.
     device
-        Instead of a server: a device of this machine, to try the upload on.
+        A device of this machine, to try the upload without a server.
     config
-        The configuration of the verilated hardware: tiny or lit.
+        The configuration of the simulated hardware: tiny or lit.
     dry_run
         Check everything, write nothing.
     reporting
-        How to tell what was done.
+        The form of the output.
     """
     if (to is None) == (device is None):
         raise UsageError("--to and --device exclude each other; give one of them")
@@ -58,7 +58,7 @@ def upload(
             asyncio.run(_send(rom, scene, to, progress, dry_run=dry_run))
         else:
             _write(scene, open_device(device or "model", config), progress, dry_run=dry_run)
-    done = "checked; nothing was written" if dry_run else "runs now"
+    done = "checked; nothing was written" if dry_run else "loaded"
     if reporting.json:
         print_json(UploadResult(scene.name, scene.depth, len(scene.words), scene.crc32, written=not dry_run))
     else:
@@ -66,8 +66,8 @@ def upload(
 
 
 def _read(path: Path) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415 - NumPy comes with it
-    from voxrt.staging import load_scene  # noqa: PLC0415
+    from voxrt.board.errors import Refused  # noqa: PLC0415 - it imports NumPy
+    from voxrt.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path)
@@ -77,14 +77,14 @@ def _read(path: Path) -> Scene:
 
 async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_run: bool) -> None:
     from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.serve.client import visit  # noqa: PLC0415 - websockets comes with it
+    from voxrt.serve.frame_client import open_client  # noqa: PLC0415 - it imports websockets
 
     try:
-        async with visit(url) as client:
+        async with open_client(url) as client:
             _check_fit(scene, client.hello["device"])
-            await client.take()
-            beside = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
-            files = {file.name: file.read_bytes() for file in (path, *beside) if file.exists()}
+            await client.take_control()
+            manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
+            files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
             await client.upload(files, progress, check_only=dry_run)
     except Refused as refusal:
         raise voxrt.SimulatorError(str(refusal)) from refusal
@@ -108,7 +108,7 @@ def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -
         if dry_run:
             memory.check(scene)
         else:
-            memory.swap(scene, progress)
+            memory.load(scene, progress)
     except Refused as refusal:
         raise voxrt.DoesNotFitError(str(refusal)) from refusal
     except DeviceError as error:

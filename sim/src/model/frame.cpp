@@ -1,17 +1,22 @@
 #include "frame.h"
 
-#include "cores.h"
 #include "frame_tile.h"
 #include "ray.h"
 
+#include <voxrt/voxelize/workers.h>
+
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <string>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 namespace {
 
-constexpr size_t kRaysATile = 1024;
+constexpr size_t kRaysPerJob = 1024;
+
+// Work in the units of interrupt.h; low estimates, so that the check runs a few times per second.
+constexpr uint32_t kTileWork = 200, kPixelWork = 25, kJobWork = 8000;
 
 uint64_t render_pixel(const FrameJob& job, int32_t column, int32_t row) {
     const Camera& camera = job.camera;
@@ -28,7 +33,7 @@ uint64_t render_pixel(const FrameJob& job, int32_t column, int32_t row) {
     return traced.words_read;
 }
 
-// Whether a pixel's colour takes more rays than the camera's: a tile has traced only that.
+// Whether a pixel's colour takes more rays than the camera's, which is all that render_tile traces.
 bool takes_more_rays(const FrameJob& job, int32_t column, int32_t row) {
     const size_t pixel = static_cast<size_t>(row) * job.frame.width + column;
     const Shading& shading = job.shading;
@@ -39,7 +44,7 @@ bool takes_more_rays(const FrameJob& job, int32_t column, int32_t row) {
 } // namespace
 
 void check_directions(const Camera& camera, int32_t width, int32_t height) {
-    // Directions are linear in the pixel: the largest stand in the corners.
+    // Directions are linear in the pixel: the largest are in the corners.
     for (const int64_t column : {0, width - 1})
         for (const int64_t row : {0, height - 1})
             for (int axis = 0; axis < 3; ++axis) {
@@ -52,48 +57,55 @@ void check_directions(const Camera& camera, int32_t width, int32_t height) {
             }
 }
 
-uint64_t render(const Memory& memory, const Shading& shading, const Camera& camera, const FrameView& frame, int threads,
-                RenderTile render_tile, const Interrupted& interrupted) {
+uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
+                const FrameView& frame, int threads, RenderTile render_tile) {
     const int32_t no_direction[3] = {0, 0, 0};
     const uint8_t at_camera = trace_pixel(memory, shading, camera.position, no_direction).material;
     const FrameJob job{memory, shading, camera, frame, at_camera};
     const int32_t across = (frame.width + kTileSide - 1) / kTileSide;
     const int32_t down = (frame.height + kTileSide - 1) / kTileSide;
-    return on_all_cores(static_cast<size_t>(across) * down, threads, interrupted, [&](size_t tile) {
+    std::atomic<uint64_t> words_read{0};
+    voxelize::Workers(threads).run(static_cast<size_t>(across) * down, [&](size_t tile, int) {
+        voxelize::count_work(kTileWork);
         const int32_t left = static_cast<int32_t>(tile % across) * kTileSide;
         const int32_t top = static_cast<int32_t>(tile / across) * kTileSide;
         const bool fits = tile_fits(job, left, top);
-        uint64_t words_read = fits ? render_tile(job, left, top) : 0;
-        if (fits && !shading.light && shading.bounces == 0)
-            return words_read;
-        for (int32_t row = top; row < std::min(top + kTileSide, frame.height); ++row)
-            for (int32_t column = left; column < std::min(left + kTileSide, frame.width); ++column)
-                if (!fits || takes_more_rays(job, column, row))
-                    words_read += render_pixel(job, column, row);
-        return words_read;
+        uint64_t words = fits ? render_tile(job, left, top) : 0;
+        if (!fits || shading.light || shading.bounces != 0)
+            for (int32_t row = top; row < std::min(top + kTileSide, frame.height); ++row)
+                for (int32_t column = left; column < std::min(left + kTileSide, frame.width); ++column)
+                    if (!fits || takes_more_rays(job, column, row)) {
+                        voxelize::count_work(kPixelWork);
+                        words += render_pixel(job, column, row);
+                    }
+        words_read.fetch_add(words, std::memory_order_relaxed);
     });
+    return words_read;
 }
 
-uint64_t trace_all(const Memory& memory, const RaysView& rays, int threads, const Interrupted& interrupted) {
-    return on_all_cores((rays.count + kRaysATile - 1) / kRaysATile, threads, interrupted, [&](size_t tile) {
-        uint64_t words_read = 0;
-        for (size_t ray = tile * kRaysATile; ray < std::min((tile + 1) * kRaysATile, rays.count); ++ray) {
+uint64_t trace_all(const octree::VerifiedMemory& memory, const RaysView& rays, int threads) {
+    std::atomic<uint64_t> words_read{0};
+    voxelize::Workers(threads).run((rays.count + kRaysPerJob - 1) / kRaysPerJob, [&](size_t job, int) {
+        voxelize::count_work(kJobWork);
+        uint64_t words = 0;
+        for (size_t ray = job * kRaysPerJob; ray < std::min((job + 1) * kRaysPerJob, rays.count); ++ray) {
             Line line{};
             std::copy_n(rays.origins + 3 * ray, 3, line.origin);
             std::copy_n(rays.directions + 3 * ray, 3, line.direction);
-            const auto put = [&](const auto& hit) {
+            const auto store = [&](const auto& hit) {
                 rays.material[ray] = hit.material;
                 rays.face[ray] = hit.face;
                 std::copy_n(hit.cell, 3, rays.cell + 3 * ray);
-                words_read += hit.words_read;
+                words += hit.words_read;
             };
             if (key_fits_64(line))
-                put(Ray<int64_t>(memory, line).trace());
+                store(Ray<int64_t>(memory, line).trace());
             else
-                put(Ray<WideKey>(memory, line).trace());
+                store(Ray<WideKey>(memory, line).trace());
         }
-        return words_read;
+        words_read.fetch_add(words, std::memory_order_relaxed);
     });
+    return words_read;
 }
 
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 
 bool tile_fits(const FrameJob& job, int32_t left, int32_t top) {
     const Camera& camera = job.camera;
-    // Directions are linear in the pixel: the largest stand in the corners.
+    // Directions are linear in the pixel: the largest are in the corners.
     double largest[3] = {1, 1, 1};
     for (const int32_t column : {left, left + kTileSide - 1})
         for (const int32_t row : {top, top + kTileSide - 1})
@@ -17,12 +17,12 @@ bool tile_fits(const FrameJob& job, int32_t left, int32_t top) {
                                  static_cast<double>(camera.up[axis]) * (job.frame.height / 2 - row);
                 largest[axis] = std::max(largest[axis], d < 0 ? -d : d);
             }
-    const double world = 16.0 * (1 << job.memory.depth);
+    const double world = 16.0 * (1 << job.memory.depth());
     for (int axis = 0; axis < 3; ++axis) {
         const double weight = 4 * largest[(axis + 1) % 3] * largest[(axis + 2) % 3];
-        const double reach =
-            2 * world + std::abs(static_cast<double>(camera.position[axis])); // of a plane from a ray's start
-        if (weight * reach + 3 >= 0x1p53)
+        // The largest distance of a plane from a ray's start.
+        const double distance = 2 * world + std::abs(static_cast<double>(camera.position[axis]));
+        if (weight * distance + 3 >= 0x1p53)
             return false;
     }
     return true;
@@ -44,4 +44,4 @@ const std::vector<TileEngine>& tile_engines() {
     return engines;
 }
 
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -1,23 +1,22 @@
-// One tile of a frame: its rays, their walk and their colours by the camera's light or flat, without reflections.
-// frame_tile_body.h is compiled once an instruction set.
+// One tile of a frame: its rays, their traversal and their colours, by the camera's light or flat, without reflections.
+// frame_tile_body.h is compiled once per instruction set.
 #pragma once
 
 #include "frame.h"
-#include "memory.h"
 
 #include <cstdint>
 #include <vector>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 
 inline constexpr int32_t kTileSide = 16; // pixels
 
 struct FrameJob {
-    const Memory& memory; // verified
+    const octree::VerifiedMemory& memory;
     const Shading& shading;
     const Camera& camera;
     const FrameView& frame;
-    uint8_t material_at_camera; // of the camera's own voxel: what a ray without direction hits
+    uint8_t material_at_camera; // of the voxel that holds the camera: what a ray without direction hits
 };
 
 // Whether the keys of the tile with its upper left pixel at (left, top) are exact in doubles.
@@ -30,11 +29,11 @@ uint64_t render_tile_avx2(const FrameJob& job, int32_t left, int32_t top);
 uint64_t render_tile_avx512(const FrameJob& job, int32_t left, int32_t top);
 #endif
 
-// What this processor runs, the fastest first. All give the same pixels.
+// The instruction sets that this processor has, the fastest first. All give the same pixels.
 struct TileEngine {
     const char* instructions;
     RenderTile render_tile;
 };
 const std::vector<TileEngine>& tile_engines();
 
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -6,16 +6,16 @@
 
 #include <cstring>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 namespace {
 
 constexpr int kGroupsAcross = kTileSide / kLanes;
 
-// The group's first pixel; the others stand to its right.
-struct Place {
+// The first pixel of a group; the others are to its right.
+struct GroupPixel {
     int32_t column, row;
 };
-inline Place place_of(int32_t left, int32_t top, int group) {
+inline GroupPixel first_pixel(int32_t left, int32_t top, int group) {
     return {left + group % kGroupsAcross * kLanes, top + group / kGroupsAcross};
 }
 
@@ -23,29 +23,29 @@ inline Place place_of(int32_t left, int32_t top, int group) {
 struct Directions {
     Lanes d[3];
 };
-inline Directions directions_of(const FrameJob& job, Place place) {
+inline Directions directions_of(const FrameJob& job, GroupPixel first) {
     Directions out;
     for (int axis = 0; axis < 3; ++axis) {
         const double right = job.camera.right[axis];
-        const double first = job.camera.look[axis] + right * (place.column - job.frame.width / 2) +
-                             static_cast<double>(job.camera.up[axis]) * (job.frame.height / 2 - place.row);
-        out.d[axis] = ramp(first, right);
+        const double start = job.camera.look[axis] + right * (first.column - job.frame.width / 2) +
+                             static_cast<double>(job.camera.up[axis]) * (job.frame.height / 2 - first.row);
+        out.d[axis] = ramp(start, right);
     }
     return out;
 }
 
 // Bit i: pixel i of the group lies in the frame.
-inline Mask inside(const FrameJob& job, Place place) {
-    const int32_t columns = place.row < job.frame.height ? job.frame.width - place.column : 0;
+inline Mask in_frame(const FrameJob& job, GroupPixel first) {
+    const int32_t columns = first.row < job.frame.height ? job.frame.width - first.column : 0;
     return static_cast<Mask>(columns >= kLanes ? 0xFF : columns > 0 ? (1 << columns) - 1 : 0);
 }
 
 inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
-    const double world = 16.0 * (1 << job.memory.depth);
+    const double world = 16.0 * (1 << job.memory.depth());
     const Lanes zero = all(0);
     for (int group = 0; group < kGroups; ++group) {
-        const Place place = place_of(left, top, group);
-        const Directions rays = directions_of(job, place);
+        const GroupPixel first = first_pixel(left, top, group);
+        const Directions rays = directions_of(job, first);
         Lanes size[3];
         Mask still = 0xFF;
         for (int axis = 0; axis < 3; ++axis) {
@@ -62,17 +62,17 @@ inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
             tile.scale[group][axis] = all(16) * weight;
             tile.offset[group][axis] = all(axis) - start * weight;
             if (const Mask dead = equal(rays.d[axis], zero)) {
-                const double rest = (job.camera.position[axis] >> 4) + 0.5; // in the middle of a cell: on no plane
+                const double rest = (job.camera.position[axis] >> 4) + 0.5; // in the middle of a cell, so on no plane
                 tile.scale[group][axis] = choose(dead, all(kNeverKey), tile.scale[group][axis]);
                 tile.offset[group][axis] = choose(dead, all(-rest * kNeverKey), tile.offset[group][axis]);
             }
         }
-        tile.alive[group] = inside(job, place) & ~still;
+        tile.alive[group] = in_frame(job, first) & ~still;
         tile.material[group] = bytes_of(still) * job.material_at_camera;
     }
 }
 
-// What a group shows, one byte a pixel; colours three.
+// The pixels of a group: a byte each, three for colours.
 struct Pixels {
     uint64_t material;
     uint64_t face;
@@ -107,7 +107,7 @@ inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Dire
         store_as_int(channels[channel], (two * surface[channel] * across + length) / (two * length));
     for (int lane = 0; lane < kLanes; ++lane) {
         const int32_t pixel = channels[0][lane] | channels[1][lane] << 8 | channels[2][lane] << 16;
-        std::memcpy(out.colour + 3 * lane, &pixel, 4); // the fourth byte is the next pixel's to overwrite
+        std::memcpy(out.colour + 3 * lane, &pixel, 4); // the next pixel overwrites the fourth byte
     }
     return out;
 }
@@ -119,12 +119,12 @@ uint64_t VOXRT_RENDER_TILE(const FrameJob& job, int32_t left, int32_t top) {
     set_up(tile, job, left, top);
     const uint64_t words_read = trace_tile(job.memory, tile);
     for (int group = 0; group < kGroups; ++group) {
-        const Place place = place_of(left, top, group);
-        if (place.row >= job.frame.height || place.column >= job.frame.width)
+        const GroupPixel first = first_pixel(left, top, group);
+        if (first.row >= job.frame.height || first.column >= job.frame.width)
             continue;
-        const Pixels pixels = shade(tile, job, group, directions_of(job, place));
-        const size_t pixel = static_cast<size_t>(place.row) * job.frame.width + place.column;
-        const size_t count = job.frame.width - place.column < kLanes ? job.frame.width - place.column : kLanes;
+        const Pixels pixels = shade(tile, job, group, directions_of(job, first));
+        const size_t pixel = static_cast<size_t>(first.row) * job.frame.width + first.column;
+        const size_t count = job.frame.width - first.column < kLanes ? job.frame.width - first.column : kLanes;
         std::memcpy(job.frame.colour + 3 * pixel, pixels.colour, 3 * count);
         std::memcpy(job.frame.face + pixel, &pixels.face, count);
         std::memcpy(job.frame.material + pixel, &pixels.material, count);
@@ -132,4 +132,4 @@ uint64_t VOXRT_RENDER_TILE(const FrameJob& job, int32_t left, int32_t top) {
     return words_read;
 }
 
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace voxrt::model {
+namespace voxrt::sim {
 namespace { // internal: the same names are compiled for several instruction sets
 
 constexpr int kLanes = 8;
@@ -146,4 +146,4 @@ inline void store_as_int(int32_t* out, const Lanes& a) {
 }
 
 } // namespace
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -3,6 +3,8 @@
 #include "frame_tile.h"
 #include "ray.h"
 
+#include <voxrt/voxelize/python.h>
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
@@ -15,7 +17,11 @@
 #include <vector>
 
 namespace nb = nanobind;
-using namespace voxrt::model;
+using namespace voxrt::sim;
+using voxrt::octree::VerifiedMemory;
+using voxrt::python::LongCall;
+using voxrt::python::NamedTuple;
+using voxrt::python::to_numpy;
 
 namespace {
 
@@ -31,29 +37,26 @@ constexpr int kBounceLimit = 15;
 constexpr int32_t kSizeLimit = 1 << 14;
 constexpr int kThreadLimit = 1024;
 
-// A NumPy array that this module made and Python owns.
-template <class T> struct Owned {
-    std::unique_ptr<T[]> data;
-    explicit Owned(size_t size) : data(new T[size]()) {}
-    nb::object array(std::initializer_list<size_t> shape) {
-        T* raw = data.release();
-        nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-        return nb::cast(nb::ndarray<nb::numpy, T>(raw, shape, owner));
-    }
-};
+NamedTuple rendered_pixels, traced_rays, followed_ray, reading_type;
 
-// A memory that this module owns and has verified, so that nobody changes a word under it.
+// A memory with words of its own, so that nobody changes them after they are verified.
 class OwnedMemory {
 public:
-    OwnedMemory(const Words& words, int depth) : words_(words.data(), words.data() + words.shape(0)), depth_(depth) {
-        nb::gil_scoped_release release;
-        view().verify();
-    }
-    Memory view() const { return {words_.data(), words_.size(), depth_}; }
+    OwnedMemory(const Words& words, int depth)
+        : words_(words.data(), words.data() + words.shape(0)), verified_(verify(words_, depth)) {}
+    OwnedMemory(const OwnedMemory&) = delete;
+    OwnedMemory& operator=(const OwnedMemory&) = delete;
+
+    const VerifiedMemory& verified() const { return verified_; }
 
 private:
+    static VerifiedMemory verify(const std::vector<uint32_t>& words, int depth) {
+        const LongCall call;
+        return VerifiedMemory({words.data(), words.size(), depth < 0 ? 0 : static_cast<unsigned>(depth)});
+    }
+
     std::vector<uint32_t> words_;
-    int depth_;
+    VerifiedMemory verified_;
 };
 
 void check_threads(int threads) {
@@ -61,16 +64,10 @@ void check_threads(int threads) {
         throw std::invalid_argument("threads is " + std::to_string(threads) + ", not 0 ... 1024");
 }
 
-// Whether Python has a signal waiting; the caller has released the GIL.
-bool signal_waits() {
-    nb::gil_scoped_acquire hold;
-    return PyErr_CheckSignals() != 0;
-}
-
-nb::dict render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
-                      int height, int threads, const std::string& instructions, bool flat,
-                      const std::optional<Position>& light, int ambient, int bounces,
-                      const std::optional<Flags>& mirrors) {
+nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
+                        int height, int threads, const std::string& instructions, bool flat,
+                        const std::optional<Position>& light, int ambient, int bounces,
+                        const std::optional<Flags>& mirrors) {
     if (ambient < 0 || ambient > 255)
         throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
     if (bounces < 0 || bounces > kBounceLimit)
@@ -97,26 +94,19 @@ nb::dict render_frame(const OwnedMemory& memory, const Palette& materials, const
     }
     check_directions(camera, width, height);
     const size_t h = static_cast<size_t>(height), w = static_cast<size_t>(width);
-    Owned<uint8_t> colour(3 * h * w), material(h * w), face(h * w);
+    auto colour = std::make_unique<uint8_t[]>(3 * h * w), material = std::make_unique<uint8_t[]>(h * w),
+         face = std::make_unique<uint8_t[]>(h * w);
     uint64_t words_read = 0;
-    bool stopped = false;
     {
-        nb::gil_scoped_release release;
-        words_read = render(memory.view(), shading, camera,
-                            {width, height, colour.data.get(), material.data.get(), face.data.get()}, threads,
-                            engine->render_tile, [&] { return stopped = signal_waits(); });
+        const LongCall call;
+        words_read = render(memory.verified(), shading, camera,
+                            {width, height, colour.get(), material.get(), face.get()}, threads, engine->render_tile);
     }
-    if (stopped)
-        throw nb::python_error();
-    nb::dict out;
-    out["colour"] = colour.array({h, w, 3});
-    out["material"] = material.array({h, w});
-    out["face"] = face.array({h, w});
-    out["words_read"] = words_read;
-    return out;
+    return rendered_pixels(to_numpy(std::move(colour), {h, w, 3}), to_numpy(std::move(material), {h, w}),
+                           to_numpy(std::move(face), {h, w}), words_read);
 }
 
-nb::dict trace_rays(const OwnedMemory& memory, const Triples& origins, const Triples& directions, int threads) {
+nb::object trace_rays(const OwnedMemory& memory, const Triples& origins, const Triples& directions, int threads) {
     check_threads(threads);
     const size_t count = origins.shape(0);
     if (directions.shape(0) != count)
@@ -126,34 +116,26 @@ nb::dict trace_rays(const OwnedMemory& memory, const Triples& origins, const Tri
         if (const int32_t d = directions.data()[i]; d <= -kDirectionLimit || d >= kDirectionLimit)
             throw std::invalid_argument("direction " + std::to_string(i / 3) + " reaches " + std::to_string(d) +
                                         " on axis " + "xyz"[i % 3] + ", which is not below 2**20");
-    Owned<uint8_t> material(count), face(count);
-    Owned<int32_t> cell(3 * count);
+    auto material = std::make_unique<uint8_t[]>(count), face = std::make_unique<uint8_t[]>(count);
+    auto cell = std::make_unique<int32_t[]>(3 * count);
     uint64_t words_read = 0;
-    bool stopped = false;
     {
-        nb::gil_scoped_release release;
+        const LongCall call;
         words_read =
-            trace_all(memory.view(),
-                      {count, origins.data(), directions.data(), material.data.get(), face.data.get(), cell.data.get()},
-                      threads, [&] { return stopped = signal_waits(); });
+            trace_all(memory.verified(),
+                      {count, origins.data(), directions.data(), material.get(), face.get(), cell.get()}, threads);
     }
-    if (stopped)
-        throw nb::python_error();
-    nb::dict out;
-    out["material"] = material.array({count});
-    out["face"] = face.array({count});
-    out["cell"] = cell.array({count, 3});
-    out["words_read"] = words_read;
-    return out;
+    return traced_rays(to_numpy(std::move(material), {count}), to_numpy(std::move(face), {count}),
+                       to_numpy(std::move(cell), {count, 3}), words_read);
 }
 
-// An integer of any size for Python: of 128 bits there is no cast.
-nb::object whole(WideKey value) {
+// A Python integer of 128 bits, for which nanobind has no cast.
+nb::object to_python(WideKey value) {
     return nb::cast(static_cast<int64_t>(value >> 64)) * nb::cast(uint64_t{1} << 32) * nb::cast(uint64_t{1} << 32) +
            nb::cast(static_cast<uint64_t>(value));
 }
 
-nb::dict follow_ray(const OwnedMemory& memory, const Position& origin, const Position& direction) {
+nb::object follow_ray(const OwnedMemory& memory, const Position& origin, const Position& direction) {
     Line line{};
     for (int axis = 0; axis < 3; ++axis) {
         line.origin[axis] = origin(axis);
@@ -163,19 +145,14 @@ nb::dict follow_ray(const OwnedMemory& memory, const Position& origin, const Pos
                                         "xyz"[axis] + ", which is not below 2**20");
     }
     nb::list readings;
-    const Hit<WideKey> hit = Ray<WideKey>(memory.view(), line).trace([&](const Reading<WideKey>& reading) {
+    const Hit<WideKey> hit = Ray<WideKey>(memory.verified(), line).trace([&](const Reading<WideKey>& reading) {
         if (readings.size() % 4096 == 4095 && PyErr_CheckSignals() != 0)
             throw nb::python_error();
-        readings.append(nb::make_tuple(reading.address, reading.word, reading.level,
-                                       nb::make_tuple(reading.corner[0], reading.corner[1], reading.corner[2]),
-                                       reading.face, whole(reading.time)));
+        readings.append(reading_type(reading.address, reading.word, reading.level,
+                                     nb::make_tuple(reading.corner[0], reading.corner[1], reading.corner[2]),
+                                     reading.face, to_python(reading.time)));
     });
-    nb::dict out;
-    out["material"] = hit.material;
-    out["face"] = hit.face;
-    out["cell"] = nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]);
-    out["readings"] = readings;
-    return out;
+    return followed_ray(hit.material, hit.face, nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]), readings);
 }
 
 } // namespace
@@ -185,6 +162,14 @@ NB_MODULE(_model, m) {
     for (const TileEngine& engine : tile_engines())
         instruction_sets.append(engine.instructions);
     m.attr("INSTRUCTION_SETS") = nb::tuple(instruction_sets);
+    rendered_pixels =
+        NamedTuple(m, "RenderedPixels", {"colour", "material", "face", "words_read"}, "What Memory.render() returns.");
+    traced_rays =
+        NamedTuple(m, "TracedRays", {"material", "face", "cell", "words_read"}, "What Memory.trace() returns.");
+    followed_ray =
+        NamedTuple(m, "FollowedRay", {"material", "face", "cell", "readings"}, "What Memory.follow() returns.");
+    reading_type =
+        NamedTuple(m, "Reading", {"address", "word", "level", "corner", "axis", "time"}, "A word that a ray read.");
     nb::class_<OwnedMemory>(m, "Memory", "A verified octree memory, which any number of threads may trace through.")
         .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
              "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
@@ -196,17 +181,18 @@ NB_MODULE(_model, m) {
              "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
              "which is the fastest. docs/shading.md defines the rest: flat; light, None or (3,) int32 in 1/16 voxel, "
              "with\n"
-             "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Gives colour (H, W, "
+             "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Returns colour (H, W, "
              "3), material (H, W), face (H, W), uint8, and words_read.\n"
              "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
-             "Gives material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"
+             "Returns material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"
              "ValueError: a direction out of range.")
-        .def(
-            "follow", &follow_ray, nb::arg("origin"), nb::arg("direction"),
-            "Trace one ray, as trace does, and tell what it reads: origin (3,) int32 in 1/16 voxel, direction (3,)\n"
-            "int32, components below 2**20. Gives material, face, cell and readings: for each word in order (address,\n"
-            "word, level, (x, y, z) of its octant's lowest voxel, axis of the plane crossed last or 3, the T of it).\n"
-            "Word 0 is kept between rays and not among them. ValueError: a direction out of range.");
+        .def("follow", &follow_ray, nb::arg("origin"), nb::arg("direction"),
+             "Trace one ray, as trace does, and list what it reads: origin (3,) int32 in 1/16 voxel, direction (3,)\n"
+             "int32, components below 2**20. Returns material, face, cell and readings: for each word in order its\n"
+             "address, word, level, corner (lowest voxel of its octant), axis of the plane crossed last or 3, and "
+             "time,\n"
+             "the T of that plane. Word 0 is kept between rays and not among them. ValueError: a direction out of "
+             "range.");
 }

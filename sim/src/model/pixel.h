@@ -1,23 +1,23 @@
-// The colour of one pixel with every feature of the shader: docs/shading.md says which, in whole numbers.
+// The colour of one pixel with every feature of the shader, in integers. docs/shading.md defines them.
 #pragma once
 
-#include "memory.h"
+#include <voxrt/octree/verify.h>
 
 #include <cstdint>
 #include <optional>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 
 struct Light {
     int32_t position[3]; // 1/16 voxel
-    uint8_t ambient;     // 1/256: the brightness that no shadow goes below
+    uint8_t ambient;     // 1/256: the least brightness, in shadows too
 };
 
 // Everything between a hit and its colour.
 struct Shading {
     const uint8_t* materials; // 256 sRGB triples, entry 0 the background
     const uint8_t* mirrors;   // 256 flags
-    int bounces = 0;          // 0: mirrors are like all other materials
+    int bounces = 0;          // 0: mirrors are shaded like other materials
     bool flat = false;
     std::optional<Light> light;
 };
@@ -29,7 +29,8 @@ struct Pixel {
     uint32_t words_read;
 };
 
-// Traces the ray from `origin` (1/16 voxel) through a verified memory; |direction| < kDirectionLimit.
-Pixel trace_pixel(const Memory& memory, const Shading& shading, const int32_t origin[3], const int32_t direction[3]);
+// Traces the ray from `origin` (1/16 voxel). Components of `direction` are below kDirectionLimit.
+Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const int32_t origin[3],
+                  const int32_t direction[3]);
 
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -1,9 +1,9 @@
-// A tile of rays from one camera through the octree, together and exactly.
+// A tile of rays from one camera through the octree, as a packet and exactly.
 //
-// The rays of a tile whose directions have the same signs meet the octants of a block in the same order, that of the
-// mirrored octant index. So the tile walks the octree once, front to back, and carries along which of its rays visit
-// the node at hand: no ray has a stack, and a word is read once for all of them (the idea of packet traversal, Wald et
-// al., "Interactive Rendering with Coherent Ray Tracing", 2001, on an octree).
+// Rays whose directions have the same signs meet the octants of a block in the same order, that of the mirrored octant
+// index. So the tile traverses the octree once, front to back, with the set of its rays that visit the current node: no
+// ray has a stack, and a word is read once for all of them (packet traversal: Wald, Slusallek, Benthin and Wagner,
+// "Interactive Rendering with Coherent Ray Tracing", 2001; here on an octree).
 //
 // The crossing of plane p on axis a has the key 4 T + a (see ray.h for T): all keys of a ray differ. A ray visits a
 // node exactly when the largest key of its three near planes, its entry, is below the smallest key of its far planes;
@@ -16,13 +16,13 @@
 
 #include <cstdint>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 namespace {
 
 constexpr int kGroups = kTileSide * kTileSide / kLanes; // a group is 8 rays, side by side
 
-// Planes that a ray never crosses, those of an axis along which it does not move, get keys of this size: those below
-// the ray count as behind it, those above come after all others.
+// A ray never crosses the planes of an axis along which it does not move. Their keys have this size: those below the
+// ray count as behind it, those above come after all others.
 constexpr double kNeverKey = 0x1p56;
 
 // Keys below this one are crossed before the ray starts: 4 T + a with T <= 0.
@@ -35,9 +35,9 @@ struct Tile {
     Lanes offset[kGroups][3];
     Mask mirrored[kGroups][3];  // rays that descend along each axis
     Mask alive[kGroups];        // rays still to be traced; after the walk, those that hit nothing
-    uint64_t material[kGroups]; // a byte a ray: the material hit; 0 before
+    uint64_t material[kGroups]; // a byte per ray: the material hit; 0 before
     Mask face[kGroups][3];      // rays that hit a face across each axis; none before
 };
 
 } // namespace
-} // namespace voxrt::model
+} // namespace voxrt::sim

@@ -1,12 +1,11 @@
-// The walk that tile.h describes, for the instruction set of the including file.
+// The traversal that tile.h describes, for the instruction set of the including file.
 #pragma once
 
-#include "memory.h"
 #include "tile.h"
 
 #include <bit>
 
-namespace voxrt::model {
+namespace voxrt::sim {
 namespace {
 
 struct Rays {
@@ -26,8 +25,8 @@ struct Walk {
 
     // A node of `size` voxels with its lowest corner at (x, y, z), mirrored frame, and the rays that visit it.
     void node(uint32_t word, double x, double y, double z, double size, const Rays* rays, int count) {
-        if (is_leaf(word))
-            hit(material_of(word), x, y, z, rays, count);
+        if (octree::is_leaf(word))
+            hit(octree::material(word), x, y, z, rays, count);
         else
             block(word, x, y, z, size, rays, count);
     }
@@ -55,7 +54,7 @@ struct Walk {
         uint64_t filled = 0; // byte i: 0xFF where octant i is more than empty space
         for (uint32_t i = 0; i < 8; ++i) {
             octants[i] = words[address + (i ^ mirror)];
-            const bool empty = is_leaf(octants[i]) && material_of(octants[i]) == 0;
+            const bool empty = octree::is_leaf(octants[i]) && octree::material(octants[i]) == 0;
             filled |= (empty ? uint64_t{0} : uint64_t{0xFF}) << 8 * i;
         }
         words_read += 8;
@@ -93,11 +92,11 @@ struct Walk {
                      visitors[i], visits[i]);
     }
 
-    // Traces the rays that are mirrored like this walk.
+    // Traces the rays that are mirrored as `mirror` says.
     void root(double side) {
         const uint32_t word = words[0];
         words_read += 1;
-        if (is_leaf(word) && material_of(word) == 0)
+        if (octree::is_leaf(word) && octree::material(word) == 0)
             return;
         Rays rays[kGroups];
         int count = 0;
@@ -119,9 +118,9 @@ struct Walk {
     }
 };
 
-// Traces the rays of `tile` that are alive through a verified memory. Returns how many octree words were read. A ray
+// Traces the rays of `tile` that are alive through the memory. Returns how many octree words were read. A ray
 // without any direction must not be alive.
-inline uint64_t trace_tile(const Memory& memory, Tile& tile) {
+inline uint64_t trace_tile(const octree::VerifiedMemory& memory, Tile& tile) {
     uint64_t words_read = 0;
     Mask some[3] = {0, 0, 0}, every[3] = {0xFF, 0xFF, 0xFF}; // mirrored on each axis
     for (int group = 0; group < kGroups; ++group)
@@ -137,12 +136,12 @@ inline uint64_t trace_tile(const Memory& memory, Tile& tile) {
     };
     for (uint32_t mirror = 0; mirror < 8; ++mirror)
         if (occurs(mirror)) {
-            Walk walk{memory.words, tile, mirror, 0};
-            walk.root(static_cast<double>(1 << memory.depth));
+            Walk walk{memory.words(), tile, mirror, 0};
+            walk.root(static_cast<double>(1 << memory.depth()));
             words_read += walk.words_read;
         }
     return words_read;
 }
 
 } // namespace
-} // namespace voxrt::model
+} // namespace voxrt::sim

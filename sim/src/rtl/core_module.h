@@ -1,4 +1,4 @@
-// The Python class PixelGenerator and the list CORES; core_module.cpp documents them.
+// The Python class Core and the list CORES; core_module.cpp documents them.
 #pragma once
 
 #include <nanobind/nanobind.h>

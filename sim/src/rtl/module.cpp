@@ -23,7 +23,7 @@
 //                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
 //                             "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
 //
-//   CORES, PixelGenerator     the whole core: core_module.cpp
+//   CORES, Core     the whole core: core_module.cpp
 //
 // ValueError: a name, size or register out of range, or a feature that is not built in.
 #include "core_module.h"

@@ -1,6 +1,7 @@
 // Drives a verilated voxrt_rtu: clock, reset, load port, material table, frame, pixels.
 #pragma once
 
+#include "bit_fields.h"
 #include "design.h"
 #include "stall_pattern.h"
 
@@ -96,18 +97,18 @@ public:
         StallPattern stalls(request.stall_seed);
         std::size_t done = 0;
         for (uint64_t clocks = 1; done < pixels; ++clocks) {
-            model_->out_ready_i = !stalls.next();
-            if (model_->out_valid_o && model_->out_ready_i) {
-                const uint32_t colour = model_->out_colour_o;
-                image.colour[3 * done] = static_cast<uint8_t>(colour >> 16);
-                image.colour[3 * done + 1] = static_cast<uint8_t>(colour >> 8);
-                image.colour[3 * done + 2] = static_cast<uint8_t>(colour);
-                image.material[done] = static_cast<uint8_t>(model_->out_pixel_o >> 2);
-                image.face[done] = model_->out_pixel_o & 3;
+            model_->pixel_ready_i = !stalls.next();
+            if (model_->pixel_valid_o && model_->pixel_ready_i) {
+                // voxrt_pkg::shaded_pixel_t.
+                const uint64_t pixel = model_->pixel_o;
+                image.colour[3 * done] = static_cast<uint8_t>(pixel >> 29);
+                image.colour[3 * done + 1] = static_cast<uint8_t>(pixel >> 21);
+                image.colour[3 * done + 2] = static_cast<uint8_t>(pixel >> 13);
+                image.material[done] = static_cast<uint8_t>(pixel >> 5);
+                image.face[done] = pixel >> 3 & 3;
                 const bool last = done + 1 == pixels;
                 const bool line_end = (done + 1) % request.width == 0;
-                if (model_->out_first_o != (done == 0) || model_->out_line_end_o != line_end ||
-                    model_->out_last_o != last)
+                if ((pixel >> 2 & 1) != (done == 0) || (pixel >> 1 & 1) != line_end || (pixel & 1) != last)
                     throw std::logic_error("pixel " + std::to_string(done) + " has wrong first, line or last marks");
                 ++done;
             }
@@ -118,8 +119,9 @@ public:
         if (model_->busy_o)
             throw std::logic_error("busy after the last pixel");
         const unsigned errors = model_->error_o;
-        return {.cycles = model_->cycles_o,
-                .words_read = model_->words_read_o,
+        // voxrt_pkg::counters_t, the last field lowest.
+        return {.cycles = model_->counters_o[4],
+                .words_read = model_->counters_o[2],
                 .direction_overflow = (errors & 4) != 0,
                 .bad_pointer = (errors & 2) != 0,
                 .step_limit = (errors & 1) != 0};
@@ -141,7 +143,7 @@ private:
     // The pixel buffers clear themselves after reset, a place a clock; no ray starts until they have.
     void reset() {
         model_->start_i = 0;
-        model_->out_ready_i = 0;
+        model_->pixel_ready_i = 0;
         model_->rst_ni = 0;
         for (int i = 0; i < 16; ++i)
             clock();
@@ -151,31 +153,32 @@ private:
     }
 
     void set_frame(const FrameRequest& request) {
-        model_->table_write_i = 1;
         for (unsigned material = 0; material < 256; ++material) {
+            // voxrt_pkg::material_write_t.
             const uint8_t* colour = request.materials + 3 * material;
-            model_->table_material_i = static_cast<uint8_t>(material);
-            model_->table_row_i = uint32_t{request.mirrors[material] != 0} << 24 | uint32_t{colour[0]} << 16 |
-                                  uint32_t{colour[1]} << 8 | colour[2];
+            const uint32_t entry = uint32_t{request.mirrors[material] != 0} << 24 | uint32_t{colour[0]} << 16 |
+                                   uint32_t{colour[1]} << 8 | colour[2];
+            model_->material_write_i = uint64_t{1} << 33 | uint64_t{material} << 25 | entry;
             clock();
         }
-        model_->table_write_i = 0;
-        const uint32_t position_mask = limits_.position_bits < 32 ? (1u << limits_.position_bits) - 1 : ~0u;
-        for (int axis = 0; axis < 3; ++axis) {
-            model_->position_i[axis] = static_cast<uint32_t>(request.position[axis]) & position_mask;
-            model_->look_i[axis] = static_cast<uint16_t>(request.look[axis]);
-            model_->right_i[axis] = static_cast<uint16_t>(request.right[axis]);
-            model_->up_i[axis] = static_cast<uint16_t>(request.up[axis]);
-            model_->light_i[axis] =
-                static_cast<uint32_t>(request.light_position[axis]) & ((1u << limits_.light_bits()) - 1);
-        }
-        // voxrt_pkg::shading_t.
-        model_->shading_i =
-            static_cast<uint16_t>(request.flat << 13 | request.light << 12 | request.ambient << 4 | request.bounces);
-        model_->root_i = request.root;
-        model_->width_i = static_cast<uint16_t>(request.width);
-        model_->height_i = static_cast<uint16_t>(request.height);
-        model_->depth_i = static_cast<uint8_t>(request.depth);
+        model_->material_write_i = 0;
+        // voxrt_pkg::frame_t.
+        BitFields frame(model_->frame_i);
+        for (const int32_t place : request.light_position)
+            frame.put(static_cast<uint32_t>(place), 32);
+        frame.put(request.bounces, 4);
+        frame.put(request.ambient, 8);
+        frame.put(request.light, 1);
+        frame.put(request.flat, 1);
+        frame.put(request.root, 32);
+        frame.put(request.depth, 5);
+        frame.put(request.height, size_bits);
+        frame.put(request.width, size_bits);
+        for (const auto& direction : {request.up, request.right, request.look})
+            for (int axis = 0; axis < 3; ++axis)
+                frame.put(static_cast<uint16_t>(direction[axis]), 16);
+        for (const int32_t place : request.position)
+            frame.put(static_cast<uint32_t>(place), 32);
     }
 
     // What voxrt_octree_memory keeps for a word of the report dialect.

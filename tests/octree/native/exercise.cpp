@@ -1,8 +1,8 @@
 // Runs the native octree without Python, for the sanitizers: `make sanitize` builds it with each of them.
 //
 // Random grids of every small depth go through each function and are held against the voxels themselves; random bricks
-// and octants are built on one thread and on three; memories of random words are refused and never walked out of.
-// Prints a line and exits with 1 where something is wrong.
+// and octants are built on one thread and on three; memories of random words are refused and never read beyond their
+// end. Prints a line and exits with 1 where something is wrong.
 #include "breadth_first.h"
 #include "budget.h"
 #include "build.h"
@@ -16,6 +16,7 @@
 #include "regions.h"
 #include "surface.h"
 #include "validate.h"
+#include "verify.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -149,12 +150,12 @@ void exercise_grid(Random& random, unsigned depth) {
     solid_bounds(memory);
     BlockPool pool;
     coarsen(memory, 1, pool);
-    const auto costs = std::make_unique<SightCosts>();
-    for (auto& row : costs->same_face)
+    const auto costs = std::make_unique<AppearanceCosts>();
+    for (auto& row : costs->same_axis)
         row.fill(128);
-    for (auto& row : costs->turned)
+    for (auto& row : costs->other_axis)
         row.fill(256);
-    costs->covering.fill(128);
+    costs->occlusion.fill(128);
     for (const std::vector<Word>& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size / 2))
         expect(validate(fit.data(), fit.size(), depth).fault == Fault::none, "fitted bricks", depth);
 }
@@ -186,22 +187,22 @@ void exercise_threads(Random& random, unsigned depth) {
                 cells.push_back(static_cast<std::uint8_t>((brick_masks.back() >> bit & 1) * (1 + random() % 255)));
         }
     }
-    const VoxelsView view{depth,
-                          brick_codes.size(),
-                          brick_codes.data(),
-                          brick_masks.data(),
-                          brick_materials.data(),
-                          rows.data(),
-                          static_cast<std::size_t>(row),
-                          cells.data(),
-                          octant_codes.size(),
-                          octant_codes.data(),
-                          octant_levels.data(),
-                          octant_materials.data()};
+    const voxrt::voxelize::VoxelsView view{depth,
+                                           brick_codes.size(),
+                                           brick_codes.data(),
+                                           brick_masks.data(),
+                                           brick_materials.data(),
+                                           rows.data(),
+                                           static_cast<std::size_t>(row),
+                                           cells.data(),
+                                           octant_codes.size(),
+                                           octant_codes.data(),
+                                           octant_levels.data(),
+                                           octant_materials.data()};
     expect(build(view, 1) == build(view, 3), "the result depends on the number of threads", depth);
 }
 
-/// Words of any kind: most are no octree, and none may be walked out of.
+/// Words of any kind: most are no octree, and no read may leave the memory.
 void exercise_words(Random& random) {
     for (int i = 0; i < 2000; ++i) {
         std::vector<Word> words(1 + 8 * (random() % 6));
@@ -215,6 +216,7 @@ void exercise_words(Random& random) {
             const std::vector<Word> hidden = hidden_voxels(memory_of(words, depth));
             share_hidden(memory_of(words, depth), memory_of(hidden, depth));
             cells_of(words, depth);
+            VerifiedMemory(memory_of(words, depth));
         } catch (const std::invalid_argument&) {
             expect(!sound, "a sound memory is refused", depth);
         }

@@ -16,23 +16,23 @@ from voxrt.voxelize import (
     Scene,
     SceneObject,
     SphereCollider,
+    authoring,
 )
-from voxrt.voxelize.authoring import author
-from voxrt.voxelize.authoring.author import Author, AuthoringError
-from voxrt.voxelize.colour.paint import Coat, Paint
+from voxrt.voxelize.authoring import Author
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 
 WHITE = (255, 255, 255)
 
 
 def test_the_examples_of_the_module():
-    assert doctest.testmod(author).failed == 0
+    assert doctest.testmod(authoring).failed == 0
 
 
 def test_materials_keep_their_order_whether_used_or_not():
     yard = Author("yard", background="#102030")
     for name, colour in (("a", "#0000ff"), ("b", (1, 2, 3)), ("c", "#ffffff")):
         yard.material(name, colour, mirror=name == "b")
-    yard.add("only", author.box((1, 1, 1)), material="c")
+    yard.add("only", authoring.box((1, 1, 1)), material="c")
     assert yard.build().materials == (
         Material("empty", (16, 32, 48)),
         Material("a", (0, 0, 255)),
@@ -45,7 +45,7 @@ def test_ids_may_be_given_and_gaps_are_filled_first():
     yard = Author("yard")
     yard.material("late", "#000001", number=4)
     yard.material("one", "#000002")
-    yard.add("thing", author.box((1, 1, 1)))
+    yard.add("thing", authoring.box((1, 1, 1)))
     scene = yard.build()
     assert [(one.name, one.authored) for one in scene.materials] == [
         ("empty", True),
@@ -61,7 +61,7 @@ def test_ids_may_be_given_and_gaps_are_filled_first():
 def test_objects_stand_where_they_are_put():
     yard = Author("yard")
     yard.material("a", "#ffffff")
-    yard.add("turned", author.box((2, 4, 6)), material="a", translate=(10, 0, 0), rotate=(0, 0, 90), scale=2)
+    yard.add("turned", authoring.box((2, 4, 6)), material="a", translate=(10, 0, 0), rotate=(0, 0, 90), scale=2)
     triangles = scene_triangles(yard.build())
     assert bounds(triangles).tolist() == [[6, -2, -6], [14, 2, 6]]
     assert volume(triangles) == pytest.approx(8 * 48)
@@ -72,7 +72,7 @@ def test_objects_stand_where_they_are_put():
 )
 def test_colliders(kind, cls):
     yard = Author("yard")
-    yard.add("thing", author.box((2, 4, 4)), collider=kind, pow2=False, rotate=(0, 30, 0))
+    yard.add("thing", authoring.box((2, 4, 4)), collider=kind, pow2=False, rotate=(0, 30, 0))
     (collider,) = yard.build().objects[0].colliders
     assert isinstance(collider, cls)
     if kind == "box":
@@ -91,7 +91,7 @@ def asset(*materials):
         np.arange(1, len(materials) + 1, dtype=np.uint8),
     )
     one = SceneObject("/part", mesh)
-    moved = SceneObject("/other", mesh, author.placement((5, 0, 0)))
+    moved = SceneObject("/other", mesh, authoring.placement((5, 0, 0)))
     return Scene("asset", (one, moved), (Material("empty", (0, 0, 0)), *materials))
 
 
@@ -102,7 +102,7 @@ def test_assets_bring_their_materials_and_share_meshes():
     yard.add_asset(
         "twin",
         asset(Material("red", (1, 1, 1)), Material("board", (2, 2, 2)), Material("own", (3, 3, 3))),
-        author.placement((0, 0, 7)),
+        authoring.placement((0, 0, 7)),
         materials={"board": "wood"},
     )
     yard.add_asset("more", asset(Material("own", (3, 3, 3)), Material("own ", (4, 4, 4))), np.eye(4))
@@ -122,8 +122,15 @@ def test_assets_bring_their_materials_and_share_meshes():
 
 def test_paint_stays_unless_its_material_is_declared():
     white = np.ones((2, 3, 4), dtype=np.float32)
-    coat = Coat((Paint("cloth"), Paint("skin")), np.array([0, 1], dtype=np.int32), np.zeros((2, 3, 2)), white)
-    mesh = Mesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]], dtype=np.int32), np.array([1, 2], dtype=np.uint8), coat)
+    surface_appearance = SurfaceAppearance(
+        (Appearance("cloth"), Appearance("skin")), np.array([0, 1], dtype=np.int32), np.zeros((2, 3, 2)), white
+    )
+    mesh = Mesh(
+        np.eye(3),
+        np.array([[0, 1, 2], [0, 2, 1]], dtype=np.int32),
+        np.array([1, 2], dtype=np.uint8),
+        surface_appearance,
+    )
     table = (Material("empty", (0, 0, 0)), Material("cloth #ffffff", WHITE), Material("skin #ffffff", WHITE))
     painted = Scene("asset", (SceneObject("one", mesh),), table)
     yard = Author("yard")
@@ -133,12 +140,12 @@ def test_paint_stays_unless_its_material_is_declared():
     assert [one.name for one in scene.materials[1:]] == ["linen", "skin #ffffff"]
     (one,) = scene.objects
     assert one.mesh.materials.tolist() == [1, 2]
-    assert one.mesh.coat.rows.tolist() == [-1, 1]
+    assert one.mesh.appearance.rows.tolist() == [-1, 1]
 
 
 def test_a_view_and_a_light():
     yard = Author("yard")
-    yard.add("thing", author.box((1, 1, 1)))
+    yard.add("thing", authoring.box((1, 1, 1)))
     yard.look((1, 2, 3), (0, 0, 0), field_of_view=40)
     yard.light((4, 5, 6))
     scene = yard.build()
@@ -156,13 +163,19 @@ def test_a_view_and_a_light():
         (lambda yard: yard.material("b", "blue"), "'blue' is not written as #rrggbb"),
         (lambda yard: yard.material("b", (1, 2)), "three integers"),
         (lambda yard: yard.material("b", (1, 2, 256)), "three integers"),
-        (lambda yard: yard.material("b", "#000000", number=1), "cannot have the id 1, which belongs to 'a'"),
-        (lambda yard: yard.material("b", "#000000", number=256), "cannot have the id 256"),
-        (lambda yard: yard.add("x", author.box((1, 1, 1)), material="c"), "no material 'c' is declared; there is 'a'"),
-        (lambda yard: [yard.add("x", author.box((1, 1, 1))) for _ in range(2)], "two objects are named 'x'"),
-        (lambda yard: yard.look((0, 0, 0), (0, 0, 0)), "stands where it looks"),
-        (lambda yard: yard.look((0, 0, 0), (0, 0, 1), field_of_view=180), "field of view"),
-        (lambda yard: yard.light((0, 0)), "three coordinates"),
+        (lambda yard: yard.material("b", "#000000", number=1), "cannot have the id 1: it belongs to 'a'"),
+        (lambda yard: yard.material("b", "#000000", number=256), "number must be an integer 1 … 255, not 256"),
+        (
+            lambda yard: yard.add("x", authoring.box((1, 1, 1)), material="c"),
+            "no material 'c' is declared; there is 'a'",
+        ),
+        (lambda yard: [yard.add("x", authoring.box((1, 1, 1))) for _ in range(2)], "two objects are named 'x'"),
+        (lambda yard: yard.look((0, 0, 0), (0, 0, 0)), "eye and target must differ"),
+        (
+            lambda yard: yard.look((0, 0, 0), (0, 0, 1), field_of_view=180),
+            "field_of_view must be a finite number above 0 and below 180",
+        ),
+        (lambda yard: yard.light((0, 0)), r"position must have shape \(3,\)"),
         (
             lambda yard: yard.add_asset("x", asset(Material("m", (0, 0, 0))), np.eye(4), materials={"n": "a"}),
             "has no material 'n'; it has 'm'",
@@ -172,7 +185,7 @@ def test_a_view_and_a_light():
 def test_refused(act, message):
     yard = Author("yard")
     yard.material("a", "#ffffff")
-    with pytest.raises(AuthoringError, match=message):
+    with pytest.raises(ValueError, match=message):
         act(yard)
 
 

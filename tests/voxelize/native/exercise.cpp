@@ -3,16 +3,17 @@
 // Random soups, closed and holed spheres, open ones and such inside out in one object, huge and tiny triangles,
 // instances, analytic solids and hulls, with and without materials that vary over triangles, on grids of every small
 // depth, filled or not. Every scene is voxelized on one thread and on three; the results must be equal. Then long work
-// is stopped in the midst of its jobs. Prints a line and exits with 1 where anything is not as it should.
+// is interrupted in the middle of its jobs. Prints a line and exits with 1 where anything is wrong.
 #include "convex_hull.h"
 #include "voxelizer.h"
 
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <numbers>
 #include <random>
 
-using namespace voxrt;
+using namespace voxrt::voxelize;
 
 namespace {
 
@@ -20,26 +21,28 @@ struct Mesh {
     std::vector<double> positions;
     std::vector<int32_t> triangles;
     std::vector<uint8_t> materials;
-    std::vector<int32_t> sizes;
-    std::vector<float> places;
-    std::vector<uint8_t> tints;
-    std::vector<int64_t> starts;
+    std::vector<int32_t> raster_sizes;
+    std::vector<float> raster_coordinates;
+    std::vector<uint8_t> raster_materials;
+    std::vector<int64_t> raster_starts;
 
-    MeshView view() const { return {positions, triangles, materials, {sizes, places, tints, starts}}; }
+    MeshView view() const {
+        return {positions, triangles, materials, {raster_sizes, raster_coordinates, raster_materials, raster_starts}};
+    }
 
-    /// Gives each triangle a raster of random materials, 0 among them, some of it beyond the triangle and the other way
-    /// round; every fifth keeps its material.
-    void tint(std::mt19937_64& random) {
+    /// Gives each triangle a raster of random materials, 0 among them, some of it beyond the triangle and mirrored;
+    /// every fifth keeps its material.
+    void add_rasters(std::mt19937_64& random) {
         std::uniform_int_distribution<int> side(1, 6), material(0, 5);
-        std::uniform_real_distribution<float> place(-1, 7);
+        std::uniform_real_distribution<float> coordinate(-1, 7);
         for (size_t t = 0; t < materials.size(); ++t) {
             const int columns = t % 5 == 0 ? 0 : side(random), rows = t % 5 == 0 ? 0 : side(random);
-            sizes.insert(sizes.end(), {columns, rows});
-            starts.push_back(int64_t(tints.size()));
+            raster_sizes.insert(raster_sizes.end(), {columns, rows});
+            raster_starts.push_back(int64_t(raster_materials.size()));
             for (int i = 0; i < 6; ++i)
-                places.push_back(place(random));
+                raster_coordinates.push_back(coordinate(random));
             for (int i = 0; i < columns * rows; ++i)
-                tints.push_back(uint8_t(material(random)));
+                raster_materials.push_back(uint8_t(material(random)));
         }
     }
     void add(const Mesh& other) {
@@ -129,7 +132,7 @@ uint64_t fingerprint(const SparseVoxels& voxels) {
     add(voxels.octant_materials);
     add(voxels.object_voxels);
     add(voxels.object_modes);
-    add(voxels.object_turned);
+    add(voxels.object_flipped);
     return hash;
 }
 
@@ -175,9 +178,8 @@ bool agree(const Scene& scene, int depth) {
     const Parts held(scene);
     const std::vector<PartView>& parts = held.get();
     for (const bool fill : {false, true}) {
-        Workers one(1, [] {}), three(3, [] {});
-        const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, one));
-        if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, three))) {
+        const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, 1));
+        if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, 3))) {
             std::printf("depth %d: the result depends on the number of threads\n", depth);
             return false;
         }
@@ -187,36 +189,37 @@ bool agree(const Scene& scene, int depth) {
 
 struct Stopped {};
 
-/// Whether work that is one job on one thread can be stopped at each of its beats, and leaves nothing behind; `least`
-/// beats are asked for.
-bool stops(const Scene& scene, int least) {
+/// Whether work that is one job on one thread can be interrupted at each of its checks, and leaves nothing behind; at
+/// least `least` checks are expected.
+bool can_be_interrupted(const Scene& scene, int least) {
     const Parts held(scene);
     const std::vector<PartView>& parts = held.get();
     constexpr int depth = 5; // a single tile
-    int beats = 0;
-    Workers counting(1, [&beats] { ++beats; });
-    const uint64_t whole = fingerprint(voxelize(depth, parts, parts.size(), true, counting));
-    const int all = beats;
+    int checks = 0;
+    const auto run = [&](int threads, std::function<void()> check) {
+        checks = 0;
+        const InterruptScope scope(std::move(check));
+        return fingerprint(voxelize(depth, parts, parts.size(), true, threads));
+    };
+    const uint64_t whole = run(1, [&checks] { ++checks; });
+    const int all = checks;
     if (all < least) {
-        std::printf("%d beats, fewer than %d\n", all, least);
+        std::printf("%d checks, fewer than %d\n", all, least);
         return false;
     }
     for (const int threads : {1, 3})
         for (int last = 1; last <= (threads == 1 ? all : 1); last += std::max(1, all / 8)) {
-            beats = 0;
-            Workers workers(threads, [&beats, last] {
-                if (++beats >= last)
-                    throw Stopped();
-            });
             try {
-                voxelize(depth, parts, parts.size(), true, workers);
-                std::printf("went on after beat %d of %d\n", last, all);
+                run(threads, [&checks, last] {
+                    if (++checks >= last)
+                        throw Stopped();
+                });
+                std::printf("went on after check %d of %d\n", last, all);
                 return false;
             } catch (const Stopped&) {
             }
         }
-    Workers quiet(1, [] {});
-    return fingerprint(voxelize(depth, parts, parts.size(), true, quiet)) == whole;
+    return run(1, [] {}) == whole;
 }
 
 } // namespace
@@ -235,8 +238,8 @@ int main() {
                         sphere(side / 2, side / 3, side / 2, side * 0.7, 6, 0, true)};
         scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 0, false));
         scene.meshes.push_back(sphere(side / 2, side / 2, side / 3, side * 0.5, 8, 9, false));
-        // Pieces that stand open, are holed, closed and inside out, or the wall of a cavity, in one object; split and
-        // alike in another, which stands mirrored too.
+        // Components that are open, have holes, are inside out or the wall of a cavity, in one object; then instances,
+        // mirrored.
         Mesh mixed = sphere(side / 2, side / 2, side / 2, side * 0.4, 9, 0, false);
         mixed.add(sphere(side / 2, side / 2, side / 2, side * 0.2, 7, 0, true));
         mixed.add(sphere(side * 0.8, side / 2, side / 2, side * 0.3, 8, 0, true));
@@ -247,7 +250,7 @@ int main() {
         mixed.add(bowl);
         scene.meshes.push_back(mixed);
         for (const size_t mesh : {0, 1, 2, 6, 7, 8, 9})
-            scene.meshes[mesh].tint(random);
+            scene.meshes[mesh].add_rasters(random);
         for (size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
             scene.add(mesh, 1, 0);
         for (int i = 0; i < 5; ++i) // instances
@@ -267,13 +270,13 @@ int main() {
         good = convex_hull(points).size() >= 12 && good;
     }
 
-    Scene closed, holed; // the work is in coverage and pieces; in boundaries and holes
+    Scene closed, holed; // the work is in coverage and components; in boundaries and holes
     closed.meshes = {sphere(16, 16, 16, 12, 110, 0, false)};
     closed.meshes[0].add(sphere(16, 16, 16, 9, 110, 0, true));
     holed.meshes = {sphere(16, 16, 16, 12, 110, 9, false)};
     for (Scene* scene : {&closed, &holed}) {
         scene->add(0, 1, 0);
-        good = stops(*scene, 4) && good;
+        good = can_be_interrupted(*scene, 4) && good;
     }
     return good ? 0 : 1;
 }

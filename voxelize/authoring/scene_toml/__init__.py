@@ -1,4 +1,4 @@
-"""``scene.toml``: scenes written by hand, checked word by word.
+"""``scene.toml``: scenes written by hand.
 
 .. code-block:: toml
 

@@ -1,4 +1,4 @@
-"""A checked ``scene.toml`` to a scene."""
+"""Loading ``scene.toml``."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 
 from voxrt.voxelize.assets import load
 from voxrt.voxelize.authoring import solid as solids
-from voxrt.voxelize.authoring.author import Author, AuthoringError
-from voxrt.voxelize.authoring.scene_toml.check import Checked, check
+from voxrt.voxelize.authoring.author import Author
 from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, Asset, Box, Node
-from voxrt.voxelize.authoring.solid import Solid, SolidError, placement
+from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_file
+from voxrt.voxelize.authoring.solid import Solid, placement
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.companions import ALLOW_OUTSIDE, Companions
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,19 +30,19 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
     Parameters
     ----------
     path
-        The file; assets stand relative to its folder.
+        The file. Paths of assets are relative to its folder.
     allow_outside
-        Whether assets may stand outside that folder, and what they name outside theirs.
+        Whether assets may stand outside that folder, and files that assets name outside theirs.
 
     Returns
     -------
     Scene
-        Materials in the order of the file, used or not, then those of assets.
+        Materials in the order of the file, whether used or not, then those of assets.
 
     Raises
     ------
     AssetError
-        The file or an asset cannot be read, or says what cannot be honoured.
+        The file or an asset cannot be read, or asks for something that is not supported.
     DoesNotFitError
         More than 255 materials.
     """
@@ -52,53 +52,55 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     except UnicodeDecodeError:
-        raise AssetError(path, "is no UTF-8 text", fix="save it as UTF-8") from None
-    return _Builder(check(path, text), allow_outside=allow_outside).scene()
+        raise AssetError(path, "is not UTF-8 text", fix="save it as UTF-8") from None
+    return _Builder(check_file(path, text), allow_outside=allow_outside).scene()
 
 
 class _Builder:
-    def __init__(self, checked: Checked, *, allow_outside: bool) -> None:
+    def __init__(self, checked: CheckedFile, *, allow_outside: bool) -> None:
         self._checked = checked
-        self._companions = Companions.of(checked.path, allow_outside=allow_outside)
+        self._external_files = ExternalFiles.of(checked.path, allow_outside=allow_outside)
         self._assets: dict[tuple[object, ...], Scene] = {}
 
     def scene(self) -> Scene:
         checked, values = self._checked, self._checked.values
         try:
             self._author = Author(checked.path.stem, background=values.background)
-        except AuthoringError as error:
+        except ValueError as error:
             raise checked.error(("background",), str(error), "correct the colour") from None
         for name, material in values.materials.items():
             try:
                 self._author.material(name, material.colour, mirror=material.mirror, number=material.id)
-            except AuthoringError as error:
+            except ValueError as error:
                 raise checked.error(("materials", name), str(error), "correct the material") from None
         for index, node in enumerate(values.objects):
             self._add(node, ("objects", index), "", np.eye(4), None)
-        for name in self._author.uncoloured:
-            problem = f"material {name!r} has no colour, and no asset has one of that name"
+        for name in self._author.without_colour:
+            problem = f"material {name!r} has no colour, and no asset has a material of that name"
             raise checked.error(("materials", name), problem, "give it a colour")
         if values.camera is not None:
             camera = values.camera
             try:
                 self._author.look(camera.eye, camera.target, field_of_view=camera.field_of_view)
-            except AuthoringError as error:
+            except ValueError as error:
                 raise checked.error(("camera",), str(error), "correct the camera") from None
         if values.light is not None:
             try:
                 self._author.light(values.light.position)
-            except AuthoringError as error:
+            except ValueError as error:
                 raise checked.error(("light",), str(error), "correct the light") from None
         return self._author.build()
 
     def _add(self, node: Node, where: KeyPath, prefix: str, outer: NDArray[np.float64], material: str | None) -> None:
-        """Add what a node is: one object, or those of a group or an asset."""
+        """Add the objects of a node: one, or those of a group or an asset."""
         shape = _shape(node)
         name = prefix + (node.name or f"{shape} {int(where[-1]) + 1}")
         material = node.material or material
         if node.group is not None:
             if node.collider is not None:
-                raise self._checked.error((*where, "collider"), "a group has no collider", "give it to its objects")
+                raise self._checked.error(
+                    (*where, "collider"), "a group cannot have a collider", "put it on its objects"
+                )
             for index, one in enumerate(node.group):
                 self._add(one, (*where, "group", index), f"{name}/", outer @ self._place(node, where), material)
             return
@@ -106,7 +108,7 @@ class _Builder:
             transform = outer @ self._place(node, where)
             if node.asset is not None:
                 if node.material is not None:
-                    problem = "an asset has materials of its own"
+                    problem = "an asset cannot have a material"
                     raise self._checked.error((*where, "material"), problem, "rename them under asset.materials")
                 self._author.add_asset(
                     name,
@@ -125,7 +127,7 @@ class _Builder:
                 collider=node.collider,
                 pow2=node.pow2,
             )
-        except (AuthoringError, SolidError) as error:
+        except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None
 
     def _solid(self, node: Node, where: KeyPath) -> Solid:
@@ -138,7 +140,7 @@ class _Builder:
     def _place(self, node: Node, where: KeyPath) -> NDArray[np.float64]:
         try:
             return placement(node.translate, node.rotate, node.scale)
-        except SolidError as error:
+        except ValueError as error:
             raise self._checked.error((*where, "scale"), str(error), "correct the scale") from None
 
     def _unplaced(self, node: Node, where: KeyPath) -> Solid:
@@ -155,12 +157,12 @@ class _Builder:
     def _combined(self, node: Node, where: KeyPath) -> Solid:
         shape = _shape(node)
         if shape == "group":
-            raise self._checked.error((*where, "group"), "a group is no solid", "make it a union")
+            raise self._checked.error((*where, "group"), "a group is not a solid", "use union")
         for index, one in enumerate(getattr(node, shape)):
             for key in ("collider", "name"):
                 if getattr(one, key) is not None:
-                    problem = f"a part of a {shape} has no {key} of its own"
-                    raise self._checked.error((*where, shape, index, key), problem, "give it to the whole")
+                    problem = f"a part of a {shape} cannot have a {key}"
+                    raise self._checked.error((*where, shape, index, key), problem, "put it on the whole")
         parts = [self._solid(one, (*where, shape, index)) for index, one in enumerate(getattr(node, shape))]
         if shape == "union":
             return reduce(Solid.__or__, parts)
@@ -172,11 +174,11 @@ class _Builder:
 
     def _box(self, box: Box, where: KeyPath) -> Solid:
         if box.corner is not None and box.centre is not None:
-            raise self._checked.error((*where, "corner"), "a box has a centre or a corner, not both", "remove one")
+            raise self._checked.error((*where, "corner"), "a box cannot have both a centre and a corner", "remove one")
         centre = box.centre or (0, 0, 0)
         if box.corner is not None:
             low = np.asarray(box.corner, dtype=np.float64)
-            # Both corners exact, so that neighbours touch without a gap.
+            # Both corners are exact, so that neighbours touch without a gap.
             return solids.box_between(low, low + np.asarray(box.size, dtype=np.float64))
         return solids.box(box.size, centre=centre)
 
@@ -186,9 +188,11 @@ class _Builder:
         for one in scene.objects:
             try:
                 parts.append(solids.closed(one.mesh.positions, one.mesh.triangles).transformed(one.transform))
-            except SolidError as error:
+            except ValueError as error:
                 raise self._checked.error(
-                    (*where, "file"), f"{one.name!r}: {error}", "close it, or use it whole"
+                    (*where, "file"),
+                    f"{one.name!r}: {error}",
+                    "close its surface, or use the asset outside of booleans",
                 ) from None
         return reduce(Solid.__or__, parts)
 
@@ -197,9 +201,11 @@ class _Builder:
         if key not in self._assets:
             path = self._checked.path.parent / asset.file
             if path.suffix.lower() == ".toml":
-                raise self._checked.error((*where, "file"), "a scene file holds no other", "copy its objects")
-            found = self._companions.find(asset.file)
-            if found is not None and not self._companions.allows(found):
+                raise self._checked.error(
+                    (*where, "file"), "a scene file cannot be an asset of another", "copy its objects"
+                )
+            found = self._external_files.find(asset.file)
+            if found is not None and not self._external_files.allows(found):
                 problem = f"asset {asset.file[:60]!r} lies outside the scene file's folder"
                 raise self._checked.error((*where, "file"), problem, ALLOW_OUTSIDE)
             try:
@@ -210,7 +216,7 @@ class _Builder:
                     time=asset.time,
                     animation=asset.animation,
                     variants=tuple(asset.variants),
-                    allow_outside=self._companions.allow_outside,
+                    allow_outside=self._external_files.allow_outside,
                 )
             except AssetError as error:
                 if error.place:

@@ -1,7 +1,7 @@
-"""On which line of a TOML file each key and each array item stands.
+"""The line of each key and array item of a TOML file.
 
-The standard library parses TOML without saying where things stood. This walks a text that it has accepted, so that
-syntax need not be checked again: only keys, nesting and line ends matter, and values are skipped.
+The standard library parses TOML without line numbers. This module scans a text that the library has accepted, so it
+checks no syntax: it follows keys, nesting and line ends, and skips values.
 """
 
 from __future__ import annotations

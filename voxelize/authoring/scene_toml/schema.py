@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, TypeAlias
 
 from msgspec import Meta, Struct
 
-FARTHEST = 1e9
-"""Metres, degrees: no scene goes beyond, and their products stay finite."""
+from voxrt.voxelize.authoring.solid import FARTHEST, Axis
+from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
 
 Number: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Point: TypeAlias = tuple[Number, Number, Number]
 Length: TypeAlias = Annotated[float, Meta(gt=0, le=FARTHEST)]
-Axis: TypeAlias = Literal["x", "y", "z"]
 Colour: TypeAlias = str | list[int]
-ColliderKind: TypeAlias = Literal["box", "sphere", "hull", "mesh"]
 
 
 class _Table(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A table that knows its keys."""
+    """A table that refuses unknown keys."""
 
 
-class MaterialTable(_Table, frozen=True, kw_only=True):
-    """``[materials.NAME]``: ids go in the order of the file, and stay while materials are not used.
+class MaterialEntry(_Table, frozen=True, kw_only=True):
+    """``[materials.NAME]``: ids follow the order of the file, whether materials are used or not.
 
     Attributes
     ----------
     colour
-        ``"#rrggbb"`` or three integers of 0 … 255; left out, the one that the asset with such a material gives it.
+        ``"#rrggbb"`` or three integers 0 … 255; the default is the colour of the first asset material of that name.
     mirror
-        Reflects, where the hardware has mirrors.
+        Whether it reflects, where the hardware has mirrors.
     id
-        1 … 255, to keep an id whatever is declared before.
+        1 … 255; the default is the lowest id that is free.
     """
 
     colour: Colour | None = None
@@ -40,7 +38,7 @@ class MaterialTable(_Table, frozen=True, kw_only=True):
 
 
 class Box(_Table, frozen=True, kw_only=True):
-    """``box``: its sides along x, y and z, and its `centre` (the origin by default) or its lowest `corner`."""
+    """``box``: its sides along x, y and z, and its `centre` (by default the origin) or its lowest `corner`."""
 
     size: tuple[Length, Length, Length]
     centre: Point | None = None
@@ -75,7 +73,7 @@ class Cone(_Table, frozen=True, kw_only=True):
 class Extrude(_Table, frozen=True, kw_only=True):
     """``extrude``: a prism from 0 to `height` along `axis` over an outline of points.
 
-    The points are (x, z) for the y axis, (x, y) for z, (y, z) for x, either way round.
+    The points are (x, z) for the y axis, (x, y) for z, (y, z) for x, in either orientation.
     """
 
     outline: Annotated[list[tuple[Number, Number]], Meta(min_length=3)]
@@ -89,14 +87,14 @@ class Asset(_Table, frozen=True, kw_only=True):
     Attributes
     ----------
     file
-        Its path, from this file's folder.
+        Its path, relative to this file's folder.
     up, unit
-        For formats that do not say: the up axis, and metres per unit.
+        The up axis and metres per unit, for formats that do not declare them.
     time, animation, variants
-        For formats that have them: seconds of its animation, which animation, and what to show of what it
-        has in several ways.
+        Seconds into an animation, which animation, and which variants, for formats that have them.
     materials
-        Its material names to those of this file. One of a name that this file declares is that one anyway.
+        Its material names to those of this file. A material whose name this file declares becomes the declared one
+        without an entry.
     """
 
     file: str
@@ -109,21 +107,21 @@ class Asset(_Table, frozen=True, kw_only=True):
 
 
 class Node(_Table, frozen=True, kw_only=True):
-    """One of ``[[objects]]``, or of a group, or an operand of a boolean: one shape, placed and made of something.
+    """One of ``[[objects]]``, of a group, or of the operands of a boolean: one shape, its placement and its material.
 
     Attributes
     ----------
     name
-        For reports; ``shape 3`` by default.
+        For reports; by default the shape and its number, ``box 3``.
     box, sphere, cylinder, cone, extrude, asset, union, difference, intersection, hull, group
-        The shape: one of them. ``difference`` takes the second and all that follow from the first; a ``group`` is
-        several objects placed together.
+        The shape: exactly one of them. ``difference`` subtracts all others from the first; a ``group`` is several
+        objects placed together.
     translate, rotate, scale
-        Its place: scaled, then turned about x, then y, then z, then moved.
+        Its placement: it is scaled, then rotated about x, then y, then z, then moved.
     material
-        What it is made of where its parts do not say.
+        The material of its parts that have none.
     collider, pow2
-        What stands in for it, and whether a box is rounded up to powers of two voxels.
+        The collider to voxelize in its place, and whether a box is rounded up to powers of two voxels.
     """
 
     name: str | None = None
@@ -150,11 +148,11 @@ SHAPES = (
     *("box", "sphere", "cylinder", "cone", "extrude", "asset"),
     *("union", "difference", "intersection", "hull", "group"),
 )
-"""The keys of a node of which it has one."""
+"""The shape keys of a node; it has exactly one."""
 
 
 class Camera(_Table, frozen=True, kw_only=True):
-    """``[camera]``: where pictures are taken from when no other place is asked for."""
+    """``[camera]``: the camera for pictures for which no other is given."""
 
     eye: Point
     target: Point
@@ -162,16 +160,16 @@ class Camera(_Table, frozen=True, kw_only=True):
 
 
 class Light(_Table, frozen=True, kw_only=True):
-    """``[light]``: where the point light stands when light is asked for."""
+    """``[light]``: the position of the point light, used when light is switched on."""
 
     position: Point
 
 
 class File(_Table, frozen=True, kw_only=True):
-    """The whole file; objects in the order in which they win voxels."""
+    """The whole file. Where objects compete for a voxel, the first wins."""
 
     objects: Annotated[list[Node], Meta(min_length=1)]
-    materials: dict[str, MaterialTable] = {}
+    materials: dict[str, MaterialEntry] = {}
     background: Colour = "#000000"
     camera: Camera | None = None
     light: Light | None = None

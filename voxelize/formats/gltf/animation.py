@@ -38,14 +38,14 @@ def posed(document: Document, time: float | None, animation: str | None = None) 
     if time is None and animation is None:
         if gltf.animations:
             message = "animations were not played: the nodes stand as the file places them"
-            document.notes.add("animation", message, len(gltf.animations))
+            document.log.add("animation", message, len(gltf.animations))
         return gltf
     if not gltf.animations:
         asked = "a time" if animation is None else "an animation"
         raise document.error("animations", f"{asked} was asked for and the file has no animation", "leave it out")
     if len(gltf.animations) > 1 and animation is None:
         message = "animations after the first were not played: --animation chooses another"
-        document.notes.add("animation", message, len(gltf.animations) - 1)
+        document.log.add("animation", message, len(gltf.animations) - 1)
     nodes = list(gltf.nodes)
     _play(document, _chosen(document, animation), time or 0.0, nodes)
     return structs.replace(gltf, nodes=nodes)
@@ -70,7 +70,7 @@ def _play(document: Document, index: int, time: float, nodes: list[Node]) -> Non
         place = f"animations[{index}].channels[{at}]"
         target = channel.target
         if target.node is None or target.path not in (*_COMPONENTS, "weights"):
-            document.notes.add("animation", f"animations of {target.path[:40]!r} were not played")
+            document.log.add("animation", f"animations of {target.path[:40]!r} were not played")
             continue
         node = document.item(nodes, target.node, f"{place}.target.node", "node")
         sampler = document.item(animation.samplers, channel.sampler, f"{place}.sampler", "sampler")

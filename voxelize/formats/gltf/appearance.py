@@ -1,4 +1,4 @@
-"""How a node shows a mesh: which material each primitive takes, and the paint on its triangles."""
+"""The appearance of a mesh as a node shows it: materials, textures and vertex colours of its triangles."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.paint import Coat, Paint
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.formats.gltf.accessors import as_unit_floats
-from voxrt.voxelize.formats.gltf.extensions import TEXTURE_TRANSFORM, VARIANTS, read_extension
-from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, Finish, MaterialKey, finish
+from voxrt.voxelize.formats.gltf.extensions import TEXTURE_TRANSFORM, VARIANTS
+from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, MaterialKey, MaterialProperties, material_properties
 from voxrt.voxelize.formats.gltf.schema import FileVariants, PrimitiveVariants, TextureTransform
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
-    """How a node shows a mesh. Nodes with equal looks share one mesh value.
+class AppearanceKey:
+    """How a node shows a mesh. Nodes with equal keys and poses share one mesh.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Look:
     mirrored
         Whether its faces are mirrors.
     variant
-        The material variant, an index, or None for the materials that the primitives name first.
+        The index of the material variant; None for the default materials of the primitives.
     """
 
     mesh: int
@@ -44,35 +44,38 @@ class Look:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Dress:
-    """What the triangles of a surface wear.
+class SurfaceMaterials:
+    """The materials of the triangles of a surface.
 
     Attributes
     ----------
     runs
-        Stretches of triangles that have one colour, as start, stop and material. The others are painted, or air.
-    coat
-        The paint on painted triangles, or None.
+        Runs of triangles of one colour, as start, stop and material. The other triangles have an appearance, or are
+        fully transparent.
+    appearance
+        Textures and vertex colours of the others; None where no triangle has any.
     """
 
     runs: tuple[tuple[int, int, MaterialKey], ...]
-    coat: Coat | None
+    appearance: SurfaceAppearance | None
 
 
 def find_variant(document: Document, wanted: tuple[str, ...]) -> int | None:
-    """Return the index of the material variant whose name is the only one `wanted`, or None where none is.
+    """Return the index of the material variant that is `wanted`, one name or none; None for none.
 
     Raises
     ------
     AssetError
-        The file has no such variant, or several are wanted at once.
+        The file has no such variant, or several are wanted.
     """
     if not wanted:
         return None
     if len(wanted) > 1:
-        raise document.error(f"extensions.{VARIANTS}", f"{len(wanted)} variants asked for at once", "ask for one")
+        raise document.error(
+            f"extensions.{VARIANTS}", f"{len(wanted)} variants were requested, and one can be shown", "request one"
+        )
     name = wanted[0]
-    declared = read_extension(document, document.gltf, VARIANTS, FileVariants, "")
+    declared = document.extension(document.gltf, VARIANTS, FileVariants, "")
     names = [variant.name for variant in declared.variants] if declared else []
     if name not in names:
         known = ", ".join(map(repr, names[:8])) or "none"
@@ -80,37 +83,39 @@ def find_variant(document: Document, wanted: tuple[str, ...]) -> int | None:
     return names.index(name)
 
 
-def dress(document: Document, textures: Textures, surface: Surface, look: Look) -> Dress:
-    """Find what each triangle of `surface` wears in `look`."""
+def read_appearance(
+    document: Document, textures: Textures, surface: Surface, appearance_key: AppearanceKey
+) -> SurfaceMaterials:
+    """Find what each triangle of `surface` properties in `appearance_key`."""
     count = len(surface.triangles)
-    document.charge(count * 8, f"meshes[{look.mesh}]")
+    document.charge(count * 8, f"meshes[{appearance_key.mesh}]")
     runs: list[tuple[int, int, MaterialKey]] = []
-    painter = _Painter(document, textures, count)
+    builder = _AppearanceBuilder(document, textures, count)
     for span in surface.spans:
-        place = f"meshes[{look.mesh}].primitives[{span.primitive}]"
-        key = MaterialKey(_material(document, look, span, place), look.mirrored)
-        wears = finish(document, key)
+        place = f"meshes[{appearance_key.mesh}].primitives[{span.primitive}]"
+        key = MaterialKey(_material(document, appearance_key, span, place), appearance_key.mirrored)
+        properties = material_properties(document, key)
         faces = span.stop - span.start
-        if not faces or painter.paint(span, key, wears):
+        if not faces or builder.add(span, key, properties):
             continue
-        if wears.factor[3] < wears.cutoff:
-            document.notes.add("transparent", "faces of transparent materials are air", faces)
+        if properties.factor[3] < properties.cutoff:
+            document.log.add("transparent", "fully transparent faces were left out", faces)
             continue
         runs.append((span.start, span.stop, key))
         if key.index == NO_MATERIAL:
-            document.notes.add("default-material", "faces without a material got the default one", faces)
-    return Dress(tuple(runs), painter.coat())
+            document.log.add("default-material", "faces without a material got the default one", faces)
+    return SurfaceMaterials(tuple(runs), builder.result())
 
 
-def _material(document: Document, look: Look, span: Span, place: str) -> int:
-    if look.override is not None:
-        return look.override
-    primitive = document.gltf.meshes[look.mesh].primitives[span.primitive]
+def _material(document: Document, appearance_key: AppearanceKey, span: Span, place: str) -> int:
+    if appearance_key.override is not None:
+        return appearance_key.override
+    primitive = document.gltf.meshes[appearance_key.mesh].primitives[span.primitive]
     material, where = primitive.material, f"{place}.material"
-    mapped = read_extension(document, primitive, VARIANTS, PrimitiveVariants, place)
-    if mapped is not None and look.variant is not None:
+    mapped = document.extension(primitive, VARIANTS, PrimitiveVariants, place)
+    if mapped is not None and appearance_key.variant is not None:
         for at, mapping in enumerate(mapped.mappings):
-            if look.variant in mapping.variants:
+            if appearance_key.variant in mapping.variants:
                 material, where = mapping.material, f"{place}.extensions.{VARIANTS}.mappings[{at}].material"
     if material is None:
         return NO_MATERIAL
@@ -118,37 +123,39 @@ def _material(document: Document, look: Look, span: Span, place: str) -> int:
     return material
 
 
-class _Painter:
-    """Collects the paint on the triangles of one surface."""
+class _AppearanceBuilder:
+    """Collects the textures and vertex colours of one surface."""
 
     def __init__(self, document: Document, textures: Textures, count: int) -> None:
         self._document = document
         self._textures = textures
         self._count = count
-        self._paints: dict[tuple[MaterialKey, bool], int] = {}
-        self._made: list[Paint] = []
+        self._appearances: dict[tuple[MaterialKey, bool], int] = {}
+        self._entries: list[Appearance] = []
         self._spans: list[tuple[Span, int, NDArray[np.float64] | None, NDArray[np.float64] | None]] = []
 
-    def paint(self, span: Span, key: MaterialKey, wears: Finish) -> bool:
-        """Take note of the paint on `span`; False where there is none but the material's own colour."""
+    def add(self, span: Span, key: MaterialKey, properties: MaterialProperties) -> bool:
+        """Take note of the appearance on `span`; False where there is none but the material's own colour."""
         colours = self._vertex_colours(span)
         texture = None
         uv = None
-        if wears.texture is not None:
-            uv = self._coordinates(span, wears)
+        if properties.texture is not None:
+            uv = self._coordinates(span, properties)
             if uv is not None:
-                texture = self._textures.read(wears.texture.index, f"{wears.place}.index")
+                texture = self._textures.read(properties.texture.index, f"{properties.place}.index")
         if texture is None and colours is None:
             return False
         same = key, texture is None
-        if same not in self._paints:
-            self._paints[same] = len(self._made)
-            self._made.append(Paint(wears.name, wears.factor, texture, wears.cutoff, wears.mirror))
-        self._spans.append((span, self._paints[same], uv, colours))
+        if same not in self._appearances:
+            self._appearances[same] = len(self._entries)
+            self._entries.append(
+                Appearance(properties.name, properties.factor, texture, properties.cutoff, properties.mirror)
+            )
+        self._spans.append((span, self._appearances[same], uv, colours))
         return True
 
-    def coat(self) -> Coat | None:
-        """Return the paint collected, or None where there is none."""
+    def result(self) -> SurfaceAppearance | None:
+        """Return the appearance collected, or None where there is none."""
         if not self._spans:
             return None
         self._document.charge(self._count * 100, "meshes")
@@ -162,7 +169,7 @@ class _Painter:
                 uv[part] = coordinates[span.corners]
             if own is not None:
                 colours[part] = own[span.corners]
-        return Coat(tuple(self._made), rows, uv, colours)
+        return SurfaceAppearance(tuple(self._entries), rows, uv, colours)
 
     def _vertex_colours(self, span: Span) -> NDArray[np.float64] | None:
         """Return the linear colours of the vertices, shape (V, 4), or None where they have none or are all white."""
@@ -170,7 +177,7 @@ class _Painter:
             return None
         colours = as_unit_floats(span.attributes.stored("COLOR_0", {"VEC3", "VEC4"}))
         if not np.isfinite(colours).all():
-            self._document.notes.add("vertex-colour", "vertex colours that are not numbers were taken as black")
+            self._document.log.add("vertex-colour", "vertex colours that are not numbers were taken as black")
             colours = np.nan_to_num(colours, nan=0.0, posinf=0.0, neginf=0.0)
         self._fits(span, colours, "COLOR_0")
         if colours.shape[1] == 3:
@@ -178,17 +185,17 @@ class _Painter:
         colours = np.clip(colours, 0.0, 1.0)
         return None if (colours == 1.0).all() else colours
 
-    def _coordinates(self, span: Span, wears: Finish) -> NDArray[np.float64] | None:
+    def _coordinates(self, span: Span, properties: MaterialProperties) -> NDArray[np.float64] | None:
         """Return the transformed texture coordinates of the vertices, shape (V, 2), or None where they have none."""
-        assert wears.texture is not None
-        moved = read_extension(self._document, wears.texture, TEXTURE_TRANSFORM, TextureTransform, wears.place)
-        number = wears.texture.tex_coord
+        assert properties.texture is not None
+        moved = self._document.extension(properties.texture, TEXTURE_TRANSFORM, TextureTransform, properties.place)
+        number = properties.texture.tex_coord
         if moved is not None and moved.tex_coord is not None:
             number = moved.tex_coord
         name = f"TEXCOORD_{number}"
         if name not in span.attributes:
             message = f"primitives without the {name} that their texture asks for took the colour of its factor"
-            self._document.notes.add("texture", message)
+            self._document.log.add("texture", message)
             return None
         uv = span.attributes.floats(name, {"VEC2"})
         self._fits(span, uv, name)
@@ -199,7 +206,7 @@ class _Painter:
             u, v = (uv * moved.scale).T
             placed: NDArray[np.float64] = np.column_stack([cos * u + sin * v, cos * v - sin * u]) + moved.offset
         if not np.isfinite(placed).all():
-            raise self._document.error(wears.place, "the texture coordinates leave the range of numbers")
+            raise self._document.error(properties.place, "the texture coordinates overflow")
         return placed
 
     def _fits(self, span: Span, values: NDArray[np.float64], name: str) -> None:

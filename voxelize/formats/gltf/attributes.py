@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from voxrt.voxelize.formats.gltf.accessors import as_floats, as_reals, layout_of, read_accessor
-from voxrt.voxelize.formats.gltf.extensions import DRACO, read_extension
+from voxrt.voxelize.formats.gltf.extensions import DRACO
 from voxrt.voxelize.formats.gltf.schema import TRIANGLE_STRIP, TRIANGLES, DracoPrimitive
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Attributes:
         self._document = document
         self._primitive = primitive
         self.place = place
-        self._compressed = read_extension(document, primitive, DRACO, DracoPrimitive, place)
+        self._compressed = document.extension(primitive, DRACO, DracoPrimitive, place)
         self._decoded: Any = None
 
     def __contains__(self, name: str) -> bool:

@@ -85,7 +85,7 @@ def skinned(
             number += 1
         bare = total[:, 0] <= 0.0
         if bare.any():
-            document.notes.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
+            document.log.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
             carried[bare] = positions[bare] @ pose.joints[0, :3, :3].T + pose.joints[0, :3, 3]
             total[bare] = 1.0
         carried /= total
@@ -119,5 +119,5 @@ def _influences(
 
 def _finite(document: Document, positions: NDArray[np.float64], place: str) -> NDArray[np.float64]:
     if not np.isfinite(positions).all():
-        raise document.error(place, "the vertices leave the range of numbers")
+        raise document.error(place, "the vertices overflow")
     return positions

@@ -7,18 +7,21 @@ import binascii
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote, unquote_to_bytes
 
+import msgspec
+
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.companions import ALLOW_OUTSIDE, Companions
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 from voxrt.voxelize.formats.gltf.container import read_container
-from voxrt.voxelize.formats.gltf.extensions import MESHOPT, read_extension
+from voxrt.voxelize.formats.gltf.extensions import MESHOPT
 from voxrt.voxelize.formats.gltf.meshopt import BadStreamError, CompressedView, decode
-from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.formats.gltf.schema_errors import explain
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from voxrt.voxelize.formats.gltf.schema import BufferView, Gltf
+    from voxrt.voxelize.formats.gltf.schema import BufferView, Gltf, Property
 
 T = TypeVar("T")
 
@@ -39,19 +42,19 @@ class Document:
         The ``.gltf`` or ``.glb`` file.
     gltf
         Its JSON.
-    notes
+    log
         What could not be honoured as it stands.
     """
 
     def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
         self.path = path
-        self._companions = Companions.of(path, allow_outside=allow_outside)
+        self._external_files = ExternalFiles.of(path, allow_outside=allow_outside)
         self.gltf: Gltf
         self.gltf, self._binary = read_container(path)
         self._buffers: dict[int, memoryview] = {}
         self._unpacked: dict[int, bytes] = {}
         self._allowed = _FREE_BYTES + _BYTES_PER_INPUT_BYTE * path.stat().st_size
-        self.notes = Notes()
+        self.log = WarningLog()
         self._check_views()
 
     def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
@@ -71,12 +74,24 @@ class Document:
             raise self.error(place, f"{kind} {index} does not exist, the file has {len(array)}")
         return array[index]
 
+    def extension(self, owner: Property, name: str, kind: type[T], place: str) -> T | None:
+        """Return the extension `name` of `owner`, which is at `place`, as a value of `kind`; None where it has none."""
+        if name not in owner.extensions:
+            return None
+        try:
+            return msgspec.json.decode(owner.extensions[name], type=kind)
+        except msgspec.ValidationError as error:
+            problem, here = explain(error, f"{place}.extensions.{name}")
+            raise self.error(here, problem) from None
+        except (msgspec.DecodeError, RecursionError):
+            raise self.error(f"{place}.extensions.{name}".removeprefix("."), "is not valid JSON") from None
+
     def view(self, index: int, place: str) -> memoryview:
         """Return the bytes of buffer view `index`, to which `place` refers."""
         view = self.item(self.gltf.buffer_views, index, place, "buffer view")
         if index in self._unpacked:
             return memoryview(self._unpacked[index])
-        compressed = read_extension(self, view, MESHOPT, CompressedView, f"bufferViews[{index}]")
+        compressed = self.extension(view, MESHOPT, CompressedView, f"bufferViews[{index}]")
         if compressed is None:
             return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
         self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
@@ -139,10 +154,10 @@ class Document:
         if ":" in uri and "/" not in scheme:
             raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
         # Some exporters forget to encode names, or write paths as Windows does.
-        target = self._companions.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
+        target = self._external_files.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
         if target is None:
             return None
-        if not self._companions.allows(target):
+        if not self._external_files.allows(target):
             raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", ALLOW_OUTSIDE)
         try:
             with target.open("rb") as file:

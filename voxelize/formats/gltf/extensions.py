@@ -1,16 +1,6 @@
-"""Which extensions are honoured, which have no bearing on shape or colour, and what happens to the others."""
+"""Names of glTF extensions: those that are supported, and those that affect neither geometry nor base colour."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING, TypeVar
-
-import msgspec
-
-from voxrt.voxelize.formats.gltf.schema_errors import explain
-
-if TYPE_CHECKING:
-    from voxrt.voxelize.formats.gltf.document import Document
-    from voxrt.voxelize.formats.gltf.schema import Property
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
@@ -22,7 +12,7 @@ TEXTURE_TRANSFORM = "KHR_texture_transform"
 VARIANTS = "KHR_materials_variants"
 VISIBILITY = "KHR_node_visibility"
 
-HONOURED = frozenset(
+SUPPORTED = frozenset(
     {
         DRACO,
         INSTANCING,
@@ -38,9 +28,9 @@ HONOURED = frozenset(
         "KHR_mesh_quantization",
     }
 )
-"""Extensions whose meaning reaches the scene."""
+"""Extensions that the loader reads."""
 
-NO_BEARING = frozenset(
+WITHOUT_EFFECT = frozenset(
     {
         "CESIUM_primitive_outline",
         "EXT_lights_image_based",
@@ -60,42 +50,15 @@ NO_BEARING = frozenset(
         "KHR_xmp_json_ld",
     }
 )
-"""Extensions that say nothing about where surfaces are or what base colour they have."""
+"""Extensions that affect neither geometry nor base colour."""
 
 
 CONVERT_IMAGES = "convert it: gltf-transform ktxdecompress IN OUT for KTX2, gltf-transform png IN OUT for others"
-"""What turns images of kinds that are not read into such that are (glTF Transform's command line)."""
+"""How to convert unsupported image formats: glTF Transform's command line."""
 
-_WAYS_OUT = {
+REPLACEMENTS = {
     "KHR_meshopt_compression": "compress it with EXT_meshopt_compression, or not at all",
     "KHR_texture_basisu": CONVERT_IMAGES,
     "EXT_texture_avif": CONVERT_IMAGES,
 }
-
-_T = TypeVar("_T")
-
-
-def read_extension(document: Document, owner: Property, name: str, kind: type[_T], place: str) -> _T | None:
-    """Return the extension `name` of `owner`, which stands at `place`, as a value of `kind`; None where it has none."""
-    if name not in owner.extensions:
-        return None
-    try:
-        return msgspec.json.decode(owner.extensions[name], type=kind)
-    except msgspec.ValidationError as error:
-        problem, here = explain(error, f"{place}.extensions.{name}")
-        raise document.error(here, problem) from None
-    except (msgspec.DecodeError, RecursionError):
-        raise document.error(f"{place}.extensions.{name}".removeprefix("."), "is not JSON that can be read") from None
-
-
-def check_required(document: Document) -> None:
-    """Refuse a file that cannot be read without an extension unknown here; note the others that are unknown."""
-    gltf = document.gltf
-    known = HONOURED | NO_BEARING
-    for at, name in enumerate(gltf.extensions_required):
-        if name not in known:
-            fix = _WAYS_OUT.get(name, "export the file without it")
-            raise document.error(f"extensionsRequired[{at}]", f"the extension {name[:60]} is not supported", fix)
-    for name in dict.fromkeys(gltf.extensions_used):
-        if name not in known:
-            document.notes.add("unknown-extension", f"the extension {name[:60]} was ignored")
+"""What to do about a required extension that is not supported."""

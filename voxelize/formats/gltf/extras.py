@@ -7,16 +7,15 @@ mesh collide as a box, a sphere, a hull or a mesh; `voxrt_reflect` makes a mater
 from __future__ import annotations
 
 import difflib
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
+from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.formats.gltf.schema_errors import explain
 
 if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.document import Document
-
-ColliderKind: TypeAlias = Literal["box", "sphere", "hull", "mesh"]
 
 
 class MaterialExtras(msgspec.Struct, frozen=True, kw_only=True):
@@ -62,7 +61,7 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
     try:
         authored = msgspec.json.decode(extras)
     except (msgspec.DecodeError, RecursionError):
-        raise document.error(place, "is not JSON that can be read") from None
+        raise document.error(place, "is not valid JSON") from None
     if not isinstance(authored, dict):
         return kind()
     for key in authored:

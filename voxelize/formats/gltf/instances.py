@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.formats.gltf.accessors import read_floats
-from voxrt.voxelize.formats.gltf.extensions import INSTANCING, read_extension
+from voxrt.voxelize.formats.gltf.extensions import INSTANCING
 from voxrt.voxelize.formats.gltf.nodes import compose
 from voxrt.voxelize.formats.gltf.schema import Instances
 
@@ -28,7 +28,7 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         The attributes disagree on how many instances there are.
     """
     place = f"nodes[{index}]"
-    instances = read_extension(document, document.gltf.nodes[index], INSTANCING, Instances, place)
+    instances = document.extension(document.gltf.nodes[index], INSTANCING, Instances, place)
     if instances is None:
         return None
     here = f"{place}.extensions.{INSTANCING}.attributes"
@@ -37,7 +37,7 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         if name in instances.attributes:
             parts[name] = read_floats(document, instances.attributes[name], f"{here}.{name}", {kind})
     if not parts:
-        document.notes.add("instancing", "nodes with instances that are not placed are shown once")
+        document.log.add("instancing", "nodes with instances that are not placed are shown once")
         return None
     count = len(next(iter(parts.values())))
     if any(len(part) != count for part in parts.values()):

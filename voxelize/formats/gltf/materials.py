@@ -1,4 +1,4 @@
-"""Materials: what the file's mean for colour, and the table of those in use."""
+"""Materials: their colour properties, and the ids of those in use."""
 
 from __future__ import annotations
 
@@ -6,49 +6,49 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.colour.srgb import srgb_from_linear
-from voxrt.voxelize.formats.gltf.extensions import SPECULAR_GLOSSINESS, read_extension
+from voxrt.voxelize.formats.gltf.extensions import SPECULAR_GLOSSINESS
 from voxrt.voxelize.formats.gltf.extras import material_extras
 from voxrt.voxelize.formats.gltf.schema import SpecularGlossiness
-from voxrt.voxelize.scene import DEFAULT_COLOUR
+from voxrt.voxelize.materials import DEFAULT_COLOUR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from voxrt.voxelize.colour.material_table import MaterialTable
     from voxrt.voxelize.formats.gltf.document import Document
     from voxrt.voxelize.formats.gltf.schema import TextureInfo, Vec4
+    from voxrt.voxelize.formats.material_table import MaterialTable
 
 NO_MATERIAL = -1
-"""Stands for the material of faces to which the file gives none."""
+"""The index of the material of faces that have none."""
 
 BLEND_CUTOFF = 0.5
-"""Surfaces to be blended are air where their alpha is below this."""
+"""Blended surfaces are cut away where their alpha is below this."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class MaterialKey:
-    """One of the file's materials, or :data:`NO_MATERIAL`, as it is or made a mirror by a node."""
+    """One of the file's materials, or :data:`NO_MATERIAL`; `mirrored` where a node makes it a mirror."""
 
     index: int
     mirrored: bool = False
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Finish:
-    """What a material means for voxels.
+class MaterialProperties:
+    """The properties of a material that matter for voxels.
 
     Attributes
     ----------
     name
         The author's name for it.
     renamed
-        Whether that is a name given for voxrt, which several materials may share to become one.
+        Whether the name comes from the property `voxrt_material`; materials that share such a name become one.
     factor
         Linear red, green, blue and alpha.
     texture, place
-        The texture of its base colour, or None, and where in the file it stands.
+        The texture of its base colour, or None, and its JSON path.
     cutoff
-        Where alpha is below it there is no surface; 0 for opaque ones.
+        The surface is cut away where its alpha is below this; 0 for opaque surfaces.
     mirror
         Whether it is a mirror.
     """
@@ -62,21 +62,21 @@ class Finish:
     mirror: bool = False
 
 
-def finish(document: Document, key: MaterialKey) -> Finish:
-    """Read what `key` means."""
+def material_properties(document: Document, key: MaterialKey) -> MaterialProperties:
+    """Read the properties of a material."""
     if key.index == NO_MATERIAL:
-        return Finish("default", mirror=key.mirrored)
+        return MaterialProperties("default", mirror=key.mirrored)
     material = document.gltf.materials[key.index]
     place = f"materials[{key.index}]"
     authored = material_extras(document, key.index)
     base = material.pbr_metallic_roughness
     factor, texture, where = base.base_color_factor, base.base_color_texture, "pbrMetallicRoughness.baseColorTexture"
-    glossy = read_extension(document, material, SPECULAR_GLOSSINESS, SpecularGlossiness, place)
+    glossy = document.extension(material, SPECULAR_GLOSSINESS, SpecularGlossiness, place)
     if glossy is not None:
         factor, texture = glossy.diffuse_factor, glossy.diffuse_texture
         where = f"extensions.{SPECULAR_GLOSSINESS}.diffuseTexture"
     red, green, blue, alpha = (min(max(component, 0.0), 1.0) for component in factor)
-    return Finish(
+    return MaterialProperties(
         name=authored.voxrt_material or material.name or place,
         renamed=authored.voxrt_material is not None,
         factor=(red, green, blue, alpha),
@@ -88,7 +88,7 @@ def finish(document: Document, key: MaterialKey) -> Finish:
 
 
 def material_names(document: Document) -> dict[str, int]:
-    """Map the names by which nodes may ask for the file's materials to their indices, the first of a name winning."""
+    """Return the index of each material name that nodes may use; the first material of a name wins."""
     named: dict[str, int] = {}
     for index, material in enumerate(document.gltf.materials):
         for name in (material.name, material_extras(document, index).voxrt_material):
@@ -98,9 +98,9 @@ def material_names(document: Document) -> dict[str, int]:
 
 
 def number_materials(document: Document, table: MaterialTable, used: Iterable[MaterialKey]) -> dict[MaterialKey, int]:
-    """Give every material in `used` an id in `table`: in the order of the file's list, the default material last.
+    """Give every material in `used` an id in `table`: in the file's order, the default material last.
 
-    Materials that their author renamed alike become one.
+    Materials that their author gave the same `voxrt_material` become one.
 
     Raises
     ------
@@ -109,13 +109,13 @@ def number_materials(document: Document, table: MaterialTable, used: Iterable[Ma
     """
     ids: dict[MaterialKey, int] = {}
     for key in sorted(set(used), key=lambda key: (key.index == NO_MATERIAL, key)):
-        look = finish(document, key)
+        properties = material_properties(document, key)
         if key.index == NO_MATERIAL:
-            ids[key] = table.id_of(key, look.name, DEFAULT_COLOUR, mirror=look.mirror, authored=False)
+            ids[key] = table.id_of(key, properties.name, DEFAULT_COLOUR, mirror=properties.mirror, authored=False)
             continue
-        red, green, blue = srgb_from_linear(look.factor[:3]).tolist()
-        shared = (look.name, look.mirror) if look.renamed else key
-        ids[key] = table.id_of(shared, look.name, (red, green, blue), mirror=look.mirror)
+        red, green, blue = srgb_from_linear(properties.factor[:3]).tolist()
+        shared = (properties.name, properties.mirror) if properties.renamed else key
+        ids[key] = table.id_of(shared, properties.name, (red, green, blue), mirror=properties.mirror)
         if table.materials()[ids[key]].colour != (red, green, blue):
-            document.notes.add("merged-materials", f"materials renamed {look.name!r} take the colour of the first")
+            document.log.add("merged-materials", f"materials renamed {properties.name!r} took the colour of the first")
     return ids

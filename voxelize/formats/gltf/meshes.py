@@ -73,7 +73,7 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
             continue
         attributes = Attributes(document, primitive, place)
         if "POSITION" not in attributes:
-            document.notes.add("no-positions", "primitives without positions were left out")
+            document.log.add("no-positions", "primitives without positions were left out")
             continue
         # Primitives of one mesh often share their vertices and differ in indices and material only.
         same = tuple(primitive.attributes.items()), at if attributes.is_compressed or primitive.targets else None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.formats.gltf.extensions import VISIBILITY, read_extension
+from voxrt.voxelize.formats.gltf.extensions import VISIBILITY
 from voxrt.voxelize.formats.gltf.schema import Visibility
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def place_nodes(document: Document) -> Hierarchy:
                 transforms[index] = transforms[parents[index]] @ transforms[index]
     lost = np.flatnonzero(~np.isfinite(transforms).all(axis=(1, 2)))
     if len(lost):
-        raise document.error(f"nodes[{lost[0]}]", "the transform leaves the range of numbers")
+        raise document.error(f"nodes[{lost[0]}]", "the transform overflows")
     hidden = {index for index in range(len(nodes)) if _is_hidden(document, index)}
     shown = _descendants(document, _roots(document, parents), hidden)
     return Hierarchy(tuple(shown), transforms)
@@ -78,7 +78,7 @@ def _descendants(document: Document, roots: list[int], hidden: Container[int] = 
 
 def _is_hidden(document: Document, index: int) -> bool:
     node = document.gltf.nodes[index]
-    visibility = read_extension(document, node, VISIBILITY, Visibility, f"nodes[{index}]")
+    visibility = document.extension(node, VISIBILITY, Visibility, f"nodes[{index}]")
     return visibility is not None and not visibility.visible
 
 
@@ -113,25 +113,25 @@ def _roots(document: Document, parents: dict[int, int]) -> list[int]:
     gltf = document.gltf
     if gltf.scene is None and not gltf.scenes:
         if gltf.nodes:
-            document.notes.add("no-scene", "the file has no scene: all its root nodes are shown")
+            document.log.add("no-scene", "the file has no scene: all its root nodes are shown")
         return [index for index in range(len(gltf.nodes)) if index not in parents]
     number = gltf.scene or 0
     scene = document.item(gltf.scenes, number, "scene", "scene")
     others = len(gltf.scenes) - 1
     if others:
         which = "the default scene" if gltf.scene is not None else "the first scene, as the file names no default,"
-        document.notes.add("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
+        document.log.add("other-scenes", f"only {which} is shown: the other scenes of the file were left out", others)
     for at, root in enumerate(scene.nodes):
         document.item(gltf.nodes, root, f"scenes[{number}].nodes[{at}]", "node")
     listed = dict.fromkeys(scene.nodes)
     if len(listed) != len(scene.nodes):
-        document.notes.add("repeated-root", "nodes that the scene lists twice are shown once")
+        document.log.add("repeated-root", "nodes that the scene lists twice are shown once")
     # glTF allows roots only, but some exporters list the child of a helper node.
     inner = sum(root in parents for root in listed)
     if not inner:
         return list(listed)
     message = "nodes that the scene lists although they have a parent are shown where it puts them"
-    document.notes.add("not-a-root", message, inner)
+    document.log.add("not-a-root", message, inner)
     below: set[int] = set()
     for index in _descendants(document, [index for index in range(len(gltf.nodes)) if index not in parents]):
         if index in parents and (parents[index] in listed or parents[index] in below):
@@ -178,7 +178,7 @@ def compose(
         raise document.error(place.format(wrong[0]), problem)
     uneven = np.abs(length - 1.0) > 1e-3
     if uneven.any():
-        document.notes.add("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
+        document.log.add("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
     x, y, z, w = (rotation / length[:, None]).T
     transforms = np.tile(np.eye(4), (len(length), 1, 1))
     turn = [

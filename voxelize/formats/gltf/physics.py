@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 from msgspec import Struct
 
-from voxrt.voxelize.formats.gltf.extensions import PHYSICS, SHAPES, read_extension
+from voxrt.voxelize.collider_shapes import BoxCollider, HullCollider, MeshCollider, SphereCollider
+from voxrt.voxelize.formats.gltf.extensions import PHYSICS, SHAPES
 from voxrt.voxelize.formats.gltf.schema import Index, Vec3  # noqa: TC001 -- msgspec reads the annotations
-from voxrt.voxelize.scene import BoxCollider, HullCollider, MeshCollider, SphereCollider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.gltf.document import Document
     from voxrt.voxelize.formats.gltf.meshes import Surface
-    from voxrt.voxelize.scene import Collider
 
 _AROUND = 128
 _FROM_POLE = 32
@@ -98,7 +98,7 @@ class Body(Struct, frozen=True):
 
 def read_shapes(document: Document) -> list[Shape]:
     """Return the file's shapes."""
-    return (read_extension(document, document.gltf, SHAPES, FileShapes, "") or FileShapes()).shapes
+    return (document.extension(document.gltf, SHAPES, FileShapes, "") or FileShapes()).shapes
 
 
 def physics_collider(
@@ -118,7 +118,7 @@ def physics_collider(
         Reads a mesh by its index, to which a JSON path refers.
     """
     place = f"nodes[{index}]"
-    body = read_extension(document, document.gltf.nodes[index], PHYSICS, Body, place)
+    body = document.extension(document.gltf.nodes[index], PHYSICS, Body, place)
     if body is None or body.collider is None:
         return None
     here = f"{place}.extensions.{PHYSICS}.collider.geometry"
@@ -167,7 +167,7 @@ def _check_sizes(document: Document, place: str, *sizes: float) -> None:
 
 def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
     if plane.size_x is None or plane.size_z is None:
-        document.notes.add("endless-plane", "colliders that are planes without end were left out")
+        document.log.add("endless-plane", "colliders that are planes without end were left out")
         return None
     _check_sizes(document, place, plane.size_x, plane.size_z)
     x, z = plane.size_x / 2, plane.size_z / 2

@@ -25,7 +25,7 @@ def has_area(document: Document, primitive: Primitive) -> bool:
     """Tell whether `primitive` is made of triangles; note that it is left out where it is not."""
     if primitive.mode >= TRIANGLES:
         return True
-    document.notes.add("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
+    document.log.add("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
     return False
 
 
@@ -67,12 +67,12 @@ def _assembled(document: Document, corners: NDArray[np.int32], mode: int) -> NDA
     if mode == TRIANGLES:
         whole = len(corners) // 3
         if whole * 3 != len(corners):
-            document.notes.add(
+            document.log.add(
                 "incomplete-triangle", "corners after the last whole triangle of a primitive were left out"
             )
         return corners[: whole * 3].reshape(whole, 3)
     if len(corners) < 3:
-        document.notes.add("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
+        document.log.add("incomplete-triangle", "corners after the last whole triangle of a primitive were left out")
         return np.empty((0, 3), np.int32)
     if mode == TRIANGLE_STRIP:
         triangles = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from voxrt.voxelize.colour.images import decode_image
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.formats.gltf.extensions import CONVERT_IMAGES, read_extension
+from voxrt.voxelize.formats.gltf.extensions import CONVERT_IMAGES
 from voxrt.voxelize.formats.gltf.schema import Sampler, TextureSource
+from voxrt.voxelize.formats.image_file import decode_image
 
 if TYPE_CHECKING:
     import numpy as np
@@ -51,13 +51,13 @@ class Textures:
         sampler = Sampler()
         if texture.sampler is not None:
             sampler = document.item(document.gltf.samplers, texture.sampler, f"{here}.sampler", "sampler")
-        webp = read_extension(document, texture, "EXT_texture_webp", TextureSource, here)
+        webp = document.extension(texture, "EXT_texture_webp", TextureSource, here)
         source = webp.source if webp else texture.source
         if source is None:
             kinds = [kind for name, kind in _UNREADABLE.items() if name in texture.extensions]
             what = f"is a {kinds[0]} image alone" if kinds else "has no image"
             way_out = f"; {CONVERT_IMAGES}" if kinds else ""
-            document.notes.add("texture", f"{here} {what}: its materials took the colour of their factor{way_out}")
+            document.log.add("texture", f"{here} {what}: its materials took the colour of their factor{way_out}")
             return None
         document.item(document.gltf.images, source, f"{here}.source", "image")
         if source not in self._images:
@@ -75,7 +75,7 @@ class Textures:
             data = document.resource(image.uri, f"{here}.uri")
             if data is None:
                 problem = f"no image {image.uri[:60]!r} beside the asset"
-                document.notes.add("texture", f"{here}: {problem}: its materials took the colour of their factor")
+                document.log.add("texture", f"{here}: {problem}: its materials took the colour of their factor")
                 return None
         elif image.buffer_view is not None:
             data = document.view(image.buffer_view, f"{here}.bufferView").tobytes()

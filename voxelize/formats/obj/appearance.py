@@ -1,4 +1,4 @@
-"""What each face of an OBJ file looks like: its material's id, or paint."""
+"""The appearance of each face of an OBJ file: a material id, or a texture and vertex colours."""
 
 from __future__ import annotations
 
@@ -7,56 +7,56 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.images import decode_image
-from voxrt.voxelize.colour.paint import Coat, Paint
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.formats.companions import ALLOW_OUTSIDE
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
+from voxrt.voxelize.formats.image_file import decode_image
 from voxrt.voxelize.formats.obj.mtl import MtlMaterial, MtlTexture, read_mtl
-from voxrt.voxelize.scene import DEFAULT_COLOUR
+from voxrt.voxelize.materials import DEFAULT_COLOUR
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.colour.material_table import MaterialTable
     from voxrt.voxelize.colour.texture import Wrap
-    from voxrt.voxelize.formats.companions import Companions
+    from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.material_table import MaterialTable
     from voxrt.voxelize.formats.obj.statements import Statements
     from voxrt.voxelize.formats.obj.text import Text
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 OPAQUE_FROM = 0.5
-"""A material of lower opacity is air."""
+"""Faces of materials of lower opacity are left out."""
 
 
 @dataclass(eq=False, slots=True)
-class Appearance:
-    """How faces look, face by face.
+class FaceAppearance:
+    """The appearance of each face.
 
     Attributes
     ----------
     materials
-        uint8, shape (F,): material ids; 0 for air and for painted faces.
+        uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.
     rows
-        int32, shape (F,): paints; -1 where a face has none.
-    paints
-        The paints.
-    layouts
-        Of each paint, how texture coordinates are scaled and moved: ``map_Kd -s`` and ``-o``.
+        int32, shape (F,): indices into `entries`; -1 where a face has a plain material.
+    entries
+        The appearances.
+    image_placements
+        Of each entry, how texture coordinates are scaled and moved: ``map_Kd -s`` and ``-o``.
     """
 
     materials: NDArray[np.uint8]
     rows: NDArray[np.int32]
-    paints: list[Paint] = field(default_factory=list)
-    layouts: list[MtlTexture | None] = field(default_factory=list)
+    entries: list[Appearance] = field(default_factory=list)
+    image_placements: list[MtlTexture | None] = field(default_factory=list)
 
 
-def look_at_faces(
-    text: Text, said: Statements, companions: Companions, table: MaterialTable, notes: Notes
-) -> Appearance:
-    """Find the look of every face: the texture of its material, else its vertices' colours, else ``Kd``.
+def appearance_of_faces(
+    text: Text, statements: Statements, external_files: ExternalFiles, table: MaterialTable, log: WarningLog
+) -> FaceAppearance:
+    """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``.
 
     Raises
     ------
@@ -65,42 +65,42 @@ def look_at_faces(
     DoesNotFitError
         More than 255 materials.
     """
-    library = _libraries(companions, said, notes)
-    lines = np.array([line for line, _ in said.materials], dtype=np.int64)
-    turn = np.searchsorted(lines, said.face_lines) - 1  # which usemtl each face is under; -1 before the first
-    coloured = _coloured_faces(said)
-    seen = Appearance(np.zeros(len(turn), dtype=np.uint8), np.full(len(turn), -1, dtype=np.int32))
-    painter = _Painter(text, seen, companions, notes)
+    library = _libraries(external_files, statements, log)
+    lines = np.array([line for line, _ in statements.materials], dtype=np.int64)
+    turn = np.searchsorted(lines, statements.face_lines) - 1  # the last usemtl before each face; -1 for none
+    coloured = _coloured_faces(statements)
+    face_appearance = FaceAppearance(np.zeros(len(turn), dtype=np.uint8), np.full(len(turn), -1, dtype=np.int32))
+    builder = _AppearanceBuilder(text, face_appearance, external_files, log)
     for index in np.unique(turn).tolist():
         faces = np.flatnonzero(turn == index)
-        name = said.materials[index][1] if index >= 0 else ""
+        name = statements.materials[index][1] if index >= 0 else ""
         material = library.get(name)
         if material is not None and material.opacity < OPAQUE_FROM:
-            notes.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were taken as air", len(faces))
+            log.add("transparent", f"faces of materials less opaque than {OPAQUE_FROM} were left out", len(faces))
             continue
-        if material is not None and painter.textured(faces, material):
+        if material is not None and builder.add_textured(faces, material):
             continue
-        vivid = faces[coloured[faces]]
-        painter.vivid(vivid, name or "vertex colours", material)
+        coloured_faces = faces[coloured[faces]]
+        builder.add_coloured(coloured_faces, name or "vertex colours", material)
         plain = faces[~coloured[faces]]
         if len(plain):
-            seen.materials[plain] = _material_id(name, library, table, notes, len(plain))
-    return seen
+            face_appearance.materials[plain] = _material_id(name, library, table, log, len(plain))
+    return face_appearance
 
 
-def coat_of(
-    said: Statements,
-    seen: Appearance,
+def surface_appearance(
+    statements: Statements,
+    face_appearance: FaceAppearance,
     uv: NDArray[np.float64] | None,
     corners: NDArray[np.int64],
     faces: NDArray[np.int64],
-) -> Coat | None:
-    """Return the paint of triangles; None where none of them is painted.
+) -> SurfaceAppearance | None:
+    """Return the appearance of triangles; None where all of them have plain materials.
 
     Parameters
     ----------
-    said, seen
-        The file, and how its faces look.
+    statements, face_appearance
+        The file's statements, and the appearance of its faces.
     uv
         float64, shape (corners of the file, 2), v upwards; None where no face is textured.
     corners
@@ -108,104 +108,112 @@ def coat_of(
     faces
         int64, shape (T,): its face.
     """
-    rows = seen.rows[faces]
+    rows = face_appearance.rows[faces]
     if not (rows >= 0).any():
         return None
-    laid = np.zeros((len(rows), 3, 2))
+    uv_of_corners = np.zeros((len(rows), 3, 2))
     colours = np.ones((len(rows), 3, 4), dtype=np.float32)
-    for row, (paint, layout) in enumerate(zip(seen.paints, seen.layouts, strict=True)):
+    for row, (appearance, placement) in enumerate(
+        zip(face_appearance.entries, face_appearance.image_placements, strict=True)
+    ):
         here = rows == row
-        if paint.texture is None and said.colours is not None:
-            stored = np.round(said.colours[said.corners[corners[here]]] * 255.0).astype(np.uint8)
+        if appearance.texture is None and statements.colours is not None:
+            stored = np.round(statements.colours[statements.corners[corners[here]]] * 255.0).astype(np.uint8)
             colours[here, :, :3] = LINEAR_OF_SRGB8[stored]
-        elif layout is not None and uv is not None:
-            moved = uv[corners[here]] * layout.scale + layout.offset
-            laid[here] = np.stack([moved[:, :, 0], 1.0 - moved[:, :, 1]], axis=2)  # an image's first row is its top
-    return Coat(tuple(seen.paints), rows, laid, colours)
+        elif placement is not None and uv is not None:
+            moved = uv[corners[here]] * placement.scale + placement.offset
+            uv_of_corners[here] = np.stack(
+                [moved[:, :, 0], 1.0 - moved[:, :, 1]], axis=2
+            )  # an image's first row is its top
+    return SurfaceAppearance(tuple(face_appearance.entries), rows, uv_of_corners, colours)
 
 
-def _coloured_faces(said: Statements) -> NDArray[np.bool_]:
-    """Whether any corner of a face has a colour other than white."""
-    if said.colours is None:
-        return np.zeros(len(said.counts), dtype=np.bool_)
-    tinted = (said.colours != 1.0).any(axis=1)[said.corners]
-    return np.asarray(np.logical_or.reduceat(tinted, np.cumsum(said.counts) - said.counts), dtype=np.bool_)
+def _coloured_faces(statements: Statements) -> NDArray[np.bool_]:
+    """Tell which faces have a corner of a colour other than white."""
+    if statements.colours is None:
+        return np.zeros(len(statements.counts), dtype=np.bool_)
+    not_white = (statements.colours != 1.0).any(axis=1)[statements.corners]
+    return np.asarray(
+        np.logical_or.reduceat(not_white, np.cumsum(statements.counts) - statements.counts), dtype=np.bool_
+    )
 
 
-class _Painter:
-    def __init__(self, text: Text, seen: Appearance, companions: Companions, notes: Notes) -> None:
+class _AppearanceBuilder:
+    def __init__(
+        self, text: Text, face_appearance: FaceAppearance, external_files: ExternalFiles, log: WarningLog
+    ) -> None:
         self._text = text
-        self._companions = companions
-        self._seen = seen
-        self._notes = notes
+        self._external_files = external_files
+        self._faces = face_appearance
+        self._log = log
         self._images: dict[Path, NDArray[np.uint8]] = {}
         self._rows: dict[tuple[str, bool], int] = {}
 
-    def textured(self, faces: NDArray[np.int64], material: MtlMaterial) -> bool:
-        """Paint faces with the material's texture in place of ``Kd``; False where it has none, or none to be read.
+    def add_textured(self, faces: NDArray[np.int64], material: MtlMaterial) -> bool:
+        """Give faces their material's texture in place of ``Kd``; return False where there is none that can be read.
 
-        A texture of opacity is laid as that of colour is; alone it lies on ``Kd``.
+        A texture of opacity is placed as the one of colour is. Without a texture of colour it applies to ``Kd``.
         """
         key = (material.name, True)
         if key not in self._rows:
             colour = self._image("map_Kd", material.texture, len(faces))
             opacity = self._image("map_d", material.opacity_texture, len(faces))
-            layout = material.opacity_texture if colour is None else material.texture
-            if layout is None or (colour is None and opacity is None):
+            placement = material.opacity_texture if colour is None else material.texture
+            if placement is None or (colour is None and opacity is None):
                 return False
             factor = (1.0, 1.0, 1.0)
             if colour is None:
                 assert opacity is not None
                 colour = np.full_like(opacity, 255)
                 factor = _linear(material)
-            elif opacity is not None and (material.opacity_texture or layout).placed() != layout.placed():
-                self._notes.add("texture", "map_d is laid as map_Kd is: its own options are not honoured")
-            wrap: Wrap = "clamp" if layout.clamp else "repeat"
+            elif opacity is not None and (material.opacity_texture or placement).placed() != placement.placed():
+                self._log.add("texture", "map_d was placed as map_Kd is: its own options were ignored")
+            wrap: Wrap = "clamp" if placement.clamp else "repeat"
             cutoff = 0.0
             if opacity is not None:
                 colour, cutoff = _with_opacity(colour, opacity), OPAQUE_FROM
-            paint = Paint(material.name, (*factor, 1.0), Texture(colour, (wrap, wrap)), cutoff)
-            self._rows[key] = self._paint(paint, layout)
-        self._seen.rows[faces] = self._rows[key]
+            appearance = Appearance(material.name, (*factor, 1.0), Texture(colour, (wrap, wrap)), cutoff)
+            self._rows[key] = self._entry(appearance, placement)
+        self._faces.rows[faces] = self._rows[key]
         return True
 
-    def _image(self, keyword: str, layout: MtlTexture | None, faces: int) -> NDArray[np.uint8] | None:
-        """Return the pixels of a texture; None, noted for `faces` faces, where they are not to be had."""
-        if layout is None:
+    def _image(self, keyword: str, placement: MtlTexture | None, faces: int) -> NDArray[np.uint8] | None:
+        """Return the pixels of a texture; None, with a warning for `faces` faces, where it cannot be read."""
+        if placement is None:
             return None
-        found = self._companions.find_exported(layout.name)
+        found = self._external_files.find_exported(placement.name)
         if found is None:
-            problem = f"texture {layout.name!r} is not beside the file; its material's own value stands in"
-            self._notes.add("missing-texture", problem, faces)
+            problem = f"texture {placement.name!r} was not found; its material's own value was used"
+            self._log.add("missing-texture", problem, faces)
             return None
-        if not self._companions.allows(found):
-            problem = f"texture {layout.name!r} lies outside the file's folder and was not opened"
-            self._notes.add("outside", f"{problem}; {ALLOW_OUTSIDE}", faces)
+        if not self._external_files.allows(found):
+            problem = f"texture {placement.name!r} is outside the file's folder and was not opened"
+            self._log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", faces)
             return None
         if found not in self._images:
-            self._images[found] = decode_image(found.read_bytes(), self._text.path, f"{keyword} {layout.name}")
+            self._images[found] = decode_image(found.read_bytes(), self._text.path, f"{keyword} {placement.name}")
         return self._images[found]
 
-    def vivid(self, faces: NDArray[np.int64], name: str, material: MtlMaterial | None) -> None:
-        """Paint faces with their vertices' colours, times ``Kd`` where the material gives one."""
+    def add_coloured(self, faces: NDArray[np.int64], name: str, material: MtlMaterial | None) -> None:
+        """Give faces their vertices' colours, times ``Kd`` where the material has one."""
         if not len(faces):
             return
         key = (name, False)
         if key not in self._rows:
             factor = _linear(material) if material else (1.0, 1.0, 1.0)
-            self._rows[key] = self._paint(Paint(name, (*factor, 1.0)), None)
-        self._seen.rows[faces] = self._rows[key]
+            self._rows[key] = self._entry(Appearance(name, (*factor, 1.0)), None)
+        self._faces.rows[faces] = self._rows[key]
 
-    def _paint(self, paint: Paint, layout: MtlTexture | None) -> int:
-        self._seen.paints.append(paint)
-        self._seen.layouts.append(layout)
-        return len(self._seen.paints) - 1
+    def _entry(self, appearance: Appearance, placement: MtlTexture | None) -> int:
+        self._faces.entries.append(appearance)
+        self._faces.image_placements.append(placement)
+        return len(self._faces.entries) - 1
 
 
 def _with_opacity(colour: NDArray[np.uint8], opacity: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return an image with the alpha of another, or with its brightness where it is opaque throughout.
+    """Return an image with the alpha of another; an opaque image gives its brightness as alpha.
 
-    The one with fewer pixels along an axis has them repeated; uint8, shape (H, W, 4) all.
+    All are uint8, shape (H, W, 4). The smaller image is scaled up by repeating pixels.
     """
     alpha = opacity[:, :, 3]
     if (alpha == 255).all():
@@ -232,34 +240,34 @@ def _display(material: MtlMaterial) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def _material_id(name: str, library: dict[str, MtlMaterial], table: MaterialTable, notes: Notes, faces: int) -> int:
+def _material_id(name: str, library: dict[str, MtlMaterial], table: MaterialTable, log: WarningLog, faces: int) -> int:
     if not name:
-        return table.default(notes, faces)
+        return table.default(log, faces)
     if name not in library:
-        notes.add("missing-material", "materials that no library describes got the default colour", faces)
+        log.add("missing-material", "materials that no library defines got the default colour", faces)
         return table.id_of(name, name, DEFAULT_COLOUR)
     if library[name].colour is None:
-        notes.add("material-colour", "materials without Kd got the default colour", faces)
+        log.add("material-colour", "materials without Kd got the default colour", faces)
         return table.id_of(name, name, DEFAULT_COLOUR)
     return table.id_of(name, name, _display(library[name]))
 
 
-def _libraries(companions: Companions, said: Statements, notes: Notes) -> dict[str, MtlMaterial]:
-    """Return the materials of all libraries by name; the library named last wins, as if read in order."""
+def _libraries(external_files: ExternalFiles, statements: Statements, log: WarningLog) -> dict[str, MtlMaterial]:
+    """Return the materials of all libraries by name; a later library overrides an earlier one."""
     library: dict[str, MtlMaterial] = {}
     seen: set[Path] = set()
-    for _, argument in said.libraries:
-        # One name may hold blanks, or several names may stand in one line.
-        whole = companions.find_exported(argument)
+    for _, argument in statements.libraries:
+        # A line holds one name with blanks, or several names.
+        whole = external_files.find_exported(argument)
         words = argument.split()
-        names = [(whole, argument)] if whole else [(companions.find_exported(word), word) for word in words]
+        names = [(whole, argument)] if whole else [(external_files.find_exported(word), word) for word in words]
         for found, name in names:
             if found is None:
-                notes.add("missing-library", f"material library {name!r} is not beside the file")
-            elif not companions.allows(found):
-                problem = f"material library {name!r} lies outside the file's folder and was not opened"
-                notes.add("outside", f"{problem}; {ALLOW_OUTSIDE}")
+                log.add("missing-library", f"material library {name!r} was not found")
+            elif not external_files.allows(found):
+                problem = f"material library {name!r} is outside the file's folder and was not opened"
+                log.add("outside", f"{problem}; {ALLOW_OUTSIDE}")
             elif found not in seen:
                 seen.add(found)
-                library |= read_mtl(found, notes)
+                library |= read_mtl(found, log)
     return library

@@ -1,4 +1,4 @@
-"""OBJ statements to a scene."""
+"""Loading OBJ files."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.material_table import MaterialTable
-from voxrt.voxelize.colour.painted import Unfinished, finish
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.companions import Companions
-from voxrt.voxelize.formats.obj.appearance import coat_of, look_at_faces
+from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.obj.appearance import appearance_of_faces, surface_appearance
 from voxrt.voxelize.formats.obj.objects import compact, split_objects
 from voxrt.voxelize.formats.obj.statements import Statements, read_statements, texture_coordinates
 from voxrt.voxelize.formats.obj.text import Text, read_text
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
-from voxrt.voxelize.polygons import triangulate_corners
+from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,94 +31,94 @@ def load_obj(
 ) -> Scene:
     """Read a Wavefront OBJ file, its material libraries and textures.
 
-    ``o`` statements make the objects; in a file without them ``g`` statements do, except that groups which share
-    vertices are patches of one surface and stay one object. ``Kd`` and vertex colours are taken as sRGB, as most
-    programs show them (the format does not say). A texture takes the place of ``Kd``, vertex colours are multiplied
-    with it. A material of an opacity below a half is air. Names of materials survive a missing library.
+    Each ``o`` starts an object. In a file without ``o``, each ``g`` does; groups that share vertices are parts of one
+    surface and stay one object. ``Kd`` and vertex colours are read as sRGB, as most programs do (the format does not
+    define it). A texture replaces ``Kd``; vertex colours are multiplied with ``Kd``. Faces of materials with an opacity
+    below 0.5 are left out. Names of materials survive a missing library.
 
     Parameters
     ----------
     path
-        The file. Material libraries and textures are looked for in its folder and below.
+        The file. Material libraries and textures are searched in its folder and below.
     up
-        The file's up axis; None means y.
+        The file's up axis; None for y.
     unit
-        Metres per unit of the file; None means 1.
+        Metres per unit of the file; None for 1.
     allow_outside
         Whether material libraries and textures may stand outside the file's folder.
 
     Returns
     -------
     Scene
-        Objects and materials in order of first use; the palette of painted surfaces after them.
+        Objects, and materials in order of first use; those of textures and vertex colours last.
 
     Raises
     ------
     AssetError
-        The file or an image is broken, or a face cannot be honoured.
+        The file or an image is broken, or a face is invalid.
     DoesNotFitError
         More than 255 materials.
     """
     path = Path(path)
-    notes = Notes()
+    log = WarningLog()
     text = read_text(path)
-    said = read_statements(text, notes)
-    _refuse_unreadable_positions(text, said, notes)
+    statements = read_statements(text, log)
+    _refuse_unreadable_positions(text, statements, log)
     table = MaterialTable()
-    companions = Companions.of(path, allow_outside=allow_outside)
-    seen = look_at_faces(text, said, companions, table, notes)
+    external_files = ExternalFiles.of(path, allow_outside=allow_outside)
+    appearance = appearance_of_faces(text, statements, external_files, table, log)
     uv = None
-    if any(layout is not None for layout in seen.layouts):
-        uv, given = texture_coordinates(text, said)
-        notes.add(
+    if any(placement is not None for placement in appearance.image_placements):
+        uv, given = texture_coordinates(text, statements)
+        log.add(
             "texture",
-            "textured faces without texture coordinates took the texture's corner",
-            int((~given & (seen.rows >= 0) & _textured(seen.rows, seen.layouts)).sum()),
+            "textured faces without texture coordinates took the colour of the texture's corner",
+            int((~given & (appearance.rows >= 0) & _textured(appearance.rows, appearance.image_placements)).sum()),
         )
-    corners, faces = triangulate_corners(said.positions, said.counts, said.corners)
-    shown = (seen.materials[faces] != 0) | (seen.rows[faces] >= 0)
-    if not shown.all():
-        corners, faces = corners[shown], faces[shown]
+    corners, faces = triangulate_corners(statements.positions, statements.counts, statements.corners)
+    visible = (appearance.materials[faces] != 0) | (appearance.rows[faces] >= 0)
+    if not visible.all():
+        corners, faces = corners[visible], faces[visible]
     if not len(faces):
-        raise AssetError(path, "has no faces that can be seen", fix="make its materials opaque or export its polygons")
-    triangles = said.corners[corners].astype(np.int32)
-    parts = list(split_objects(path.stem, said, triangles, faces))
-    unfinished = [
-        Unfinished(
-            *compact(said.positions, triangles[chosen]),
-            seen.materials[faces[chosen]],
-            coat_of(said, seen, uv, corners[chosen], faces[chosen]),
+        raise AssetError(path, "has no visible faces", fix="make its materials opaque or export its polygons")
+    triangles = statements.corners[corners].astype(np.int32)
+    parts = list(split_objects(path.stem, statements, triangles, faces))
+    loaded = [
+        LoadedMesh(
+            *compact(statements.positions, triangles[chosen]),
+            appearance.materials[faces[chosen]],
+            surface_appearance(statements, appearance, uv, corners[chosen], faces[chosen]),
         )
         for _, chosen in parts
     ]
     transform = scene_transform(up, unit)
     objects = tuple(
         SceneObject(name, mesh, transform)
-        for (name, _), mesh in zip(parts, finish(unfinished, table, notes), strict=True)
+        for (name, _), mesh in zip(parts, assign_materials(loaded, table, log), strict=True)
         if len(mesh.triangles)
     )
     if not objects:
-        raise AssetError(path, "has no faces that can be seen", fix="make its textures opaque")
-    return Scene(path.stem, objects, table.materials(), notes.warnings())
+        raise AssetError(path, "has no visible faces", fix="make its textures opaque")
+    return Scene(path.stem, objects, table.materials(), log.warnings())
 
 
-def _textured(rows: NDArray[np.int32], layouts: Sequence[object]) -> NDArray[np.bool_]:
-    """Whether each face's paint is a texture."""
-    by_row = np.array([layout is not None for layout in layouts], dtype=np.bool_)
+def _textured(rows: NDArray[np.int32], image_placements: Sequence[object]) -> NDArray[np.bool_]:
+    """Tell which faces have a texture."""
+    by_row = np.array([placement is not None for placement in image_placements], dtype=np.bool_)
     return by_row[rows]
 
 
-def _refuse_unreadable_positions(text: Text, said: Statements, notes: Notes) -> None:
-    broken: NDArray[np.bool_] = np.logical_not(np.isfinite(said.positions).all(axis=1))
+def _refuse_unreadable_positions(text: Text, statements: Statements, log: WarningLog) -> None:
+    broken: NDArray[np.bool_] = np.logical_not(np.isfinite(statements.positions).all(axis=1))
     if not broken.any():
         return
-    at_corner = np.flatnonzero(broken[said.corners])
+    at_corner = np.flatnonzero(broken[statements.corners])
     if len(at_corner):
-        face = int(np.searchsorted(np.cumsum(said.counts), at_corner[0], side="right"))
+        face = int(np.searchsorted(np.cumsum(statements.counts), at_corner[0], side="right"))
         raise AssetError(
             text.path,
-            f"vertex {said.corners[at_corner[0]] + 1} of a face has a coordinate that is no number",
-            place=text.place(int(said.face_lines[face])),
+            f"vertex {statements.corners[at_corner[0]] + 1} of a face has a coordinate that is not a number",
+            place=text.place(int(statements.face_lines[face])),
             fix="export it again",
         )
-    notes.add("unused-vertex", "vertices with a coordinate that is no number are in no face", int(broken.sum()))
+    log.add("unused-vertex", "unused vertices with a coordinate that is not a number were ignored", int(broken.sum()))

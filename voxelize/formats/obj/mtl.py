@@ -12,10 +12,10 @@ from voxrt.voxelize.formats.obj.text import read_text
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
-# What a material may say that has no bearing on its colour in plain light.
-_WITHOUT_BEARING = frozenset(
+# Keywords that do not affect the base colour.
+_WITHOUT_EFFECT = frozenset(
     {
         *("ka", "ke", "ks", "ns", "ni", "tf", "illum", "sharpness", "km", "pr", "pm", "ps", "pc", "pcr", "aniso"),
         *("anisor", "map_ka", "map_ke", "map_ks", "map_ns", "map_bump", "bump", "map_disp", "disp", "decal", "refl"),
@@ -23,7 +23,7 @@ _WITHOUT_BEARING = frozenset(
     }
 )
 
-# How many values each option of a texture takes: at least, at most.
+# The fewest and the most values of each option of a texture.
 _OPTIONS = {
     "-s": (1, 3),
     "-o": (1, 3),
@@ -44,9 +44,9 @@ _OPTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class MtlTexture:
-    """What ``map_Kd`` or ``map_d`` says: a file's name, where the image lies, and whether it ends at its edges.
+    """The arguments of ``map_Kd`` or ``map_d``: a file name, the placement of the image, and whether it is clamped.
 
-    A surface's coordinates are multiplied by `scale` and `offset` is added.
+    Texture coordinates are multiplied by `scale`, then `offset` is added.
     """
 
     name: str
@@ -55,20 +55,20 @@ class MtlTexture:
     clamp: bool = False
 
     def placed(self) -> tuple[object, ...]:
-        """Return all that says where the image lies."""
+        """Return the placement of the image."""
         return self.scale, self.offset, self.clamp
 
 
 @dataclass(slots=True)
 class MtlMaterial:
-    """What one ``newmtl`` says.
+    """One material of a library.
 
     Attributes
     ----------
     name
         Its name.
     colour
-        ``Kd``, three reals, as written; None where it is not given.
+        ``Kd``, three reals, as written; None where there is none.
     opacity
         ``d``, or 1 - ``Tr``.
     texture
@@ -84,13 +84,13 @@ class MtlMaterial:
     opacity_texture: MtlTexture | None = None
 
 
-def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
+def read_mtl(path: Path, log: WarningLog) -> dict[str, MtlMaterial]:
     """Return the materials of a library by name; the first wins where a name repeats.
 
     Raises
     ------
     AssetError
-        The file cannot be read, or a colour or opacity is no number.
+        The file cannot be read, or a colour or opacity is not a number.
     """
     text = read_text(path)
     materials: dict[str, MtlMaterial] = {}
@@ -101,12 +101,12 @@ def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
         if keyword == "newmtl":
             current = MtlMaterial(argument)
             if argument in materials:
-                notes.add("repeated-material", f"{path.name} names a material twice; the first was used")
+                log.add("repeated-material", f"{path.name} names a material twice; the first was used")
             materials.setdefault(argument, current)
         elif keyword and current is None:
-            notes.add("unknown-statement", f"{path.name}: statements before the first newmtl were ignored")
+            log.add("unknown-statement", f"{path.name}: statements before the first newmtl were ignored")
         elif keyword and current is not None:
-            _set(current, keyword, argument, _Place(path, text.place(line), notes))
+            _set(current, keyword, argument, _Place(path, text.place(line), log))
     return materials
 
 
@@ -114,7 +114,7 @@ def read_mtl(path: Path, notes: Notes) -> dict[str, MtlMaterial]:
 class _Place:
     path: Path
     line: str
-    notes: Notes
+    log: WarningLog
 
 
 def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> None:
@@ -124,24 +124,24 @@ def _set(material: MtlMaterial, keyword: str, argument: str, place: _Place) -> N
         material.opacity = _real(argument.split()[-1:], place)
     elif keyword == "tr":
         transparency = _real(argument.split()[-1:], place)
-        if material.opacity == 1.0:  # exporters that write both mean d
+        if material.opacity == 1.0:  # where both are given, d counts
             material.opacity = 1.0 - transparency
     elif keyword == "map_kd":
         material.texture = _texture(keyword, argument, place)
     elif keyword == "map_d":
         material.opacity_texture = _texture(keyword, argument, place)
-    elif keyword not in _WITHOUT_BEARING:
-        place.notes.add("unknown-statement", f"{place.path.name}: {keyword!r} was not understood")
+    elif keyword not in _WITHOUT_EFFECT:
+        place.log.add("unknown-statement", f"{place.path.name}: {keyword!r} was ignored")
 
 
 def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
     words = argument.split()
     if words[:1] in (["spectral"], ["xyz"]):
-        message = f"{place.path.name}: Kd {words[0]} is not honoured; the default colour stands in"
-        place.notes.add("material-colour", message)
+        message = f"{place.path.name}: Kd {words[0]} is not supported; the default colour was used"
+        place.log.add("material-colour", message)
         return None
     values = [_real([word], place) for word in words[:3]]
-    if len(values) == 1:  # one value is a grey, says the format's description
+    if len(values) == 1:  # the format defines one value as a grey
         values *= 3
     if len(values) != 3:
         raise AssetError(place.path, "Kd needs three numbers", place=place.line, fix="repair the line")
@@ -149,7 +149,7 @@ def _colour(argument: str, place: _Place) -> tuple[float, float, float] | None:
 
 
 def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
-    """Read the options that stand before a file's name, which may hold blanks."""
+    """Read the options before a file name, which may hold blanks."""
     rest = argument
     scale, offset, clamp = (1.0, 1.0), (0.0, 0.0), False
     while rest.startswith("-"):
@@ -157,7 +157,7 @@ def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
         option, rest = option.lower(), rest.lstrip()
         fewest, most = _OPTIONS.get(option, (0, 0))
         if not most:
-            place.notes.add("unknown-statement", f"{place.path.name}: {keyword} option {option!r} was not understood")
+            place.log.add("unknown-statement", f"{place.path.name}: {keyword} option {option!r} was ignored")
         values: list[str] = []
         while len(values) < most:
             word, _, after = rest.partition(" ")
@@ -174,7 +174,7 @@ def _texture(keyword: str, argument: str, place: _Place) -> MtlTexture | None:
         elif option == "-clamp":
             clamp = values == ["on"]
         elif option in ("-mm", "-t"):
-            place.notes.add("texture", f"{place.path.name}: {keyword} option {option!r} is not honoured")
+            place.log.add("texture", f"{place.path.name}: {keyword} option {option!r} was ignored")
     return MtlTexture(rest, scale, offset, clamp) if rest else None
 
 
@@ -192,5 +192,5 @@ def _real(words: list[str], place: _Place) -> float:
     except (IndexError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise AssetError(place.path, f"{' '.join(words)!r} is no number", place=place.line, fix="repair the line")
+        raise AssetError(place.path, f"{' '.join(words)!r} is not a number", place=place.line, fix="repair the line")
     return value

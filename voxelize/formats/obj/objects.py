@@ -1,4 +1,4 @@
-"""Which faces are one object."""
+"""Which faces form one object."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ if TYPE_CHECKING:
 
 def split_objects(
     stem: str,
-    said: Statements,
+    statements: Statements,
     triangles: NDArray[np.int32],
     faces: NDArray[np.int64],
 ) -> Iterator[tuple[str, NDArray[np.int64]]]:
     """Split a file's triangles into objects, in order of their first faces.
 
-    ``o`` starts an object each time; ``g`` names a set that may be added to later, so its name tells groups apart.
+    Each ``o`` starts an object. Each ``g`` names a set, which a later ``g`` of the same name continues.
 
     Parameters
     ----------
     stem
-        The name of an object that has none.
-    said
+        The name of objects without a name.
+    statements
         The statements.
     triangles
         int32, shape (T, 3): rows of the positions.
     faces
-        int64, shape (T,): the face each is of.
+        int64, shape (T,): the face of each.
 
     Yields
     ------
-    Names, each once, and int64: the triangles of each, ascending.
+    Unique names, and the triangles of each (int64, ascending).
     """
-    if said.objects:
-        part, names = _parts(said.objects, said.face_lines[faces])
+    if statements.objects:
+        part, names = _parts(statements.objects, statements.face_lines[faces])
     else:
-        part, names = _parts(said.groups, said.face_lines[faces])
+        part, names = _parts(statements.groups, statements.face_lines[faces])
         part = _by_name(part, names)
-        part = _by_shared_vertices(part, len(names), triangles, len(said.positions))
+        part = _by_shared_vertices(part, len(names), triangles, len(statements.positions))
     order = np.argsort(part, kind="stable")
     present, begins = np.unique(part[order], return_index=True)
     ends = np.append(begins[1:], len(order))
@@ -60,7 +60,7 @@ def split_objects(
 
 
 def _parts(statements: tuple[tuple[int, str], ...], lines: NDArray[np.int64]) -> tuple[NDArray[np.int64], list[str]]:
-    """Return the statement each line is under, 0 before the first, and their names."""
+    """Return the last statement before each line (0 for none), and the names of the statements."""
     starts = np.array([line for line, _ in statements], dtype=np.int64)
     return np.searchsorted(starts, lines), ["", *(name for _, name in statements)]
 
@@ -73,7 +73,7 @@ def _by_name(part: NDArray[np.int64], names: list[str]) -> NDArray[np.int64]:
 def _by_shared_vertices(
     part: NDArray[np.int64], parts: int, triangles: NDArray[np.int32], vertices: int
 ) -> NDArray[np.int64]:
-    """Merge parts that share a vertex: each part's smallest companion (union by the path-halving forest)."""
+    """Merge parts that share a vertex, by a disjoint-set forest with path halving."""
     if not part.any() or (part == part[0]).all():
         return part
     corners = triangles.ravel()
@@ -99,7 +99,7 @@ def _by_shared_vertices(
 def compact(
     positions: NDArray[np.float64], triangles: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return only the vertices that `triangles` use, in the file's order, and the triangles in their terms."""
+    """Return the vertices that `triangles` use, in the file's order, and the triangles as rows of those."""
     low, high = int(triangles.min()), int(triangles.max()) + 1
     used = np.zeros(high - low, dtype=bool)
     used[triangles - low] = True

@@ -1,4 +1,4 @@
-"""What an OBJ file's lines say: vertices, faces, and which object and material each face is of."""
+"""The statements of an OBJ file: vertices, faces, and the object and material of each face."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from voxrt.voxelize.formats.obj.text import Text, index_rows, real_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
-# Keywords of curves and surfaces, which have no faces of their own.
+# Keywords of curves and free-form surfaces, which have no faces.
 _FREE_FORM = frozenset(
     {
         *("vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end"),
         *("con", "bzp", "bsp", "cdc", "cdp", "res", "ctech", "stech"),
     }
 )
-_WITHOUT_BEARING = frozenset(
+_WITHOUT_EFFECT = frozenset(
     {
         *("s", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "maplib", "usemap", "call"),
         *("csh", "version"),
@@ -49,7 +49,7 @@ class Statements:
     objects, groups, materials
         (line, name) of each ``o``, ``g`` and ``usemtl``.
     libraries
-        The names of all material libraries, with the line that asks for them.
+        (line, name) of each ``mtllib``.
     """
 
     positions: NDArray[np.float64]
@@ -63,16 +63,16 @@ class Statements:
     libraries: tuple[tuple[int, str], ...]
 
 
-def read_statements(text: Text, notes: Notes) -> Statements:
+def read_statements(text: Text, log: WarningLog) -> Statements:
     """Read all statements.
 
     Raises
     ------
     AssetError
-        A vertex of fewer than three numbers, a face whose corners are no vertices, or a file without faces.
+        A vertex of fewer than three numbers, a face with a corner that is not a vertex, or a file without faces.
     """
     first = text.buffer[text.starts]
-    # A line's last character is its line feed, so there is always a second one except at the very end.
+    # A line ends with a line feed, so it has a second character, except the last line.
     second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
     alone = second <= ord(" ")
     is_vertex = (first == ord("v")) & alone
@@ -81,14 +81,14 @@ def read_statements(text: Text, notes: Notes) -> Statements:
     other = np.flatnonzero(~(is_vertex | is_face | attribute | (first == ord("#")) | (first == ord("\n"))))
     vertex_lines = np.flatnonzero(is_vertex)
     face_lines = np.flatnonzero(is_face)
-    positions, colours = _vertices(text, vertex_lines, notes)
-    named = _named(text, other, notes)
+    positions, colours = _vertices(text, vertex_lines, log)
+    named = _named(text, other, log)
     counts, corners = _faces(text, face_lines, np.cumsum(is_vertex)[face_lines], len(positions))
     if not len(counts):
         raise AssetError(text.path, "has no faces", fix="export it with its polygons")
     keep = counts >= 3
     if not keep.all():
-        notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+        log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
         corners, counts, face_lines = corners[np.repeat(keep, counts)], counts[keep], face_lines[keep]
     return Statements(
         positions,
@@ -103,20 +103,20 @@ def read_statements(text: Text, notes: Notes) -> Statements:
     )
 
 
-def texture_coordinates(text: Text, said: Statements) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Read what ``vt`` says of all corners.
+def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Read the texture coordinates (``vt``) of all corners.
 
     Returns
     -------
     uv
         float64, shape (corners, 2), v upwards; 0 where a corner has none.
     given
-        bool, shape (F,): whether all corners of a face have some.
+        bool, shape (F,): whether all corners of a face have coordinates.
 
     Raises
     ------
     AssetError
-        A corner names coordinates that are none.
+        A corner refers to coordinates that do not exist.
     """
     first, second = text.buffer[text.starts], text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
     is_texture = (first == ord("v")) & (second == ord("t"))
@@ -126,14 +126,14 @@ def texture_coordinates(text: Text, said: Statements) -> tuple[NDArray[np.float6
     for column in range(2):  # v is 0 where a line has u alone
         wide = widths > column
         stored[wide, column] = values[begins[wide] + column]
-    numbers, counts = index_rows(text, said.face_lines, 1, 1)
-    before = np.repeat(np.cumsum(is_texture)[said.face_lines], counts)
+    numbers, counts = index_rows(text, statements.face_lines, 1, 1)
+    before = np.repeat(np.cumsum(is_texture)[statements.face_lines], counts)
     rows = np.where(numbers < 0, before + numbers, numbers - 1)
     wrong = np.flatnonzero((numbers != 0) & ((rows < 0) | (rows >= len(stored))))
     if len(wrong):
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
-        problem = f"texture coordinate {numbers[wrong[0]]} of a face is none of the file's {len(stored)}"
-        raise AssetError(text.path, problem, place=text.place(int(said.face_lines[face])), fix="export it again")
+        problem = f"texture coordinate {numbers[wrong[0]]} of a face does not exist: the file has {len(stored)}"
+        raise AssetError(text.path, problem, place=text.place(int(statements.face_lines[face])), fix="export it again")
     missing = numbers == 0
     uv = np.zeros((len(rows), 2))
     uv[~missing] = stored[rows[~missing]]
@@ -143,7 +143,7 @@ def texture_coordinates(text: Text, said: Statements) -> tuple[NDArray[np.float6
 
 
 def _vertices(
-    text: Text, lines: NDArray[np.int64], notes: Notes
+    text: Text, lines: NDArray[np.int64], log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     values, counts = real_rows(text, lines, 1)
     short = np.flatnonzero(counts < 3)
@@ -159,7 +159,7 @@ def _vertices(
         # Three numbers or four: a weight may stand before the colour.
         colours[coloured] = values[(begins + counts)[coloured, None] + np.arange(-3, 0)]
         broken = ~np.isfinite(colours).all(axis=1)
-        notes.add("vertex-colour", "vertex colours that are not numbers were taken as black", int(broken.sum()))
+        log.add("vertex-colour", "vertex colours that are not numbers were taken as black", int(broken.sum()))
         colours[broken] = 0.0
         if colours.max() > 1.0:  # some programs write 0 ... 255
             colours[coloured] /= 255.0
@@ -172,7 +172,7 @@ def _vertices(
 def _faces(
     text: Text, lines: NDArray[np.int64], vertices_before: NDArray[np.int64], vertices: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Corners per face and rows of the vertices, with negative numbers counted back from the face."""
+    """Return the corners per face, and their vertices as rows; negative numbers count back from the face."""
     numbers, counts = index_rows(text, lines, 1, 0)
     corners = numbers
     negative = corners < 0
@@ -185,14 +185,14 @@ def _faces(
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
         raise AssetError(
             text.path,
-            f"vertex {numbers[wrong[0]]} of a face is none of the file's {vertices}",
+            f"vertex {numbers[wrong[0]]} of a face does not exist: the file has {vertices}",
             place=text.place(lines[face]),
             fix="export it again",
         )
     return counts, corners
 
 
-def _named(text: Text, lines: NDArray[np.int64], notes: Notes) -> dict[str, list[tuple[int, str]]]:
+def _named(text: Text, lines: NDArray[np.int64], log: WarningLog) -> dict[str, list[tuple[int, str]]]:
     named: dict[str, list[tuple[int, str]]] = {"o": [], "g": [], "usemtl": [], "mtllib": []}
     for line in lines.tolist():
         words = text.words(line)
@@ -201,9 +201,9 @@ def _named(text: Text, lines: NDArray[np.int64], notes: Notes) -> dict[str, list
         if keyword in named:
             named[keyword].append((line, argument))
         elif keyword in ("l", "p"):
-            notes.add("no-area", "lines and points have no volume and no area and were left out")
+            log.add("no-area", "lines and points were left out: they have no area")
         elif keyword in _FREE_FORM:
-            notes.add("free-form", "curves and free-form surfaces are not honoured; export them as polygons")
-        elif keyword and keyword not in _WITHOUT_BEARING:
-            notes.add("unknown-statement", "statements that are none of the format were ignored")
+            log.add("free-form", "curves and free-form surfaces were left out; export them as polygons")
+        elif keyword and keyword not in _WITHOUT_EFFECT:
+            log.add("unknown-statement", "unknown statements were ignored")
     return named

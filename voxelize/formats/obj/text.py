@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _Number = TypeVar("_Number", np.float64, np.int64)
 
-# Longer ones are beyond any file's vertices, and beyond 64 bits.
+# Longer numbers exceed 64 bits.
 _INDEX = re.compile(rb"[+-]?\d{1,18}")
 
 _BOMS = (
@@ -35,21 +35,21 @@ _BOMS = (
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Text:
-    """A file's text with ASCII line ends and continued lines joined in place.
+    """A file's text with line feeds as line ends; continued lines are joined in place.
 
     Attributes
     ----------
     path
         The file, for errors.
     data
-        Its bytes, ASCII compatible, ending in a line feed. A joined continuation keeps its length and, in
-        `newlines`, its line number.
+        Its bytes, ASCII compatible, ending in a line feed. Joining keeps the length; `newlines` keeps the line
+        numbers.
     buffer
         uint8, shape (len(data),): the same bytes.
     starts
-        int64, shape (L,): where each line's first character that is no blank stands; its line feed where it has none.
+        int64, shape (L,): the position of each line's first character that is not blank, else of its line feed.
     ends
-        int64, shape (L,): where each line's line feed stands.
+        int64, shape (L,): the position of each line's line feed.
     newlines
         int64: positions of all line feeds of the file, joined ones included.
     """
@@ -62,17 +62,17 @@ class Text:
     newlines: NDArray[np.int64]
 
     def place(self, line: int) -> str:
-        """Where line `line` (an index into `starts`) stands, for people: ``line 12``."""
+        """Return the line number of line `line` (an index into `starts`), for people: ``line 12``."""
         return f"line {int(np.searchsorted(self.newlines, self.starts[line])) + 1}"
 
     def words(self, line: int) -> str:
-        """Return the text of line `line` without comment and surrounding blanks."""
+        """Return the text of line `line` without its comment and surrounding blanks."""
         raw = self.data[self.starts[line] : self.ends[line]]
         return decode(raw.partition(b"#")[0]).strip()
 
 
 def decode(raw: bytes) -> str:
-    """Text of a name: UTF-8, or Windows-1252 as old exporters wrote it, in which every byte has a meaning."""
+    """Return the text of a name: UTF-8, else Windows-1252, which old exporters wrote."""
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
@@ -85,14 +85,14 @@ def read_text(path: Path) -> Text:
     Raises
     ------
     AssetError
-        The file cannot be read, or its bytes are not what its byte order mark says.
+        The file cannot be read, or its bytes contradict its byte order mark.
     """
     data = read_asset(path)
     return as_text(path, _to_ascii_compatible(path, data))
 
 
 def as_text(path: Path, data: bytes) -> Text:
-    """Find the lines of ASCII compatible bytes."""
+    """Return the lines of ASCII compatible bytes."""
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not data.endswith(b"\n"):
@@ -216,8 +216,8 @@ def _keep_field(characters: NDArray[np.uint8], slashes: NDArray[np.int64], field
 
 
 def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
-    """Return the lines end to end, keywords and comments blanked, and the words in each."""
-    # Lines that follow one another are copied as one piece.
+    """Return the lines joined, with keywords and comments blanked, and the number of words in each."""
+    # Consecutive lines are copied as one piece.
     breaks = np.flatnonzero(np.diff(lines) != 1) + 1
     first = lines[np.concatenate([[0], breaks])]
     last = lines[np.concatenate([breaks - 1, [len(lines) - 1]])]
@@ -225,7 +225,7 @@ def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArr
     pieces = [data[a : b + 1] for a, b in zip(text.starts[first].tolist(), text.ends[last].tolist(), strict=True)]
     characters = np.frombuffer(bytearray(b"".join(pieces)), dtype=np.uint8)
     line_ends = np.flatnonzero(characters == ord("\n"))
-    np.maximum(characters, ord(" "), out=characters)  # all that is no text is blank, to NumPy and Python alike
+    np.maximum(characters, ord(" "), out=characters)  # control characters become blanks
     characters[line_ends] = ord("\n")
     line_starts = np.empty_like(line_ends)
     line_starts[0] = 0
@@ -243,7 +243,7 @@ def _gathered(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArr
 
 
 def _line_begins(text: Text, lines: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Where lines begin, their indentation included."""
+    """Return where lines begin, with their indentation."""
     begins = np.zeros(len(lines), dtype=np.int64)
     begins[lines > 0] = text.ends[lines[lines > 0] - 1] + 1
     return begins
@@ -258,9 +258,9 @@ def _blank_comments(characters: NDArray[np.uint8]) -> None:
 
 
 def _parsed(characters: NDArray[np.uint8], total: int, kind: type[_Number]) -> NDArray[_Number] | None:
-    """Parse all numbers, or None where one of the `total` words is none."""
+    """Return all numbers; None where one of the `total` words is not a number."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # how older NumPy says that it stopped early
+        warnings.simplefilter("ignore", DeprecationWarning)  # older NumPy warns when it stops early
         try:
             values = np.fromstring(characters.tobytes(), dtype=kind, sep=" ")
         except ValueError:
@@ -270,13 +270,13 @@ def _parsed(characters: NDArray[np.uint8], total: int, kind: type[_Number]) -> N
 
 def _real(word: bytes) -> float:
     try:
-        return math.nan if b"_" in word else float(word)  # underscores are Python's own notation
+        return math.nan if b"_" in word else float(word)  # Python allows underscores in numbers
     except ValueError:
         return math.nan
 
 
 def _slow_indices(text: Text, lines: NDArray[np.int64], rows: bytes, field: int) -> list[int]:
-    """Read word by word, to say where something is wrong."""
+    """Return the indices, read word by word, so that an error can name its line."""
     indices: list[int] = []
     for line, row in zip(lines.tolist(), rows.split(b"\n"), strict=False):
         for word in row.split():
@@ -287,7 +287,10 @@ def _slow_indices(text: Text, lines: NDArray[np.int64], rows: bytes, field: int)
                 continue
             if not _INDEX.fullmatch(digits):
                 raise AssetError(
-                    text.path, f"{decode(word)!r} is no corner", place=text.place(line), fix="repair the face"
+                    text.path,
+                    f"{decode(word)!r} is not a corner of a face",
+                    place=text.place(line),
+                    fix="repair the face",
                 )
             indices.append(int(digits))
     return indices

@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.material_table import MaterialTable
-from voxrt.voxelize.colour.paint import Coat, Paint
-from voxrt.voxelize.colour.painted import Unfinished, finish
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_tables
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
-from voxrt.voxelize.polygons import triangulate
+from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.formats.triangulation import triangulate
 from voxrt.voxelize.scene import Scene, SceneObject
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OPAQUE_FROM = 0.5
-"""A face of lower opacity is air."""
+"""Faces of a lower opacity are fully transparent."""
 
 
 def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
@@ -45,24 +45,26 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
     """
     path = Path(path)
     data = read_asset(path)
-    notes = Notes()
+    log = WarningLog()
     tables = read_tables(path, data)
-    positions, counts, corners, kept = _geometry(path, tables, notes)
+    positions, counts, corners, kept = _geometry(path, tables, log)
     triangles, faces = triangulate(positions, counts, corners)
     table = MaterialTable()
-    coat = _coat(tables, triangles, kept[faces])
+    surface_appearance = _surface_appearance(tables, triangles, kept[faces])
     materials = np.zeros(len(triangles), dtype=np.uint8)
-    if coat is None:
-        materials[:] = table.default(notes, len(counts))
-    (mesh,) = finish([Unfinished(positions, triangles, materials, coat)], table, notes)
+    if surface_appearance is None:
+        materials[:] = table.default(log, len(counts))
+    (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, surface_appearance)], table, log)
     if not len(mesh.triangles):
         raise AssetError(path, "has no faces that can be seen", fix="give its colours an opacity of a half or more")
     one = SceneObject(path.stem, mesh, scene_transform(up, unit))
-    return Scene(path.stem, (one,), table.materials(), notes.warnings())
+    return Scene(path.stem, (one,), table.materials(), log.warnings())
 
 
-def _coat(tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]) -> Coat | None:
-    """Paint triangles with their faces' colours, else with their vertices'; None where there are none."""
+def _surface_appearance(
+    tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]
+) -> SurfaceAppearance | None:
+    """Give triangles their faces' colours, else with their vertices'; None where there are none."""
     by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
     if "tristrips" in tables:  # they have no colours of faces
         by_face = None
@@ -75,7 +77,9 @@ def _coat(tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray
     name = "face colours" if by_face is not None else "vertex colours"
     cutoff = OPAQUE_FROM if (colours[:, :, 3] < 1.0).any() else 0.0
     rows = np.zeros(len(triangles), dtype=np.int32)
-    return Coat((Paint(name, cutoff=cutoff),), rows, np.zeros((len(triangles), 3, 2)), colours.astype(np.float32))
+    return SurfaceAppearance(
+        (Appearance(name, cutoff=cutoff),), rows, np.zeros((len(triangles), 3, 2)), colours.astype(np.float32)
+    )
 
 
 def _colours(table: Table) -> NDArray[np.float64] | None:
@@ -135,7 +139,7 @@ def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
 
 
 def _geometry(
-    path: Path, tables: dict[str, Table], notes: Notes
+    path: Path, tables: dict[str, Table], log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Positions, corners per face, corners, and which of the file's faces they are of."""
     vertices = tables.get("vertex", {})
@@ -157,7 +161,7 @@ def _geometry(
     if not np.isfinite(positions[corners]).all():
         raise AssetError(path, "a face has a vertex whose coordinates are no numbers", fix="export it again")
     keep = counts >= 3
-    notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+    log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
     corners, counts = corners[np.repeat(keep, counts)], counts[keep]
     if not len(counts):
         raise AssetError(path, "has no faces of three corners or more", fix="export it again")

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.material_table import MaterialTable
-from voxrt.voxelize.colour.paint import Coat, Paint
-from voxrt.voxelize.colour.painted import Unfinished, finish
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.stl.text import ascii_solids
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.formats.stl.welding import weld
 from voxrt.voxelize.scene import Scene, SceneObject
-from voxrt.voxelize.weld import weld
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,10 +47,10 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     """
     path = Path(path)
     data = read_asset(path)
-    notes = Notes()
+    log = WarningLog()
     tints = None
     if _is_binary(data):
-        corners, tints = _binary(path, data, notes)
+        corners, tints = _binary(path, data, log)
         solids = [(path.stem, corners)]
     else:
         solids = ascii_solids(path, data)
@@ -59,21 +59,21 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     objects = []
     for name, corners in solids:
         if not len(corners):
-            notes.add("empty-mesh", "solids without triangles were left out")
+            log.add("empty-mesh", "solids without triangles were left out")
             continue
         if not np.isfinite(corners).all():
             raise AssetError(path, "has a coordinate that is no number", place=f"solid {name!r}", fix="export it again")
         positions, triangles = weld(corners)
-        coat = None if tints is None else _coat(tints)
-        bare = np.ones(len(triangles), dtype=np.bool_) if coat is None else coat.rows < 0
+        surface_appearance = None if tints is None else _surface_appearance(tints)
+        bare = np.ones(len(triangles), dtype=np.bool_) if surface_appearance is None else surface_appearance.rows < 0
         materials = np.zeros(len(triangles), dtype=np.uint8)
         if bare.any():
-            materials[bare] = table.default(notes, int(bare.sum()))
-        (mesh,) = finish([Unfinished(positions, triangles, materials, coat)], table, notes)
+            materials[bare] = table.default(log, int(bare.sum()))
+        (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, surface_appearance)], table, log)
         objects.append(SceneObject(name, mesh, transform))
     if not objects:
         raise AssetError(path, "has no triangles", fix="export it with its surface")
-    return Scene(path.stem, tuple(objects), table.materials(), notes.warnings())
+    return Scene(path.stem, tuple(objects), table.materials(), log.warnings())
 
 
 def _is_binary(data: bytes) -> bool:
@@ -88,7 +88,7 @@ def _is_binary(data: bytes) -> bool:
 
 
 def _binary(
-    path: Path, data: bytes, notes: Notes
+    path: Path, data: bytes, log: WarningLog
 ) -> tuple[NDArray[np.float64], tuple[NDArray[np.uint8], NDArray[np.bool_]] | None]:
     """Corners, float64, shape (3 * T, 3), and the colours of facets, where some have one."""
     if len(data) < _HEADER:
@@ -98,14 +98,14 @@ def _binary(
     stored = (len(data) - _HEADER) // 50
     if stored < count:
         raise AssetError(path, f"is cut short: {stored} of {count} triangles", fix="copy or export it again")
-    notes.add("trailing-bytes", "bytes after the last triangle were ignored", len(data) - _HEADER - 50 * count)
+    log.add("trailing-bytes", "bytes after the last triangle were ignored", len(data) - _HEADER - 50 * count)
     records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
     corners = records["corners"].reshape(-1, 3).astype(np.float64)
-    return corners, _facet_colours(data[:80], records["attribute"], notes)
+    return corners, _facet_colours(data[:80], records["attribute"], log)
 
 
 def _facet_colours(
-    header: bytes, attributes: NDArray[np.uint16], notes: Notes
+    header: bytes, attributes: NDArray[np.uint16], log: WarningLog
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]] | None:
     """Read colours of 15 bits: uint8 (T, 3), sRGB, and which facets have one; None where no facet has.
 
@@ -120,7 +120,7 @@ def _facet_colours(
         colours = np.stack([low, middle, high], axis=1) * 255 // 31
         colours[flagged] = list(header[at + 6 : at + 9])
         return colours.astype(np.uint8), np.ones(len(flagged), dtype=np.bool_)
-    notes.add(
+    log.add(
         "stl-attribute",
         "triangle attributes that are no colours were ignored",
         int(((attributes != 0) & ~flagged).sum()),
@@ -130,10 +130,10 @@ def _facet_colours(
     return (np.stack([high, middle, low], axis=1) * 255 // 31).astype(np.uint8), flagged
 
 
-def _coat(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> Coat:
-    """Paint facets with their colours."""
+def _surface_appearance(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> SurfaceAppearance:
+    """Return the appearance of facets that have colours."""
     colours, coloured = tints
     linear = np.ones((len(colours), 3, 4), dtype=np.float32)
     linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]
     rows = np.where(coloured, 0, -1).astype(np.int32)
-    return Coat((Paint("facet colours"),), rows, np.zeros((len(colours), 3, 2)), linear)
+    return SurfaceAppearance((Appearance("facet colours"),), rows, np.zeros((len(colours), 3, 2)), linear)

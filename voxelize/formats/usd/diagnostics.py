@@ -1,4 +1,4 @@
-"""What USD itself has to say: caught, told in one line, never printed."""
+"""USD's own diagnostics: caught and reported in one line, never printed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voxrt.voxelize.errors import AssetError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 # A parser's message: FILE:LINE:COLUMN: what is wrong at 'text' in </prim>
 _AT_LINE = re.compile(r"^(?P<file>.*?):(?P<line>\d+):\d+: (?P<problem>.*)", re.DOTALL)
@@ -24,10 +24,10 @@ _UNOPENED = re.compile(r"Could not open asset @(?P<asset>[^@]*)@")
 
 
 @contextmanager
-def caught(path: Path, notes: Notes) -> Iterator[None]:
-    """Turn USD's errors into :class:`AssetError` and its warnings into notes while the block runs.
+def caught(path: Path, log: WarningLog) -> Iterator[None]:
+    """Turn USD's errors into :class:`AssetError` and its warnings into log while the block runs.
 
-    While a delegate is installed USD prints nothing on its own.
+    While a delegate is installed, USD prints nothing.
     """
     delegate = UsdUtils.CoalescingDiagnosticDelegate()
     try:
@@ -35,32 +35,32 @@ def caught(path: Path, notes: Notes) -> Iterator[None]:
     except Tf.ErrorException as error:
         raise _asset_error(path, error) from None
     except UnicodeDecodeError as error:  # a message or a value of the file, on its way to Python
-        raise AssetError(path, f"holds text that is no UTF-8 ({error.reason})", fix="export it again") from None
+        raise AssetError(path, f"holds text that is not UTF-8 ({error.reason})", fix="export it again") from None
     finally:
-        for said in delegate.TakeUncoalescedDiagnostics():
-            notes.add(*_note(_commentary(said), path))
+        for diagnostic in delegate.TakeUncoalescedDiagnostics():
+            log.add(*_note(_commentary(diagnostic), path))
         del delegate
 
 
-def _commentary(said: object) -> str:
-    """Return what a diagnostic says, which may quote bytes of the file that are no text."""
+def _commentary(diagnostic: object) -> str:
+    """Return the text of a diagnostic, which may quote bytes of the file that are not text."""
     try:
-        return str(getattr(said, "commentary", said))
+        return str(getattr(diagnostic, "commentary", diagnostic))
     except UnicodeDecodeError:
-        return "the file holds text that is no UTF-8"
+        return "the file holds text that is not UTF-8"
 
 
 def _note(commentary: str, path: Path) -> tuple[str, str]:
     line = " ".join(commentary.split())
     if "deprecated version" in line:
-        return "deprecated-format", "a layer is stored in a version of the crate format that USD will drop"
+        return "deprecated-format", "a layer has a version of the crate format that USD will drop"
     if match := _UNOPENED.search(line):
-        # Told from the file's folder: what a manifest says does not depend on where that folder stands.
+        # Relative to the file's folder, so that a manifest does not depend on where that folder is.
         asset = match["asset"]
         if Path(asset).is_absolute():
             asset = os.path.relpath(asset, path.parent.absolute())
-        return "composition", f"asset {asset} could not be opened; what it holds is missing"
-    return ("composition" if line.startswith("In <") else "usd"), f"USD says: {line}"
+        return "composition", f"asset {asset} could not be opened; its content is missing"
+    return ("composition" if line.startswith("In <") else "usd"), f"USD reports: {line}"
 
 
 def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
@@ -68,9 +68,9 @@ def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
     for message in messages:
         if match := _AT_LINE.match(message):
             problem = match["problem"]
-            # PEGTL, USD's parser, names its C++ templates; what it met is told after " at '".
+            # PEGTL, USD's parser, names its C++ templates; the text that it met follows " at '".
             if problem.startswith("parse error matching"):
                 problem = "syntax error" + problem[problem.rfind(" at '") :]
             return AssetError(path, problem, place=f"line {match['line']}", fix="repair the file or export it again")
     problem = messages[0] if messages else "cannot be read"
-    return AssetError(path, f"USD says: {problem}", fix="check it with usdchecker")
+    return AssetError(path, f"USD reports: {problem}", fix="check it with usdchecker")

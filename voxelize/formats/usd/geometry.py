@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from voxrt.voxelize import primitives
+from voxrt.voxelize import primitive_meshes
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.formats.usd import values
-from voxrt.voxelize.polygons import triangulate_corners
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.usd.skin import Deformed
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
-# Positions USD calls legal and no scene has: beyond it, squares overflow.
+# USD allows any coordinate; the squares of larger ones overflow.
 _FARTHEST = 1e150
 
 
-# The attributes of each solid, in the order of what makes it.
-_MEASURES = {
+# The attributes of each solid, in the order of its function's parameters.
+_DIMENSIONS = {
     "Cube": ("size",),
     "Sphere": ("radius",),
     "Cylinder": ("radius", "height", "axis"),
@@ -37,15 +37,15 @@ _MEASURES = {
     "Capsule_1": ("radiusBottom", "radiusTop", "height", "axis"),
     "Plane": ("width", "length", "axis"),
 }
-_MAKERS: dict[str, Callable[..., primitives.Surface]] = {
-    "Cube": primitives.cube,
-    "Sphere": primitives.sphere,
-    "Cylinder": lambda radius, height, axis: primitives.cylinder(radius, radius, height, axis),
-    "Cylinder_1": primitives.cylinder,
-    "Cone": primitives.cone,
-    "Capsule": lambda radius, height, axis: primitives.capsule(radius, radius, height, axis),
-    "Capsule_1": primitives.capsule,
-    "Plane": primitives.plane,
+_FUNCTIONS: dict[str, Callable[..., primitive_meshes.Surface]] = {
+    "Cube": primitive_meshes.cube,
+    "Sphere": primitive_meshes.sphere,
+    "Cylinder": lambda radius, height, axis: primitive_meshes.cylinder(radius, radius, height, axis),
+    "Cylinder_1": primitive_meshes.cylinder,
+    "Cone": primitive_meshes.cone,
+    "Capsule": lambda radius, height, axis: primitive_meshes.capsule(radius, radius, height, axis),
+    "Capsule_1": primitive_meshes.capsule,
+    "Plane": primitive_meshes.plane,
 }
 
 
@@ -60,13 +60,13 @@ class Surface:
     triangles
         int32, shape (T, 3), counter-clockwise seen from outside.
     faces
-        int64, shape (T,): the prim's own face that each triangle is of.
+        int64, shape (T,): the face of the prim that each triangle belongs to.
     face_count
-        How many faces the prim has, holes included.
+        The number of faces of the prim, holes included.
     corners
-        int64, shape (T, 3): the corners of its faces that each triangle has, among all of them.
+        int64, shape (T, 3): each triangle's corners, among all corners of the faces.
     corner_count
-        How many corners its faces have; 0 for solids.
+        The number of corners of all faces; 0 for solids.
     """
 
     positions: NDArray[np.float64]
@@ -78,17 +78,17 @@ class Surface:
 
 
 def surface_of(
-    prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None = None
+    prim: Usd.Prim, path: Path, time: Usd.TimeCode, log: WarningLog, deformed: Deformed | None = None
 ) -> Surface | None:
     """Return the surface of a Mesh or of one of the solids; None for any other prim and for a mesh without faces.
 
     Raises
     ------
     AssetError
-        A mesh whose topology contradicts itself, or a solid whose measures are no lengths.
+        A mesh whose topology contradicts itself, or a solid with an invalid dimension.
     """
     if prim.IsA(UsdGeom.Mesh):
-        return _mesh(UsdGeom.Mesh(prim), path, time, notes, deformed)
+        return _mesh(UsdGeom.Mesh(prim), path, time, log, deformed)
     solid = _solid(prim, path, time)
     if solid is None:
         return None
@@ -98,7 +98,7 @@ def surface_of(
 
 
 def _mesh(
-    mesh: UsdGeom.Mesh, path: Path, time: Usd.TimeCode, notes: Notes, deformed: Deformed | None
+    mesh: UsdGeom.Mesh, path: Path, time: Usd.TimeCode, log: WarningLog, deformed: Deformed | None
 ) -> Surface | None:
     prim = mesh.GetPrim()
     place = str(prim.GetPath())
@@ -106,15 +106,15 @@ def _mesh(
     counts = values.integers(mesh.GetFaceVertexCountsAttr(), time, path)
     corners = values.integers(mesh.GetFaceVertexIndicesAttr(), time, path)
     if not len(counts) or not len(positions):
-        notes.add("empty-mesh", "meshes without faces were left out")
+        log.add("empty-mesh", "meshes without faces were left out")
         return None
     _check_topology(path, place, positions, counts, corners)
     keep = counts >= 3
-    notes.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
+    log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
     holes = values.integers(mesh.GetHoleIndicesAttr(), time, path)
     keep[holes[(holes >= 0) & (holes < len(counts))]] = False
     if mesh.GetSubdivisionSchemeAttr().Get() != UsdGeom.Tokens.none:
-        notes.add("subdivision", "subdivision surfaces were taken as their control cage")
+        log.add("subdivision", "subdivision surfaces were replaced by their control cage")
     kept = np.flatnonzero(keep)
     places = np.flatnonzero(np.repeat(keep, counts))
     cut, faces = triangulate_corners(positions, counts[kept], corners[places])
@@ -137,30 +137,30 @@ def _check_topology(
     elif len(corners) and (corners.min() < 0 or corners.max() >= len(positions)):
         problem = f"faceVertexIndices go from {corners.min()} to {corners.max()} and points has {len(positions)}"
     elif not (np.abs(positions) < _FARTHEST).all():
-        problem = "points has a coordinate that is no number"
+        problem = "points has a coordinate that is not a finite number"
     if problem:
         raise AssetError(path, problem, place=place, fix="export the mesh again")
 
 
 def solid_key(prim: Usd.Prim, time: Usd.TimeCode) -> str | None:
-    """Return what tells a solid's surface from others': its kind and measures; None for prims that are no solid."""
+    """Return what tells a solid's surface from others': its kind and dimensions; None for prims that are no solid."""
     kind = str(prim.GetTypeName())
-    if kind not in _MEASURES:
+    if kind not in _DIMENSIONS:
         return None
-    return " ".join([kind, *(str(prim.GetAttribute(name).Get(time)) for name in _MEASURES[kind])])
+    return " ".join([kind, *(str(prim.GetAttribute(name).Get(time)) for name in _DIMENSIONS[kind])])
 
 
-def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitives.Surface | None:
+def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitive_meshes.Surface | None:
     kind = str(prim.GetTypeName())
-    if kind not in _MEASURES:
+    if kind not in _DIMENSIONS:
         return None
-    measures: list[float | str] = []
-    for name in _MEASURES[kind]:
+    dimensions: list[float | str] = []
+    for name in _DIMENSIONS[kind]:
         value = prim.GetAttribute(name).Get(time)
         place = str(prim.GetPath())
         if name == "axis" and value not in ("X", "Y", "Z"):
-            raise AssetError(path, f"axis {str(value)!r} is none of X, Y, Z", place=place, fix="give one")
+            raise AssetError(path, f"axis {str(value)!r} is not X, Y or Z", place=place, fix="use one of them")
         if name != "axis" and not (isinstance(value, (int, float)) and 0 <= value < _FARTHEST):
-            raise AssetError(path, f"{name} {value} is no length", place=place, fix="give a positive one")
-        measures.append(str(value) if name == "axis" else float(value))
-    return _MAKERS[kind](*measures)
+            raise AssetError(path, f"{name} {value} is not a length", place=place, fix="use a positive number")
+        dimensions.append(str(value) if name == "axis" else float(value))
+    return _FUNCTIONS[kind](*dimensions)

@@ -1,4 +1,4 @@
-"""The images of a stage's materials."""
+"""The textures of a stage's materials."""
 
 from __future__ import annotations
 
@@ -8,75 +8,75 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Ar
 
-from voxrt.voxelize.colour.images import decode_image
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8, srgb_from_linear
 from voxrt.voxelize.colour.texture import Texture
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.companions import ALLOW_OUTSIDE
+from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
+from voxrt.voxelize.formats.image_file import decode_image
 from voxrt.voxelize.formats.usd.layers import found_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.formats.companions import Companions
-    from voxrt.voxelize.formats.usd.looks import ImageSource, Look
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.shading import ImageSource, Shading
+    from voxrt.voxelize.warning_log import WarningLog
 
 _READABLE = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", ".gif")
 
 
 class Images:
-    """Decoded images by asset path; textures by look."""
+    """The decoded images and the textures of one stage."""
 
-    def __init__(self, path: Path, companions: Companions, notes: Notes) -> None:
+    def __init__(self, path: Path, external_files: ExternalFiles, log: WarningLog) -> None:
         self._path = path
-        self._companions = companions
-        self._notes = notes
+        self._external_files = external_files
+        self._log = log
         self._pixels: dict[str, NDArray[np.uint8] | None] = {}
-        self._textures: dict[Look, Texture | None] = {}
+        self._textures: dict[Shading, Texture | None] = {}
 
-    def texture(self, look: Look, faces: int) -> Texture | None:
-        """Return the texture of a look: the colour of its image, the alpha of its alpha image.
+    def texture(self, shading: Shading, faces: int) -> Texture | None:
+        """Return the texture of a shading, with the colour of its image and the alpha of its alpha image.
 
         Returns
         -------
-        None, noted for `faces` faces, where the image is missing or of a kind that is not read.
+        None, with a warning for `faces` faces, where the image is missing or its format is not supported.
 
         Raises
         ------
         AssetError
             The image is broken.
         """
-        if look not in self._textures:
-            self._textures[look] = self._made(look)
-        if self._textures[look] is None:
+        if shading not in self._textures:
+            self._textures[shading] = self._combined(shading)
+        if self._textures[shading] is None:
             message = (
-                "textures that are missing or of a kind that is not read: the fallback or default colour stands in"
+                "textures that are missing or of an unsupported format were replaced by the fallback or default colour"
             )
-            self._notes.add("missing-texture", message, faces)
-        return self._textures[look]
+            self._log.add("missing-texture", message, faces)
+        return self._textures[shading]
 
-    def _made(self, look: Look) -> Texture | None:
-        source = look.image or look.alpha
+    def _combined(self, shading: Shading) -> Texture | None:
+        source = shading.image or shading.alpha
         assert source is not None
-        colour = self._read(look.image) if look.image is not None else None
-        alpha = self._read(look.alpha) if look.alpha is not None else None
-        if look.image is not None and colour is None:
+        colour = self._read(shading.image) if shading.image is not None else None
+        alpha = self._read(shading.alpha) if shading.alpha is not None else None
+        if shading.image is not None and colour is None:
             return None
         if colour is None:
             if alpha is None:
                 return None
             colour = np.full_like(alpha, 255)
-        elif look.image is not None:
-            colour = _graded(colour, look.image)
+        elif shading.image is not None:
+            colour = _graded(colour, shading.image)
         colour = colour.copy()
         if alpha is None:
             colour[:, :, 3] = 255
-        elif alpha.shape == colour.shape and look.alpha is not None:
-            channel = "rgba".find(look.alpha.channel)
+        elif alpha.shape == colour.shape and shading.alpha is not None:
+            channel = "rgba".find(shading.alpha.channel)
             colour[:, :, 3] = alpha[:, :, max(channel, 0)]
         else:
-            self._notes.add("texture", "textures of opacity of another size than the colour's were ignored")
+            self._log.add("texture", "opacity textures whose size differs from the colour texture's were ignored")
             colour[:, :, 3] = 255
         return Texture(colour, source.wrap)
 
@@ -85,9 +85,9 @@ class Images:
         if file not in self._pixels:
             self._pixels[file] = None
             if file and Path(file.rstrip("]")).suffix.lower() in _READABLE:
-                found = found_at(file, self._companions)
-                if found is not None and not self._companions.allows(found):
-                    problem = f"texture {Path(file).name!r} lies outside the file's folder"
+                found = found_at(file, self._external_files)
+                if found is not None and not self._external_files.allows(found):
+                    problem = f"texture {Path(file).name!r} is outside the file's folder"
                     raise AssetError(self._path, problem, fix=ALLOW_OUTSIDE)
                 opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file))
                 if opened:
@@ -95,8 +95,8 @@ class Images:
         return self._pixels[file]
 
 
-def laid_out(coordinates: NDArray[np.float64], source: ImageSource) -> NDArray[np.float64]:
-    """Scale, turn and move texture coordinates (float64, shape (…, 2 or more)), and point v down, as images do."""
+def image_coordinates(coordinates: NDArray[np.float64], source: ImageSource) -> NDArray[np.float64]:
+    """Scale, rotate and move texture coordinates (float64, shape (…, 2 or more)), and flip v: image rows go down."""
     scaled = coordinates[..., :2] * source.scale
     angle = np.deg2rad(source.turn)
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -1,4 +1,4 @@
-"""Where a point instancer puts copies of which prototype."""
+"""Point instancers: the placement of their copies."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 
 def placed_copies(
-    prim: Usd.Prim, path: Path, time: Usd.TimeCode, notes: Notes
+    prim: Usd.Prim, path: Path, time: Usd.TimeCode, log: WarningLog
 ) -> tuple[list[Usd.Prim], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
     """Evaluate a point instancer.
 
     Returns
     -------
     prototypes
-        The roots of what is copied.
+        The root prims of the prototypes.
     indices
-        int64, shape (N,): which prototype each copy is of.
+        int64, shape (N,): the prototype of each copy.
     transforms
         float64, shape (N, 4, 4), column vectors: from the prototype root's own frame to the instancer's.
     numbers
-        int64, shape (N,): each copy's place in the instancer's arrays. Masked copies are left out and counted.
+        int64, shape (N,): each copy's index in the instancer's arrays. Masked copies are left out and counted.
 
     Raises
     ------
@@ -54,12 +54,14 @@ def placed_copies(
         time, time, UsdGeom.PointInstancer.IncludeProtoXform, UsdGeom.PointInstancer.IgnoreMask
     )
     if len(rows) != len(indices):
-        problem = f"protoIndices has {len(indices)} entries and the positions, orientations or scales have others"
+        problem = (
+            f"protoIndices has {len(indices)} entries and the positions, orientations or scales have other lengths"
+        )
         raise AssetError(path, problem, place=place, fix="export the instancer again")
     transforms = np.array(rows, dtype=np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
     numbers = np.arange(len(indices))
     mask = np.array(instancer.ComputeMaskAtTime(time), dtype=bool)
     if len(mask):
-        notes.add("invisible", "masked copies of point instancers were left out", int((~mask).sum()))
+        log.add("invisible", "masked copies of point instancers were left out", int((~mask).sum()))
         indices, transforms, numbers = indices[mask], transforms[mask], numbers[mask]
     return prototypes, indices, transforms, numbers

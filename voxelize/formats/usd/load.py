@@ -1,4 +1,4 @@
-"""One USD file to one scene."""
+"""Loading USD files."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.companions import Companions
+from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.scene_frame import scene_transform
 from voxrt.voxelize.formats.usd.diagnostics import caught
-from voxrt.voxelize.formats.usd.drawing import Drawing
 from voxrt.voxelize.formats.usd.layers import refuse_layers_outside, refuse_layers_used_outside
 from voxrt.voxelize.formats.usd.stage import (
     metres_per_unit,
@@ -18,9 +18,9 @@ from voxrt.voxelize.formats.usd.stage import (
     time_code,
     up_axis,
 )
-from voxrt.voxelize.frames import scene_transform
-from voxrt.voxelize.notes import Notes
+from voxrt.voxelize.formats.usd.traversal import StageTraversal
 from voxrt.voxelize.scene import Scene
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,8 +31,8 @@ def load_usd(
 ) -> Scene:
     """Read a USD stage.
 
-    Drawn are the active, visible prims of purpose ``default`` and ``render``, with instances and the copies of point
-    instancers, skinned meshes in their pose. The unit and the up axis are the root layer's, as USD has it: layers that
+    The scene shows the active, visible prims of purpose ``default`` and ``render``, with instances, the copies of point
+    instancers, and skinned meshes in their pose. The unit and the up axis are the root layer's, as in USD: layers that
     it refers to are not rescaled, and counted where they disagree.
 
     Parameters
@@ -49,29 +49,29 @@ def load_usd(
     Returns
     -------
     Scene
-        One object a prim and copy, named by its prim path; materials in order of first use.
+        One object per prim and copy, named by its prim path; materials in order of first use.
 
     Raises
     ------
     AssetError
-        The stage cannot be opened, contradicts itself, or draws nothing.
+        The stage cannot be opened, contradicts itself, or shows nothing.
     DoesNotFitError
         More than 255 materials.
     """
     path = Path(path)
-    notes = Notes()
-    companions = Companions.of(path, allow_outside=allow_outside)
-    with caught(path, notes):
-        refuse_layers_outside(path, companions)
+    log = WarningLog()
+    external_files = ExternalFiles.of(path, allow_outside=allow_outside)
+    with caught(path, log):
+        refuse_layers_outside(path, external_files)
         stage = open_stage(path, variants)
-        refuse_layers_used_outside(path, stage, companions)
-        note_layers_that_disagree(stage, notes)
+        refuse_layers_used_outside(path, stage, external_files)
+        note_layers_that_disagree(stage, log)
         if time is None:
-            note_animation(stage, notes)
-        to_scene = scene_transform(up_axis(stage, notes), metres_per_unit(stage, path))
-        drawing = Drawing(path, stage, companions, notes, time_code(stage, time))
-        objects = drawing.objects(to_scene)
+            note_animation(stage, log)
+        to_scene = scene_transform(up_axis(stage, log), metres_per_unit(stage, path))
+        traversal = StageTraversal(path, stage, external_files, log, time_code(stage, time))
+        objects = traversal.objects(to_scene)
     if not objects:
-        said = "; ".join(one.message for one in notes.warnings())
-        raise AssetError(path, "draws nothing" + (f" ({said})" if said else ""), fix="check it with usdview")
-    return Scene(path.stem, objects, drawing.materials.table.materials(), notes.warnings())
+        reasons = "; ".join(one.message for one in log.warnings())
+        raise AssetError(path, "shows nothing" + (f" ({reasons})" if reasons else ""), fix="check it with usdview")
+    return Scene(path.stem, objects, traversal.materials.table.materials(), log.warnings())

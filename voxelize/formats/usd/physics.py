@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
-from voxrt.voxelize.scene import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
+from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.usd.geometry import Surface
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 
-def colliders_of(prim: Usd.Prim, surface: Surface, time: Usd.TimeCode, notes: Notes) -> tuple[Collider, ...]:
+def colliders_of(prim: Usd.Prim, surface: Surface, time: Usd.TimeCode, log: WarningLog) -> tuple[Collider, ...]:
     """Return the prim's collision shape, in its own frame; empty where it has none or it is disabled."""
     authored = UsdPhysics.CollisionAPI(prim) if prim.HasAPI(UsdPhysics.CollisionAPI) else None
     if authored is None or authored.GetCollisionEnabledAttr().Get(time) is False:
@@ -24,7 +24,7 @@ def colliders_of(prim: Usd.Prim, surface: Surface, time: Usd.TimeCode, notes: No
     positions = surface.positions[np.unique(surface.triangles)]
     kind = prim.GetTypeName()
     if kind == "Plane":
-        notes.add("collider", "an endless collision plane was taken as the rectangle that is drawn")
+        log.add("collider", "infinite collision planes were replaced by their visible rectangle")
         return ()
     if kind == "Sphere":
         return (SphereCollider(np.zeros(3), float(positions[:, 0].max())),)
@@ -32,11 +32,11 @@ def colliders_of(prim: Usd.Prim, surface: Surface, time: Usd.TimeCode, notes: No
         return (BoxCollider(positions.min(axis=0), positions.max(axis=0)),)
     if not prim.IsA(UsdGeom.Mesh):
         return (HullCollider(positions),)
-    return _of_mesh(prim, surface, positions, time, notes)
+    return _of_mesh(prim, surface, positions, time, log)
 
 
 def _of_mesh(
-    prim: Usd.Prim, surface: Surface, positions: NDArray[np.float64], time: Usd.TimeCode, notes: Notes
+    prim: Usd.Prim, surface: Surface, positions: NDArray[np.float64], time: Usd.TimeCode, log: WarningLog
 ) -> tuple[Collider, ...]:
     approximation = UsdPhysics.Tokens.none
     if prim.HasAPI(UsdPhysics.MeshCollisionAPI):
@@ -47,19 +47,19 @@ def _of_mesh(
         centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
         return (SphereCollider(centre, float(np.linalg.norm(positions - centre, axis=1).max())),)
     if approximation == UsdPhysics.Tokens.convexDecomposition:
-        notes.add("collider", "convex decompositions were taken as one hull around each connected part of the mesh")
+        log.add("collider", "convex decompositions were replaced by one hull per connected part of the mesh")
         return tuple(HullCollider(part) for part in connected_parts(surface.positions, surface.triangles))
     if approximation == UsdPhysics.Tokens.convexHull:
         return (HullCollider(positions),)
     if approximation not in (UsdPhysics.Tokens.none, UsdPhysics.Tokens.meshSimplification):
-        notes.add("collider", f"collider approximation {approximation!r} is unknown; the mesh stands in")
+        log.add("collider", f"collider approximation {approximation!r} is unknown; the mesh itself was used")
     return (MeshCollider(surface.positions, surface.triangles),)
 
 
 def connected_parts(positions: NDArray[np.float64], triangles: NDArray[np.int32]) -> list[NDArray[np.float64]]:
-    """Return the vertices of each connected part of a surface, float64, shape (V, 3); vertices at one place are one.
+    """Return the vertices of each connected part of a surface: float64, shape (V, 3). Equal positions are one vertex.
 
-    Labels sink to the lowest of their neighbours and then to their label's own, until nothing changes: a few rounds.
+    Each label becomes the lowest among its neighbours, then that label's label, until nothing changes: a few rounds.
     """
     _, welded = np.unique(positions, axis=0, return_inverse=True)
     corners = welded.reshape(-1)[triangles]

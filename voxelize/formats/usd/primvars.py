@@ -1,4 +1,4 @@
-"""Values that vary over a prim's surface, brought to its triangles' corners."""
+"""Primvars, interpolated to the corners of a prim's triangles."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.usd.geometry import Surface
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 
 def constant(prim: Usd.Prim, name: str, time: Usd.TimeCode) -> NDArray[np.float64] | None:
-    """Return a primvar's one value, float64, shape (K,); None where there is none or it varies."""
+    """Return the value of a constant primvar, float64, shape (K,); None where there is none or it varies."""
     values = _flattened(prim, name, time)
     if values is None:
         return None
@@ -23,18 +23,18 @@ def constant(prim: Usd.Prim, name: str, time: Usd.TimeCode) -> NDArray[np.float6
 
 
 def exists(prim: Usd.Prim, name: str, time: Usd.TimeCode) -> bool:
-    """Whether a primvar has values here, its own or an ancestor's."""
+    """Tell whether a prim has a primvar, its own or an ancestor's."""
     return _flattened(prim, name, time) is not None
 
 
 def at_corners(
-    prim: Usd.Prim, name: str, surface: Surface, time: Usd.TimeCode, notes: Notes
+    prim: Usd.Prim, name: str, surface: Surface, time: Usd.TimeCode, log: WarningLog
 ) -> NDArray[np.float64] | None:
-    """Bring a primvar to the corners of a surface's triangles, by its interpolation.
+    """Return a primvar at the corners of a surface's triangles, by its interpolation.
 
     Returns
     -------
-    float64, shape (T, 3, K), finite; None, noted, where its number of values is not what its interpolation asks for.
+    float64, shape (T, 3, K), finite; None, with a warning, where the number of values does not match the interpolation.
     """
     values = _flattened(prim, name, time)
     if values is None:
@@ -48,7 +48,7 @@ def at_corners(
         UsdGeom.Tokens.faceVarying: (surface.corner_count, surface.corners),
     }.get(interpolation, (len(surface.positions), surface.triangles))
     if len(values) != wanted or (surface.corner_count == 0 and interpolation != UsdGeom.Tokens.uniform):
-        notes.add("primvar", f"primvars {name!r} whose number of values does not fit were ignored")
+        log.add("primvar", f"primvars {name!r} with a wrong number of values were ignored")
         return None
     found: NDArray[np.float64] = values[rows]
     return found
@@ -67,6 +67,6 @@ def _flattened(prim: Usd.Prim, name: str, time: Usd.TimeCode) -> NDArray[np.floa
         values = np.atleast_1d(np.array(value, dtype=np.float64))
     except (TypeError, ValueError):
         return None
-    if values.ndim == 1:  # one number a value, or one value of several
+    if values.ndim == 1:  # one number per value, or one value of several numbers
         values = values[:, None] if primvar.GetTypeName().isArray else values[None]
     return values if values.ndim == 2 and len(values) else None

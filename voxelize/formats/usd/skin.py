@@ -1,4 +1,4 @@
-"""Points of meshes that a skeleton or blend shapes deform."""
+"""Meshes deformed by a skeleton or blend shapes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pxr import Usd, UsdGeom, UsdSkel, Vt
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
 
@@ -24,10 +24,10 @@ class Deformed:
     frame: Usd.Prim
 
 
-def deformed_meshes(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> dict[str, Deformed]:
-    """Pose every mesh that is bound to a skeleton.
+def deformed_meshes(stage: Usd.Stage, time: Usd.TimeCode, log: WarningLog) -> dict[str, Deformed]:
+    """Return the posed points of every mesh that is bound to a skeleton.
 
-    Joints blend linearly (UsdSkel's ``classicLinear``); a mesh that asks for dual quaternions is counted in `notes`.
+    Joints blend linearly (UsdSkel's ``classicLinear``); meshes that request dual quaternions are counted in `log`.
 
     Returns
     -------
@@ -44,14 +44,14 @@ def deformed_meshes(stage: Usd.Stage, time: Usd.TimeCode, notes: Notes) -> dict[
             skeleton = cache.GetSkelQuery(binding.GetSkeleton())
             for skin in binding.GetSkinningTargets():
                 if skin.GetPrim().IsA(UsdGeom.Mesh):
-                    found = _pose(skeleton, skin, time, notes)
+                    found = _pose(skeleton, skin, time, log)
                     if found is not None:
                         posed[str(skin.GetPrim().GetPath())] = found
     return posed
 
 
 def _pose(
-    skeleton: UsdSkel.SkeletonQuery, skin: UsdSkel.SkinningQuery, time: Usd.TimeCode, notes: Notes
+    skeleton: UsdSkel.SkeletonQuery, skin: UsdSkel.SkinningQuery, time: Usd.TimeCode, log: WarningLog
 ) -> Deformed | None:
     prim = skin.GetPrim()
     value = UsdGeom.Mesh(prim).GetPointsAttr().Get(time)
@@ -65,16 +65,16 @@ def _pose(
         if joints and skin.ComputeSkinnedPoints(joints, points, time):
             moved, frame = True, skeleton.GetPrim()
             if skin.GetSkinningMethod() == UsdSkel.Tokens.dualQuaternion:
-                notes.add("skinning", "dual quaternion skinning was done by linear blending")
+                log.add("skinning", "dual quaternion skinning was replaced by linear blending")
         else:
-            notes.add("skinning", "meshes whose skeleton has no pose were taken at rest")
+            log.add("skinning", "meshes whose skeleton has no pose are shown at rest")
     return Deformed(np.array(points, dtype=np.float64).reshape(-1, 3), frame) if moved else None
 
 
 def _blend(
     skeleton: UsdSkel.SkeletonQuery, skin: UsdSkel.SkinningQuery, time: Usd.TimeCode, points: Vt.Vec3fArray
 ) -> bool:
-    """Add the blend shapes to `points` in place; False where no animation weighs them."""
+    """Add the blend shapes to `points` in place; return False where no animation gives weights."""
     animation = skeleton.GetAnimQuery()
     weights = animation.ComputeBlendShapeWeights(time) if animation else None
     if not weights:

@@ -1,4 +1,4 @@
-"""Opening a stage: variants, unit, up axis, and layers that disagree with the root's."""
+"""Opening a stage: variants, unit, up axis, and layers that disagree with the root layer."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from voxrt.voxelize.notes import Notes
+    from voxrt.voxelize.warning_log import WarningLog
 
 
 def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
-    """Open a stage with all payloads and select variants, in the order given, for this reading alone.
+    """Open a stage with all payloads, and select variants in the order given. The file stays unchanged.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
     Raises
     ------
     AssetError
-        A selection names a prim, a set or a variant that is not there.
+        A selection names a prim, a set or a variant that does not exist.
     """
     stage = Usd.Stage.Open(str(path))
     stage.SetEditTarget(stage.GetSessionLayer())
@@ -55,56 +55,56 @@ def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
 
 
 def time_code(stage: Usd.Stage, seconds: float | None) -> Usd.TimeCode:
-    """Return the time to read at: `seconds` after the stage's start, or the start."""
+    """Return the time to read at: `seconds` after the stage's start, or the start for None."""
     if not stage.HasAuthoredTimeCodeRange():
-        # No range: the earliest samples, and values without samples.
+        # Without a range: the earliest samples, and values without samples.
         return Usd.TimeCode(seconds * stage.GetTimeCodesPerSecond()) if seconds else Usd.TimeCode.EarliestTime()
     return Usd.TimeCode(stage.GetStartTimeCode() + (seconds or 0.0) * stage.GetTimeCodesPerSecond())
 
 
-def note_animation(stage: Usd.Stage, notes: Notes) -> None:
-    """Count the layers that hold motion, of which one moment is shown."""
+def note_animation(stage: Usd.Stage, log: WarningLog) -> None:
+    """Count the animated layers, of which one moment is shown."""
     moving = sum(len(layer.ListAllTimeSamples()) > 1 for layer in stage.GetUsedLayers())
     if moving:
-        notes.add("animation", "layers with animation were shown at the stage's start", moving)
+        log.add("animation", "animated layers are shown at the stage's start", moving)
 
 
-def up_axis(stage: Usd.Stage, notes: Notes) -> str:
-    """Return ``"x"``, ``"y"`` or ``"z"``; USD's fallback y, noted, where the root layer says something else."""
+def up_axis(stage: Usd.Stage, log: WarningLog) -> str:
+    """Return ``"x"``, ``"y"`` or ``"z"``; USD's default y, with a warning, for any other value."""
     up = str(UsdGeom.GetStageUpAxis(stage))
     if up.lower() not in ("x", "y", "z"):
-        notes.add("up-axis", f"upAxis {up!r} is none of X, Y, Z; Y was taken")
+        log.add("up-axis", f"upAxis {up!r} is not X, Y or Z; Y was used")
         return "y"
     return up.lower()
 
 
 def metres_per_unit(stage: Usd.Stage, path: Path) -> float:
-    """Return the root layer's unit.
+    """Return the root layer's unit in metres.
 
     Raises
     ------
     AssetError
-        It is no length.
+        It is not a positive number.
     """
     try:
         unit = float(UsdGeom.GetStageMetersPerUnit(stage))
     except Tf.ErrorException:  # some exporters store a float where USD wants a double
         unit = (numbers(stage.GetRootLayer().pseudoRoot.GetInfo("metersPerUnit"), 1) or (math.nan,))[0]
     if not (math.isfinite(unit) and unit > 0):
-        raise AssetError(path, f"metersPerUnit {unit} is no length", fix="give a positive number of metres")
+        raise AssetError(path, f"metersPerUnit {unit} is not a positive number", fix="set it to the metres per unit")
     return unit
 
 
-def note_layers_that_disagree(stage: Usd.Stage, notes: Notes) -> None:
-    """Count layers whose unit or up axis is not the root layer's: USD does not convert what they hold."""
+def note_layers_that_disagree(stage: Usd.Stage, log: WarningLog) -> None:
+    """Count layers whose unit or up axis differs from the root layer's: USD does not convert their content."""
     root = stage.GetRootLayer()
-    for key, says in (("metersPerUnit", "unit"), ("upAxis", "up axis")):
+    for key, kind in (("metersPerUnit", "unit"), ("upAxis", "up axis")):
         own = root.pseudoRoot.GetInfo(key)
         others = [
             layer
             for layer in stage.GetUsedLayers()
             if layer != root and layer.pseudoRoot.HasInfo(key) and layer.pseudoRoot.GetInfo(key) != own
         ]
-        notes.add(
-            "layers-disagree", f"layers of another {says} were taken in the root layer's, as USD does", len(others)
+        log.add(
+            "layers-disagree", f"layers with another {kind} were read in the root layer's, as USD does", len(others)
         )

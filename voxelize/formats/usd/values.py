@@ -1,4 +1,4 @@
-"""Attribute values as numbers: a layer may give an attribute any type, whatever the schema says."""
+"""Attribute values as numbers: a layer may give an attribute any type, whatever the schema requires."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def integers(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArra
     Raises
     ------
     AssetError
-        Its values are no integers.
+        Its values are not integers.
     """
     value = attribute.Get(time)
     try:
@@ -39,7 +39,7 @@ def points(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArray[
     Raises
     ------
     AssetError
-        Its values are no points.
+        Its values are not points.
     """
     value = attribute.Get(time)
     try:
@@ -52,7 +52,7 @@ def points(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArray[
 
 
 def numbers(value: object, count: int) -> tuple[float, ...] | None:
-    """Return `count` numbers, of a value with as many or more; None where it is something else."""
+    """Return the first `count` numbers of a value; None where it has fewer or is something else."""
     if isinstance(value, (int, float)) and count == 1:
         return (float(value),)
     try:
@@ -63,5 +63,5 @@ def numbers(value: object, count: int) -> tuple[float, ...] | None:
 
 
 def _wrong(attribute: Usd.Attribute, path: Path, wanted: str) -> AssetError:
-    problem = f"{attribute.GetName()} holds values that are no {wanted}"
+    problem = f"{attribute.GetName()} holds values that are not {wanted}"
     return AssetError(path, problem, place=str(attribute.GetPrim().GetPath()), fix="export it again")

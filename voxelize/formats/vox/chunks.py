@@ -1,7 +1,7 @@
 """MagicaVoxel ``.vox`` files, chunk by chunk.
 
 Layout: https://github.com/ephtracy/voxel-model (``MagicaVoxel-file-format-vox.txt`` and its extension), versions 150
-and 200. Chunks that say nothing about which voxel has which colour (cameras, notes, render settings) are passed over.
+and 200. Chunks that say nothing about which voxel has which colour (cameras, log, render settings) are passed over.
 """
 
 from __future__ import annotations

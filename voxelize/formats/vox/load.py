@@ -14,7 +14,7 @@ import numpy as np
 
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.formats.vox.chunks import Group, Shape, Transform, read_chunks
-from voxrt.voxelize.scene import EMPTY, Material
+from voxrt.voxelize.materials import EMPTY, Material
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

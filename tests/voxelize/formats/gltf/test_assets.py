@@ -51,7 +51,12 @@ def test_sizes_are_those_that_another_reader_measured(name, triangles, size, uni
     scene = load(asset(name))
     corners = world(scene)
     assert len(corners) == triangles
-    painted = {paint.name for thing in scene.objects if thing.mesh.coat for paint in thing.mesh.coat.paints}
+    painted = {
+        appearance.name
+        for thing in scene.objects
+        if thing.mesh.appearance
+        for appearance in thing.mesh.appearance.entries
+    }
     assert sum(material.name not in painted for material in scene.materials[1:]) == uniform
     np.testing.assert_allclose(np.ptp(corners.reshape(-1, 3), axis=0), size, rtol=6e-3, atol=1e-9)
 

@@ -203,7 +203,7 @@ def test_more_than_255_materials_do_not_fit(count, fits, tmp_path):
     if fits:
         assert len(load(path).materials) == 256
     else:
-        with pytest.raises(DoesNotFitError, match=r"a\.glb: more than 255 materials are in use; merge some"):
+        with pytest.raises(DoesNotFitError, match=r"a\.glb: uses more than 255 materials; merge some"):
             load(path)
 
 
@@ -220,11 +220,11 @@ def test_voxrt_material_of_a_node_names_the_material_of_its_faces(tmp_path):
 
 def test_voxrt_material_of_materials_merges_them(tmp_path):
     writer = two_coloured()
-    writer.json["materials"][0]["extras"] = writer.json["materials"][2]["extras"] = {"voxrt_material": "paint"}
+    writer.json["materials"][0]["extras"] = writer.json["materials"][2]["extras"] = {"voxrt_material": "appearance"}
     writer.show(mesh=0)
     scene, names = materials_of(writer, tmp_path / "a.glb")
-    assert names == [["paint", "default", "paint"]]
-    assert scene.materials[1] == Material("paint", (0, 0, 255))
+    assert names == [["appearance", "default", "appearance"]]
+    assert scene.materials[1] == Material("appearance", (0, 0, 255))
     assert "merged-materials" in kinds(scene)
 
 

@@ -9,7 +9,7 @@ from oracles.gltf_writer import GltfWriter
 from PIL import Image
 
 from voxrt.voxelize import AssetError, DoesNotFitError, load
-from voxrt.voxelize.colour.paint import sample
+from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 
 TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
@@ -41,12 +41,12 @@ def textured(uv=(0.25, 0.25), image=None, *, material=None, texture=None, sample
 
 
 def seen(writer, path, **options):
-    """The sRGB colour of the only triangle, by its material and by its paint."""
+    """The sRGB colour of the only triangle, by its material and by its appearance."""
     scene = load(writer.save(path), **options)
     (thing,) = scene.objects
     colour = scene.materials[int(thing.mesh.materials[0])].colour
-    if thing.mesh.coat is not None:
-        painted = sample(thing.mesh.coat, np.array([0]), MIDDLE)[0, :3]
+    if thing.mesh.appearance is not None:
+        painted = sample(thing.mesh.appearance, np.array([0]), MIDDLE)[0, :3]
         assert tuple(srgb_from_linear(painted).tolist()) == colour
     return colour
 
@@ -117,7 +117,7 @@ def test_white_vertex_colours_leave_the_material_exact_and_named(tmp_path):
     writer.show(mesh=writer.mesh(TRIANGLE, material=0, COLOR_0=colours))
     scene = load(writer.save(tmp_path / "a.glb"))
     assert [(material.name, material.colour) for material in scene.materials[1:]] == [("wood", (188, 127, 0))]
-    assert scene.objects[0].mesh.coat is None
+    assert scene.objects[0].mesh.appearance is None
     assert scene.warnings == ()
 
 
@@ -240,7 +240,7 @@ def test_variants(tmp_path):
         assert [material.name for material in load(path, variants=asked).materials[1:]] == [name]
     with pytest.raises(AssetError, match=r"no variant 'Sea' in the file; it has 'Beach', 'Snow', 'Park', 'Moon'"):
         load(path, variants=("Sea",))
-    with pytest.raises(AssetError, match=r"2 variants asked for at once; ask for one"):
+    with pytest.raises(AssetError, match=r"2 variants were requested, and one can be shown; request one"):
         load(path, variants=("Snow", "Park"))
 
 
@@ -270,7 +270,7 @@ def test_paints_share_materials_where_there_are_too_many(tmp_path):
     assert len(scene.materials) - 1 <= 205 + 25
     assert all(0 < int(thing.mesh.materials[0]) < len(scene.materials) for thing in scene.objects)
     full = painted_triangles(["silk"], [f"m{at}" for at in range(255)]).save(tmp_path / "b.glb")
-    with pytest.raises(DoesNotFitError, match="leave none of the 255 to the painted surfaces"):
+    with pytest.raises(DoesNotFitError, match="leave none for textures and vertex colours"):
         load(full)
 
 
@@ -280,7 +280,7 @@ def test_paint_of_one_colour_is_a_material(tmp_path):
     colours = writer.accessor(np.full((3, 3), 0.5))
     writer.show(mesh=writer.mesh(TRIANGLE, material=0, COLOR_0=colours))
     scene = load(writer.save(tmp_path / "a.glb"))
-    assert scene.objects[0].mesh.coat is None
+    assert scene.objects[0].mesh.appearance is None
     (dye,) = scene.materials[1:]
     assert (dye.name, dye.colour) == ("dye", tuple(srgb_from_linear([0.5, 0.25, 0.125]).tolist()))
 
@@ -305,7 +305,7 @@ def test_attributes_that_do_not_fit_their_vertices_are_refused(tmp_path):
     with pytest.raises(AssetError, match=r"attributes\.COLOR_0: 2 elements, fewer than there are vertices"):
         load(writer.save(tmp_path / "a.glb"))
     transform = {"KHR_texture_transform": {"scale": [1e308, 1e308], "rotation": 1.0}}
-    with pytest.raises(AssetError, match=r"baseColorTexture: the texture coordinates leave the range of numbers"):
+    with pytest.raises(AssetError, match=r"baseColorTexture: the texture coordinates overflow"):
         load(textured((1e3, 1e3), texture={"extensions": transform}).save(tmp_path / "a.glb"))
 
 

@@ -76,7 +76,7 @@ def test_unreadable_vertices_that_no_face_has_are_counted():
     ("name", "message"),
     [
         ("assimp/invalid/empty.obj", "has no faces"),
-        ("assimp/invalid/malformed.obj", "line 23: vertex 12 of a face is none of the file's 8"),
+        ("assimp/invalid/malformed.obj", "line 23: vertex 12 of a face does not exist: the file has 8"),
         ("trimesh/face_in_group_name.obj", "has no faces"),
     ],
 )

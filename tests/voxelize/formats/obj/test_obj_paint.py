@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from voxrt.voxelize import AssetError
-from voxrt.voxelize.colour.paint import sample
+from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8, srgb_from_linear
 from voxrt.voxelize.formats.obj import load_obj
 
@@ -33,7 +33,7 @@ def obj(tmp_path):
 
 def colours_at(mesh, weights=(1 / 3, 1 / 3, 1 / 3)):
     rows = np.arange(len(mesh.triangles))
-    found = sample(mesh.coat, rows, np.tile(weights, (len(rows), 1)))
+    found = sample(mesh.appearance, rows, np.tile(weights, (len(rows), 1)))
     return [tuple(colour) for colour in srgb_from_linear(found[:, :3]).tolist()]
 
 
@@ -45,9 +45,9 @@ def test_v_points_up_in_the_image(obj):
         pixels=[[RED]] * 16 + [[BLUE]] * 16,
     )
     (mesh,) = [one.mesh for one in scene.objects]
-    coat = mesh.coat
-    bottom = sample(coat, np.array([0]), np.array([[0.9, 0.05, 0.05]]))[0]
-    top = sample(coat, np.array([1]), np.array([[0.05, 0.05, 0.9]]))[0]
+    surface_appearance = mesh.appearance
+    bottom = sample(surface_appearance, np.array([0]), np.array([[0.9, 0.05, 0.05]]))[0]
+    top = sample(surface_appearance, np.array([1]), np.array([[0.05, 0.05, 0.9]]))[0]
     assert srgb_from_linear(bottom[:3]).tolist() == list(BLUE)
     assert srgb_from_linear(top[:3]).tolist() == list(RED)
 
@@ -103,14 +103,14 @@ def test_faces_without_colour_keep_their_material(obj):
     }
     (one,) = scene.objects
     assert [scene.materials[number].colour for number in one.mesh.materials] == [BLUE, GREEN]
-    assert one.mesh.coat is None
+    assert one.mesh.appearance is None
 
 
 def test_negative_texture_numbers(obj):
     relative = QUADS.replace("f 1/1 2/2 3/3 4/4", "f 1/-6 2/-5 3/-4 4/-3")
     mtl = "newmtl cloth\nmap_Kd map.png\n"
     one, other = obj(relative, mtl).objects[0].mesh, obj(QUADS, mtl).objects[0].mesh
-    assert np.array_equal(one.coat.uv, other.coat.uv)
+    assert np.array_equal(one.appearance.uv, other.appearance.uv)
 
 
 def test_faces_without_texture_coordinates_are_counted(obj):
@@ -120,7 +120,7 @@ def test_faces_without_texture_coordinates_are_counted(obj):
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [(("2/2/1 5/5/1", "2/2/1 5/9/1"), "line 16: texture coordinate 9 of a face is none of the file's 6")],
+    [(("2/2/1 5/5/1", "2/2/1 5/9/1"), "line 16: texture coordinate 9 of a face does not exist: the file has 6")],
 )
 def test_refused(obj, change, message):
     with pytest.raises(AssetError) as caught:
@@ -173,5 +173,5 @@ def test_opacity_without_colour_of_other_sizes(obj, tmp_path):
     Image.fromarray(np.array([[0, 255, 255, 255]], np.uint8)).save(tmp_path / "wide.png")
     scene = obj(QUADS, "newmtl cloth\nmap_Kd map.png\nmap_d wide.png\n", pixels=[[RED], [BLUE]])
     (mesh,) = [one.mesh for one in scene.objects]
-    assert mesh.coat.paints[0].texture.pixels[:, :, 3].tolist() == [[0, 255, 255, 255]] * 2
-    assert mesh.coat.paints[0].texture.pixels[:, 3, :3].tolist() == [list(RED), list(BLUE)]
+    assert mesh.appearance.entries[0].texture.pixels[:, :, 3].tolist() == [[0, 255, 255, 255]] * 2
+    assert mesh.appearance.entries[0].texture.pixels[:, 3, :3].tolist() == [list(RED), list(BLUE)]

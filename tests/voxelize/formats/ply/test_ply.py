@@ -12,7 +12,7 @@ from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.assets import load
-from voxrt.voxelize.colour.paint import sample
+from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.formats.ply import load_ply
 
 VERTICES = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (1, 1, 3)]
@@ -72,7 +72,7 @@ def test_colours_of_faces_come_before_those_of_vertices(ply):
     )
     vertices = b"0 0 0 10 20 255\n1 0 0 10 20 255\n0 1 0 10 20 255\n"
     scene = ply(text + vertices + b"3 0 1 2 1 0 0 0\n3 2 1 0 0 1 0 0\n")
-    colours = sample(scene.objects[0].mesh.coat, np.array([0, 1]), np.full((2, 3), 1 / 3))
+    colours = sample(scene.objects[0].mesh.appearance, np.array([0, 1]), np.full((2, 3), 1 / 3))
     assert colours.tolist() == [[1, 0, 0, 1], [0, 1, 0, 1]]
 
 

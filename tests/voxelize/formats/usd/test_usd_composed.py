@@ -86,7 +86,7 @@ def test_instancers_that_contradict_themselves(usd, capfd, change, message):
 
 
 def test_instancers_of_instancers_are_bounded(usd, monkeypatch):
-    monkeypatch.setattr("voxrt.voxelize.formats.usd.drawing.MOST_OBJECTS", 10_000)
+    monkeypatch.setattr("voxrt.voxelize.formats.usd.traversal.MOST_OBJECTS", 10_000)
     body = 'def Cube "p0" {}\n'
     for level in range(1, 8):
         points = ", ".join(f"({i * 10**level}, 0, 0)" for i in range(10))

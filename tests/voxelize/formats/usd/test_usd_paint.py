@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from voxrt.voxelize import AssetError
-from voxrt.voxelize.colour.paint import sample
+from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear
 from voxrt.voxelize.formats.usd import load_usd
 
@@ -38,7 +38,7 @@ def mesh(extra):
 
 def colours_at(one, weights):
     rows = np.arange(len(one.mesh.triangles))
-    found = sample(one.mesh.coat, rows, np.tile(weights, (len(rows), 1)))
+    found = sample(one.mesh.appearance, rows, np.tile(weights, (len(rows), 1)))
     return srgb_from_linear(found[:, :3])
 
 
@@ -88,7 +88,7 @@ def test_one_colour_written_many_times_is_a_material(usd):
     values = ", ".join(["(1, 0, 0)"] * 6)
     scene = usd(mesh(f'color3f[] primvars:displayColor = [{values}] (\ninterpolation = "vertex"\n)'))
     assert [(one.name, one.colour) for one in scene.materials[1:]] == [("#ff0000", RED)]
-    assert scene.objects[0].mesh.coat is None
+    assert scene.objects[0].mesh.appearance is None
 
 
 def test_colours_that_do_not_fit_are_counted(usd):
@@ -99,7 +99,7 @@ def test_colours_that_do_not_fit_are_counted(usd):
 def material(inputs, nodes=""):
     return f"""def Material "look" {{
         token outputs:surface.connect = </look/s.outputs:surface>
-        color3f inputs:paint = (0, 0, 1)
+        color3f inputs:appearance = (0, 0, 1)
         def Shader "s" {{
             uniform token info:id = "UsdPreviewSurface"
             {inputs}
@@ -138,7 +138,7 @@ def middles(scene):
 
 
 def test_a_value_of_the_materials_interface(usd):
-    scene = usd(material("color3f inputs:diffuseColor.connect = </look.inputs:paint>") + mesh(ST))
+    scene = usd(material("color3f inputs:diffuseColor.connect = </look.inputs:appearance>") + mesh(ST))
     assert [(one.name, one.colour) for one in scene.materials[1:]] == [("look", BLUE)]
 
 

@@ -1,0 +1,1 @@
+"""The SystemVerilog core: its sources, its register map and its named configurations."""

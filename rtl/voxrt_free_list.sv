@@ -1,0 +1,52 @@
+// The rows of a memory that are free: rows are allocated one by one and freed in any order. After a reset all are free.
+//
+// Nobody allocates more rows than there are: the list of freed rows is as long as the memory, and is not read before
+// each row has been allocated once.
+module voxrt_free_list #(
+  parameter int unsigned RowBits = 5
+) (
+  input  logic               clk_i,
+  input  logic               rst_ni,
+  input  logic               allocate_i,
+  output logic [RowBits-1:0] row_o,       // The row that is allocated next.
+  input  logic               free_i,
+  input  logic [RowBits-1:0] row_i
+);
+  logic [RowBits-1:0] freed_q[2 ** RowBits];
+  logic [RowBits-1:0] allocate_q, free_q;
+  logic               all_allocated_once_q;
+
+  assign row_o = all_allocated_once_q ? freed_q[allocate_q] : allocate_q;
+
+  always_ff @(posedge clk_i) begin
+    if (allocate_i) allocate_q <= allocate_q + 1'b1;
+    if (allocate_i && allocate_q == '1) all_allocated_once_q <= 1'b1;
+    if (free_i) begin
+      free_q          <= free_q + 1'b1;
+      freed_q[free_q] <= row_i;
+    end
+    if (!rst_ni) begin
+      allocate_q           <= '0;
+      free_q               <= '0;
+      all_allocated_once_q <= 1'b0;
+    end
+  end
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  logic [2**RowBits-1:0] allocated_q;
+
+  always_ff @(posedge clk_i) begin
+    if (allocate_i) allocated_q[row_o] <= 1'b1;
+    if (free_i) allocated_q[row_i] <= 1'b0;
+    if (!rst_ni) allocated_q <= '0;
+    if (rst_ni && reset_seen_q) begin
+      assert (!allocate_i || !allocated_q[row_o]) else $error("a row is allocated twice");
+      assert (!free_i || allocated_q[row_i]) else $error("a row is freed that is free");
+    end
+  end
+`endif
+endmodule

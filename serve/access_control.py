@@ -1,0 +1,97 @@
+"""Who may connect: tokens and origins."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+from dataclasses import dataclass
+from urllib.parse import parse_qs, urlsplit
+
+_LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """The answer to a connection that is refused: HTTP status and a line of text."""
+
+    status: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class AccessControl:
+    """Checks requests for a WebSocket.
+
+    Attributes
+    ----------
+    token
+        The token that every client must send; None accepts all clients, for loopback.
+    origins
+        Origins besides the server's own whose pages may connect.
+    """
+
+    token: str | None
+    origins: tuple[str, ...] = ()
+
+    def check(
+        self, target: str, authorization: str | None, origin: str | None, address: tuple[str, int]
+    ) -> Refusal | None:
+        """Return the refusal of a request; None where it is accepted.
+
+        Parameters
+        ----------
+        target
+            Path and query.
+        authorization, origin
+            The headers with these names. Browsers always send an origin; other clients need not.
+        address
+            The address and port of the server to which the client connected.
+        """
+        if origin is not None and not self._is_allowed(origin, address):
+            return Refusal(403, f"pages of {origin[:100]} may not connect; start the server with --origin for them\n")
+        if self.token is not None and not self._has_token(target, authorization):
+            return Refusal(
+                401, "the token is missing or wrong: open the address that the server printed at its start\n"
+            )
+        return None
+
+    def _has_token(self, target: str, authorization: str | None) -> bool:
+        token = parse_qs(urlsplit(target).query).get("token", [""])[0]
+        if authorization is not None and authorization.startswith("Bearer "):
+            token = authorization[len("Bearer ") :]
+        return hmac.compare_digest(token.encode(), (self.token or "").encode())
+
+    def _is_allowed(self, origin: str, address: tuple[str, int]) -> bool:
+        # The Host header proves nothing: a page whose own name resolves to this address (DNS rebinding) sends its name
+        # there too. So the origin must be the address itself, or a loopback name on a loopback connection.
+        if origin in self.origins:
+            return True
+        try:
+            parts = urlsplit(origin)
+            host, port = parts.hostname, parts.port or 80
+        except ValueError:
+            return False
+        if parts.scheme != "http" or host is None or port != address[1]:
+            return False
+        if is_loopback(address[0]):
+            return host in _LOOPBACK_NAMES
+        try:
+            return ipaddress.ip_address(host) == _without_mapping(address[0])
+        except ValueError:
+            return False
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether `host`, a name or an address, can be reached from this machine only."""
+    if host == "localhost":
+        return True
+    try:
+        return _without_mapping(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _without_mapping(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:
+    address = ipaddress.ip_address(host.split("%", maxsplit=1)[0])
+    mapped = address.ipv4_mapped if isinstance(address, ipaddress.IPv6Address) else None
+    return mapped or address

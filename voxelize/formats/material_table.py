@@ -1,0 +1,77 @@
+"""Material ids by order of first use."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize.errors import DoesNotFitError
+from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from voxrt.voxelize.warning_log import WarningLog
+
+_DEFAULT_KEY = object()
+
+
+class MaterialTable:
+    """The materials of a scene under construction; entry 0 is empty space."""
+
+    def __init__(self) -> None:
+        self._entries = [EMPTY]
+        self._ids: dict[Hashable, int] = {}
+        self._names = {EMPTY.name}
+
+    def id_of(
+        self,
+        key: Hashable,
+        name: str,
+        colour: tuple[int, int, int],
+        *,
+        mirror: bool = False,
+        authored: bool = True,
+    ) -> int:
+        """Return the id of a material. Its first use adds it to the table.
+
+        Parameters
+        ----------
+        key
+            What identifies it in the file: a name, a prim path.
+        name
+            The author's name; a number is appended where another material already has it.
+        colour
+            sRGB, 0 … 255 per channel.
+        mirror
+            Whether it reflects.
+        authored
+            False for a default that replaces a missing material.
+
+        Raises
+        ------
+        DoesNotFitError
+            More than 255 materials.
+        """
+        if key in self._ids:
+            return self._ids[key]
+        if len(self._entries) > MATERIAL_LIMIT:
+            raise DoesNotFitError(f"uses more than {MATERIAL_LIMIT} materials; merge some in the asset")
+        unique, number = name, 2
+        while unique in self._names:
+            unique, number = f"{name} ({number})", number + 1
+        self._names.add(unique)
+        self._ids[key] = len(self._entries)
+        self._entries.append(Material(unique, colour, mirror, authored))
+        return self._ids[key]
+
+    def default(self, log: WarningLog, faces: int = 1) -> int:
+        """Return the id of the default material, and count `faces` faces that have none in `log`."""
+        log.add("default-material", "faces without a material got the default one", faces)
+        return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def materials(self) -> tuple[Material, ...]:
+        """Return the table so far, indexed by id."""
+        return tuple(self._entries)

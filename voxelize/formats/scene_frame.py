@@ -1,0 +1,45 @@
+"""The transform from a file's axes and unit to the scene frame (right-handed, metres, y up)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize import arguments
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# Rotations that turn the named axis upwards; right-handed, so that nothing is mirrored.
+_TURNS = {
+    "x": ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+    "y": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "z": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
+}
+
+
+def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:
+    """Return the matrix from a file's frame to the scene frame.
+
+    Parameters
+    ----------
+    up
+        The file's up axis, ``"x"``, ``"y"`` or ``"z"``; None for y.
+    unit
+        Metres per unit of the file; None for 1.
+
+    Returns
+    -------
+    float64, shape (4, 4), column vectors: a rotation by quarter turns times a uniform scale.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Another axis, or a unit that is not a positive number.
+    """
+    axis = "y" if up is None else arguments.choice("up", up, tuple(_TURNS))
+    scale = 1.0 if unit is None else arguments.real("unit", unit, above=0)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(_TURNS[axis], dtype=np.float64) * scale
+    return matrix

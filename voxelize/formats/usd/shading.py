@@ -1,0 +1,247 @@
+"""The colour properties of a USD material or displayColor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from pxr import Usd, UsdShade
+
+from voxrt.voxelize.colour.srgb import srgb_from_linear
+from voxrt.voxelize.formats.usd.values import numbers
+
+if TYPE_CHECKING:
+    from voxrt.voxelize.colour.texture import Wrap
+    from voxrt.voxelize.warning_log import WarningLog
+
+Linear: TypeAlias = tuple[float, float, float]
+
+BLEND_CUTOFF = 0.5
+"""A surface is cut away where its opacity is below this, unless its material has an opacity threshold."""
+
+_FALLBACK_DIFFUSE: Linear = (0.18, 0.18, 0.18)  # UsdPreviewSurface's own
+
+# Names of the base colour, of UsdPreviewSurface and other shaders.
+_COLOUR_INPUTS = (
+    *("diffuseColor", "base_color", "baseColor", "diffuse_color_constant", "diffuse_reflection_color"),
+    *("diffuse_color", "color"),
+)
+_CONTEXTS = ("", "mtlx", "mdl", "ri", "glslfx")
+_WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp"}
+
+
+@dataclass(frozen=True, slots=True)
+class ImageSource:
+    """A texture: its image and its placement on the surface.
+
+    Attributes
+    ----------
+    file
+        The resolved asset path; empty for none.
+    raw
+        Whether its colours are linear instead of sRGB.
+    wrap
+        How coordinates outside 0 … 1 are treated.
+    primvar
+        The name of the primvar with the texture coordinates.
+    turn, scale, offset
+        Applied to the coordinates: scale, then rotation (degrees counter-clockwise), then offset.
+    factor, bias
+        Applied to its linear colour and alpha.
+    channel
+        The channel, one of ``rgba``, that gives an opacity.
+    point
+        The coordinates of every point, where no coordinates are connected; None where some are connected.
+    """
+
+    file: str
+    raw: bool = False
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
+    primvar: str = "st"
+    turn: float = 0.0
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+    factor: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    bias: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    channel: str = "a"
+    point: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Shading:
+    """The colour and opacity of faces.
+
+    Attributes
+    ----------
+    name
+        The author's name; None for faces without any colour.
+    colour
+        Linear; used where a texture or primvar is missing. None where the author gave none.
+    opacity
+        0 … 1.
+    cutoff
+        Faces are cut away where their opacity is below it.
+    image
+        A texture for the colour.
+    alpha
+        A texture for the opacity.
+    primvar
+        The name of the primvar that gives the colour.
+    """
+
+    name: str | None
+    colour: Linear | None = None
+    opacity: float = 1.0
+    cutoff: float = BLEND_CUTOFF
+    image: ImageSource | None = None
+    alpha: ImageSource | None = None
+    primvar: str | None = None
+
+
+NO_SHADING = Shading(None)
+
+
+def read_shading(material: UsdShade.Material, time: Usd.TimeCode, log: WarningLog) -> Shading:
+    """Read a material's surface."""
+    name = material.GetPrim().GetName()
+    shader = next((found for one in _CONTEXTS if (found := material.ComputeSurfaceSource(one)[0])), None)
+    if shader is None:
+        log.add("material-colour", "materials without a supported surface shader got the default colour")
+        return Shading(name)
+    threshold = _input(shader, ("opacityThreshold",), time, log)
+    opacity = _input(shader, ("opacity",), time, log)
+    colour = _input(shader, _COLOUR_INPUTS, time, log)
+    plain = colour.value if colour else None
+    is_preview = shader.GetIdAttr().Get() == "UsdPreviewSurface"
+    if plain is None and colour is not None and colour.image is None and colour.primvar is None and is_preview:
+        plain = _FALLBACK_DIFFUSE
+    if colour is None:
+        plain = _FALLBACK_DIFFUSE if is_preview else None
+        if not is_preview:
+            log.add("material-colour", "materials whose shader has no colour got the default colour")
+    return Shading(
+        name,
+        plain,
+        opacity.value[0] if opacity and opacity.value else 1.0,
+        (threshold.value[0] if threshold and threshold.value else 0.0) or BLEND_CUTOFF,
+        colour.image if colour else None,
+        opacity.image if opacity else None,
+        colour.primvar if colour else None,
+    )
+
+
+def display_srgb(colour: Linear) -> tuple[int, int, int]:
+    """Return a linear colour as sRGB, 0 … 255; NaN becomes black."""
+    finite = np.nan_to_num(np.array(colour), nan=0.0, posinf=1.0, neginf=0.0)
+    red, green, blue = (int(value) for value in srgb_from_linear(finite))
+    return red, green, blue
+
+
+@dataclass(frozen=True, slots=True)
+class _Input:
+    """The source of a shader's input: a value, a texture, or a primvar."""
+
+    value: Linear | None = None
+    image: ImageSource | None = None
+    primvar: str | None = None
+
+
+def _input(shader: UsdShade.Shader, names: tuple[str, ...], time: Usd.TimeCode, log: WarningLog) -> _Input | None:
+    for name in names:
+        source = shader.GetInput(name)
+        if not source:
+            continue
+        for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
+            if UsdShade.Output.IsOutput(attribute):
+                return _network(UsdShade.Shader(attribute.GetPrim()), attribute.GetBaseName(), time, log)
+            value = _colour(attribute.Get(time))
+            if value is not None:
+                return _Input(value)
+    return None
+
+
+def _network(node: UsdShade.Shader, output: str, time: Usd.TimeCode, log: WarningLog) -> _Input:
+    kind = str(node.GetIdAttr().Get()) if node else ""
+    if kind == "UsdUVTexture":
+        fallback = _colour(_value(node, "fallback", time))
+        return _Input(fallback, replace(_image_source(node, time, log), channel=output))
+    if kind.startswith("UsdPrimvarReader_float3"):
+        return _Input(_colour(_value(node, "fallback", time)), primvar=str(_value(node, "varname", time) or ""))
+    log.add("shader", f"shader nodes {kind or 'without an id'} are not supported; the default colour was used")
+    return _Input()
+
+
+def _image_source(node: UsdShade.Shader, time: Usd.TimeCode, log: WarningLog) -> ImageSource:
+    file = _value(node, "file", time)
+    wrap_s, wrap_t = (str(_value(node, name, time) or "repeat") for name in ("wrapS", "wrapT"))
+    if "black" in (wrap_s, wrap_t):
+        log.add("texture", "textures that are black beyond their edges were continued with their edges' colours")
+    primvar, turn, scale, offset = _coordinates(node, time, log)
+    connected = _upstream(node, "st") is not None
+    return ImageSource(
+        file=str(getattr(file, "resolvedPath", "") or ""),
+        raw=str(_value(node, "sourceColorSpace", time)) == "raw",
+        wrap=(_WRAPS.get(wrap_s, "repeat"), _WRAPS.get(wrap_t, "repeat")),
+        primvar=primvar,
+        turn=turn,
+        scale=scale,
+        offset=offset,
+        factor=_four(_value(node, "scale", time), 1.0),
+        bias=_four(_value(node, "bias", time), 0.0),
+        point=None if connected else _pair(_value(node, "st", time), (0.0, 0.0)),
+    )
+
+
+def _coordinates(
+    node: UsdShade.Shader, time: Usd.TimeCode, log: WarningLog
+) -> tuple[str, float, tuple[float, float], tuple[float, float]]:
+    """Return the primvar's name, and how its values are turned, scaled and moved."""
+    turn, scale, offset = 0.0, (1.0, 1.0), (0.0, 0.0)
+    source = _upstream(node, "st")
+    if source and source.GetIdAttr().Get() == "UsdTransform2d":
+        rotation, factors, shift = (_value(source, name, time) for name in ("rotation", "scale", "translation"))
+        turn = (numbers(rotation, 1) or (0.0,))[0]
+        scale, offset = _pair(factors, scale), _pair(shift, offset)
+        source = _upstream(source, "in")
+    if source and str(source.GetIdAttr().Get()).startswith("UsdPrimvarReader_float2"):
+        return str(_value(source, "varname", time) or "st"), turn, scale, offset
+    if source:
+        log.add("shader", f"shader nodes {source.GetIdAttr().Get()} are not honoured; coordinates 'st' stand in")
+    return "st", turn, scale, offset
+
+
+def _upstream(node: UsdShade.Shader, name: str) -> UsdShade.Shader | None:
+    source = node.GetInput(name)
+    if source:
+        for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
+            if UsdShade.Output.IsOutput(attribute):
+                return UsdShade.Shader(attribute.GetPrim())
+    return None
+
+
+def _value(node: UsdShade.Shader, name: str, time: Usd.TimeCode) -> object:
+    """Return an input's constant value, from the node or from the material's interface; None where it has none."""
+    source = node.GetInput(name)
+    if source:
+        for attribute in UsdShade.Utils.GetValueProducingAttributes(source):
+            if not UsdShade.Output.IsOutput(attribute):
+                return attribute.Get(time)
+    return None
+
+
+def _colour(value: object) -> Linear | None:
+    """Return a colour; a single number three times."""
+    one = numbers(value, 1) if isinstance(value, (int, float)) else None
+    found = one * 3 if one else numbers(value, 3)
+    return (found[0], found[1], found[2]) if found else None
+
+
+def _pair(value: object, default: tuple[float, float]) -> tuple[float, float]:
+    found = numbers(value, 2)
+    return (found[0], found[1]) if found else default
+
+
+def _four(value: object, default: float) -> tuple[float, float, float, float]:
+    found = numbers(value, 4)
+    return (found[0], found[1], found[2], found[3]) if found else (default, default, default, default)

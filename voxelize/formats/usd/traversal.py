@@ -1,0 +1,201 @@
+"""The traversal of a stage: which prims are visible, where, and of which material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdPhysics
+
+from voxrt.voxelize.errors import AssetError, DoesNotFitError
+from voxrt.voxelize.formats.material_table import MaterialTable
+from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
+from voxrt.voxelize.formats.usd.geometry import Surface, solid_key, surface_of
+from voxrt.voxelize.formats.usd.instancer import placed_copies
+from voxrt.voxelize.formats.usd.materials import Materials
+from voxrt.voxelize.formats.usd.physics import colliders_of
+from voxrt.voxelize.formats.usd.skin import PREDICATE, Deformed, deformed_meshes
+from voxrt.voxelize.scene import SceneObject
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.collider_shapes import Collider
+    from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.shading import Shading
+    from voxrt.voxelize.warning_log import WarningLog
+
+MOST_OBJECTS = 1_000_000
+"""The most objects of a stage: nested instancers can request more copies than memory holds."""
+
+_AFFINE_TOLERANCE = 1e-6
+
+# Prim types that group or describe others and have no shape.
+_WITHOUT_SHAPE = frozenset(("", "Xform", "Scope", "Material", "Shader", "NodeGraph", "GeomSubset", "SkelRoot"))
+
+# Prototypes may be below prims that are not defined (``over``) or abstract (``class``).
+_PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsLoaded)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _PlacedMesh:
+    """An object whose mesh, an index into the traversal's meshes, has no materials yet."""
+
+    name: str
+    mesh: int
+    transform: NDArray[np.float64]
+    colliders: tuple[Collider, ...]
+
+
+@dataclass(eq=False, slots=True)
+class StageTraversal:
+    """A traversal of a stage. Instances share surfaces and meshes."""
+
+    path: Path
+    stage: Usd.Stage
+    external_files: ExternalFiles
+    log: WarningLog
+    time: Usd.TimeCode
+    materials: Materials = field(init=False)
+    _transforms: UsdGeom.XformCache = field(init=False)
+    _deformed: dict[str, Deformed] = field(init=False)
+    _surfaces: dict[str, Surface | None] = field(default_factory=dict)
+    _rows: dict[tuple[str, tuple[Shading, ...], bytes], int] = field(default_factory=dict)
+    _meshes: list[LoadedMesh] = field(default_factory=list)
+    _open_instancers: list[str] = field(default_factory=list)
+    _count: int = 0
+
+    def __post_init__(self) -> None:
+        self.materials = Materials(self.path, self.external_files, MaterialTable(), self.log, self.time)
+        self._transforms = UsdGeom.XformCache(self.time)
+        self._deformed = deformed_meshes(self.stage, self.time, self.log)
+
+    def objects(self, to_scene: NDArray[np.float64]) -> tuple[SceneObject, ...]:
+        """Return the visible objects in the order of traversal.
+
+        Parameters
+        ----------
+        to_scene
+            float64, shape (4, 4): from the stage's frame to the scene's.
+        """
+        placed = self._below(self.stage.GetPseudoRoot(), PREDICATE)
+        transforms = [self._to_scene(one, to_scene) for one in placed]
+        meshes = assign_materials(self._meshes, self.materials.table, self.log)
+        return tuple(
+            SceneObject(
+                one.name,
+                meshes[one.mesh],
+                transform,
+                one.colliders,
+                int(meshes[one.mesh].materials[0]),
+            )
+            for one, transform in zip(placed, transforms, strict=True)
+            if len(meshes[one.mesh].triangles)
+        )
+
+    def _to_scene(self, one: _PlacedMesh, to_scene: NDArray[np.float64]) -> NDArray[np.float64]:
+        with np.errstate(over="ignore", invalid="ignore"):
+            transform: NDArray[np.float64] = to_scene @ one.transform
+        if not np.isfinite(transform).all():
+            raise AssetError(self.path, "its transform is not finite", place=one.name, fix="repair its xformOps")
+        if np.abs(one.transform[3] - (0, 0, 0, 1)).max() > _AFFINE_TOLERANCE:
+            self.log.add("transform", "the projective part of transforms that are not affine was ignored")
+            transform[3] = (0.0, 0.0, 0.0, 1.0)
+        return transform
+
+    def _below(self, root: Usd.Prim, predicate: object) -> list[_PlacedMesh]:
+        """Return the objects of `root` and its descendants, in the stage's frame."""
+        placed: list[_PlacedMesh] = []
+        walk = iter(Usd.PrimRange(root, predicate))
+        for prim in walk:
+            if not self._is_visible(prim):
+                walk.PruneChildren()
+            elif prim.IsA(UsdGeom.PointInstancer):
+                walk.PruneChildren()
+                placed += self._copies(prim)
+            else:
+                placed += self._object(prim)
+        return placed
+
+    def _copies(self, prim: Usd.Prim) -> list[_PlacedMesh]:
+        place = str(prim.GetPath())
+        if place in self._open_instancers:
+            raise AssetError(self.path, "the point instancer copies itself", place=place, fix="repair its prototypes")
+        self._open_instancers.append(place)
+        prototypes, indices, transforms, numbers = placed_copies(prim, self.path, self.time, self.log)
+        here = self._to_stage(prim)
+        models: list[list[_PlacedMesh]] = []
+        for index, prototype in enumerate(prototypes):
+            model = self._below(prototype, _PROTOTYPE_PREDICATE) if (indices == index).any() else []
+            back = np.linalg.inv(self._to_stage(prototype)) if model else np.eye(4)
+            models.append([_PlacedMesh(one.name, one.mesh, back @ one.transform, one.colliders) for one in model])
+        self._open_instancers.pop()
+        self._charge(int(sum(len(models[index]) for index in indices)))
+        placed: list[_PlacedMesh] = []
+        for index, to_instancer, number in zip(indices.tolist(), here @ transforms, numbers.tolist(), strict=True):
+            for one in models[index]:
+                name = f"{place}[{number}]{one.name.removeprefix(str(prototypes[index].GetPath()))}"
+                placed.append(_PlacedMesh(name, one.mesh, to_instancer @ one.transform, one.colliders))
+        return placed
+
+    def _charge(self, count: int) -> None:
+        self._count += count
+        if self._count > MOST_OBJECTS:
+            raise DoesNotFitError(f"{self.path}: shows more than {MOST_OBJECTS:,} objects; make its instancers sparser")
+
+    def _to_stage(self, prim: Usd.Prim) -> NDArray[np.float64]:
+        return np.array(self._transforms.GetLocalToWorldTransform(prim), dtype=np.float64).T
+
+    def _is_visible(self, prim: Usd.Prim) -> bool:
+        """Tell whether the prim and its descendants are visible, as far as the prim decides it."""
+        imageable = UsdGeom.Imageable(prim)
+        if not imageable:
+            return True
+        if imageable.GetVisibilityAttr().Get(self.time) == UsdGeom.Tokens.invisible:
+            self.log.add("invisible", "invisible prims and their descendants were left out")
+            return False
+        purpose = imageable.ComputePurpose()
+        if purpose not in (UsdGeom.Tokens.default_, UsdGeom.Tokens.render):
+            self.log.add("purpose", f"prims of purpose {purpose} and their descendants were left out")
+            colliders = sum(one.HasAPI(UsdPhysics.CollisionAPI) for one in Usd.PrimRange(prim, PREDICATE))
+            if colliders:
+                self.log.add("collider", f"colliders of purpose {purpose} were left out", colliders)
+            return False
+        return True
+
+    def _object(self, prim: Usd.Prim) -> list[_PlacedMesh]:
+        """Return the object of one prim, or none."""
+        name = str(prim.GetPath())
+        # Instances of one prim share its surface, unless each has its own pose. Equal solids share one, too.
+        source = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
+        deformed = self._deformed.get(name)
+        key = name if deformed else solid_key(source, self.time) or str(source.GetPath())
+        if key not in self._surfaces:
+            self._surfaces[key] = surface_of(source, self.path, self.time, self.log, deformed)
+        surface = self._surfaces[key]
+        if surface is None:
+            self._count_without_surface(prim)
+            return []
+        shadings, rows = self.materials.shadings_of_faces(prim, surface)
+        shared = (key, tuple(shadings), rows.tobytes())
+        if shared not in self._rows:
+            materials, appearance = self.materials.assign(prim, surface, shadings, rows)
+            self._rows[shared] = len(self._meshes)
+            self._meshes.append(LoadedMesh(surface.positions, surface.triangles, materials, appearance))
+        self._charge(1)
+        colliders = colliders_of(source, surface, self.time, self.log)
+        transform = self._to_stage(deformed.frame if deformed else prim)
+        return [_PlacedMesh(name, self._rows[shared], transform, colliders)]
+
+    def _count_without_surface(self, prim: Usd.Prim) -> None:
+        """Count a prim without a surface."""
+        kind = str(prim.GetTypeName())
+        if prim.HasAPI(UsdPhysics.CollisionAPI):
+            self.log.add("collider", "colliders on prims without a shape were ignored")
+        if prim.IsA(UsdGeom.Gprim) and not prim.IsA(UsdGeom.Mesh):
+            self.log.add("unsupported-prim", f"{kind} prims are not supported and were left out")
+        elif not prim.IsA(UsdGeom.Mesh) and kind not in _WITHOUT_SHAPE and prim.IsA(UsdGeom.Imageable):
+            self.log.add("no-shape", f"{kind} prims have no shape and were left out")

@@ -1,0 +1,36 @@
+"""Proxies: the colliders that are voxelized in place of an object's triangles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from voxrt.voxelize.collider_shapes import BoxCollider
+
+if TYPE_CHECKING:
+    from voxrt.voxelize.collider_shapes import Collider
+    from voxrt.voxelize.scene import SceneObject
+
+Geometry: TypeAlias = Literal["auto", "render", "collider"]
+
+GEOMETRIES: tuple[Geometry, ...] = ("auto", "render", "collider")
+
+
+def proxies(item: SceneObject, geometry: Geometry) -> tuple[Collider, ...] | None:
+    """Return the colliders that represent an object, or None where its triangles are voxelized.
+
+    Parameters
+    ----------
+    item
+        The object.
+    geometry
+        As for :func:`voxrt.voxelize.voxelize`. With ``"collider"``, an object without colliders gets the box of its
+        mesh, in its own frame.
+    """
+    if geometry == "render" or (geometry == "auto" and not item.colliders):
+        return None
+    if item.colliders or len(item.mesh.triangles) == 0:
+        return item.colliders
+    corners = item.mesh.positions[item.mesh.triangles.ravel()].astype(np.float64)
+    return (BoxCollider(corners.min(axis=0), corners.max(axis=0)),)

@@ -1,0 +1,317 @@
+#include "cap_winding.h"
+
+#include "interrupt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace voxrt::voxelize {
+namespace {
+
+constexpr double kFarError = 1.0 / 1024; // largest error of a node or cap that is taken as far
+constexpr double kNegligible = 1.0 / 64; // what one cap may add without a gradient of its own
+constexpr double kFarthestEnd = 0.5;     // largest distance of a dipole's ends from its centre, of its distance
+constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
+
+Point plus(const Point& a, double s, const Point& b) { return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }
+Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double length(const Point& a) { return std::sqrt(dot(a, a)); }
+Point cross(const Point& a, const Point& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Point centre(const CapWinding::Cap& cap) {
+    const auto& [a, b, c] = cap;
+    return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
+}
+/// Twice its area, along its normal.
+Point normal(const CapWinding::Cap& cap) { return cross(minus(cap[1], cap[0]), minus(cap[2], cap[0])); }
+
+/// Error bound of a dipole of unit area at distance 1 whose ends lie at most t < 1 off its centre.
+double dipole_error(double t) { return kInverse4Pi * t * t * (3 - 2 * t) / ((1 - t) * (1 - t)); }
+
+/// Tangents of half solid angles, multiplied as complex numbers: a sum of angles with one arc tangent at the end.
+class AngleSum {
+public:
+    /// Adds an angle whose half has the tangent over / under.
+    void add(double over, double under) {
+        const double size = std::abs(over) + std::abs(under);
+        if (size == 0)
+            return;
+        over /= size;
+        under /= size;
+        const double x = x_ * under - y_ * over, y = x_ * over + y_ * under;
+        // Beyond pi the sign of y is opposite to that of both angles.
+        if (y_ >= 0 && over >= 0 && y < 0)
+            ++wraps_;
+        else if (y_ < 0 && over < 0 && y >= 0)
+            --wraps_;
+        const double scale = 1 / (std::abs(x) + std::abs(y));
+        x_ = x * scale;
+        y_ = y * scale;
+    }
+    double over_4_pi() const { return 2 * kInverse4Pi * (std::atan2(y_, x_) + 2 * std::numbers::pi * wraps_); }
+
+private:
+    double x_ = 1, y_ = 0;
+    int wraps_ = 0;
+};
+
+/// On which side of a cap's plane q lies: the sign of the solid angle. Exact. On the plane q counts as just below it,
+/// or left of it where it is upright, as in the crossings of columns.
+int side(const CapWinding::Cap& cap, const Point& q) {
+    auto whole = [](double v) { return int128(std::llround(v * (2 * kUnit))); };
+    int128 v[3][3];
+    for (int i = 0; i < 3; ++i) {
+        v[i][0] = whole(cap[i].x - q.x);
+        v[i][1] = whole(cap[i].y - q.y);
+        v[i][2] = whole(cap[i].z - q.z);
+    }
+    auto area = [&v](int j, int k) {
+        return (v[1][j] - v[0][j]) * (v[2][k] - v[0][k]) - (v[1][k] - v[0][k]) * (v[2][j] - v[0][j]);
+    };
+    const int128 nx = area(1, 2), ny = area(2, 0), nz = area(0, 1);
+    const int128 height = v[0][0] * nx + v[0][1] * ny + v[0][2] * nz;
+    for (const int128 decisive : {height, nz, nx, ny})
+        if (decisive != 0)
+            return decisive < 0 ? -1 : 1;
+    return 0;
+}
+
+/// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983: the tangent of half the angle is over /
+/// under.
+void add_solid_angle(AngleSum& sum, const CapWinding::Cap& cap, const Point& q) {
+    constexpr double kRoundoff = 1e-12; // of the products: below it the sign is decided in integers
+    const Point a = minus(cap[0], q), b = minus(cap[1], q), c = minus(cap[2], q);
+    const double la = length(a), lb = length(b), lc = length(c), size = la * lb * lc;
+    double over = dot(a, cross(b, c));
+    const double under = size + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    if (under <= kRoundoff * size && std::abs(over) <= kRoundoff * size) {
+        const int sign = side(cap, q);
+        if (sign == 0)
+            return;
+        over = sign * std::max(std::abs(over), 1e-30 * size);
+    }
+    sum.add(over, under);
+}
+
+/// How the solid angle of a cap changes inside a ball.
+struct CapGradient {
+    Point gradient{0, 0, 0};
+    double error_bound = 0;
+    bool crosses = false; // the cap passes through the ball
+};
+
+/// The gradient of the solid angle depends on the edges of the cap alone, like the magnetic field of a current in a
+/// wire (law of Biot and Savart). The field of a short wire, direction x d / d^3, changes by at most 2 length / d^3 per
+/// distance. Returns false where the error bound for a ball of `radius` about q would not be below `limit`.
+bool find_gradient(const CapWinding::Cap& cap, const Point& q, double radius, double limit, CapGradient& found) {
+    Point corners[3];
+    double lengths[3];
+    for (int i = 0; i < 3; ++i) {
+        corners[i] = minus(cap[i], q);
+        lengths[i] = length(corners[i]);
+    }
+    const Point n = normal(cap);
+    bool outside = false;
+    for (int i = 0; i < 3; ++i) {
+        const int j = i == 2 ? 0 : i + 1;
+        const Point &a = corners[i], &b = corners[j], edge = minus(b, a);
+        const double square = dot(edge, edge);
+        if (square == 0)
+            continue;
+        const double gap = length(plus(a, std::clamp(-dot(a, edge) / square, 0.0, 1.0), edge)) - radius;
+        if (gap <= 0)
+            return false;
+        // Summed along the edge or, where that is less, along the whole line.
+        found.error_bound += kInverse4Pi * radius * radius * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
+        if (found.error_bound >= limit)
+            return false;
+        const double product = lengths[i] * lengths[j];
+        found.gradient = plus(found.gradient,
+                              kInverse4Pi * (lengths[i] + lengths[j]) / (product * (product + dot(a, b))), cross(a, b));
+        outside = outside || dot(cross(n, edge), a) > 0;
+    }
+    const double height = dot(corners[0], n);
+    found.crosses = !outside && height * height <= radius * radius * dot(n, n);
+    return true;
+}
+
+} // namespace
+
+CapWinding::CapWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
+    if (!caps_.empty())
+        build(0, uint32_t(caps_.size()));
+}
+
+int32_t CapWinding::build(uint32_t first, uint32_t last) {
+    count_work(10 * (last - first));
+    Node node;
+    node.first = first;
+    node.last = last;
+    Point low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300}, weighted{0, 0, 0};
+    for (uint32_t i = first; i < last; ++i) {
+        const Cap& cap = caps_[i];
+        const Point n = normal(cap), at = centre(cap);
+        const double area = length(n) / 2;
+        node.dipole = plus(node.dipole, 0.5, n);
+        node.area += area;
+        weighted = plus(weighted, area, at);
+        low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    }
+    node.centre = node.area > 0 ? Point{weighted.x / node.area, weighted.y / node.area, weighted.z / node.area} : low;
+    for (uint32_t i = first; i < last; ++i) {
+        const Cap& cap = caps_[i];
+        const Point n = normal(cap), off = minus(centre(cap), node.centre);
+        const double products[6] = {n.x * off.x,
+                                    n.y * off.y,
+                                    n.z * off.z,
+                                    (n.x * off.y + n.y * off.x) / 2,
+                                    (n.y * off.z + n.z * off.y) / 2,
+                                    (n.z * off.x + n.x * off.z) / 2};
+        for (int j = 0; j < 6; ++j)
+            node.moment[j] += products[j] / 2;
+        for (const Point& corner : caps_[i])
+            node.radius = std::max(node.radius, length(minus(corner, node.centre)));
+    }
+    const auto index = int32_t(nodes_.size());
+    nodes_.push_back(node);
+    if (last - first > 1) {
+        const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+        const auto axis = std::max_element(sides, sides + 3) - sides;
+        const uint32_t half = first + (last - first) / 2;
+        std::nth_element(caps_.begin() + first, caps_.begin() + half, caps_.begin() + last,
+                         [axis](const Cap& a, const Cap& b) {
+                             const Point p = centre(a), q = centre(b);
+                             return axis == 0 ? p.x < q.x : axis == 1 ? p.y < q.y : p.z < q.z;
+                         });
+        const int32_t left = build(first, half), right = build(half, last);
+        nodes_[index].left = left;
+        nodes_[index].right = right;
+    }
+    return index;
+}
+
+LocalExpansion CapWinding::unresolved() const {
+    LocalExpansion expansion;
+    if (!nodes_.empty())
+        expansion.unresolved.push_back(0);
+    return expansion;
+}
+
+double CapWinding::dipole_angle(const Node& node, const Point& d, double square) {
+    const double* m = node.moment;
+    const double quadrupole = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
+                              2 * (m[3] * d.x * d.y + m[4] * d.y * d.z + m[5] * d.z * d.x);
+    return kInverse4Pi * (dot(node.dipole, d) + m[0] + m[1] + m[2] - 3 * quadrupole / square) /
+           (square * std::sqrt(square));
+}
+
+void CapWinding::add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum) {
+    const double cube = kInverse4Pi / (square * std::sqrt(square));
+    sum.angle += dipole_angle(node, d, square);
+    sum.gradient = plus(plus(sum.gradient, -cube, node.dipole), 3 * cube * dot(node.dipole, d) / square, d);
+}
+
+void CapWinding::expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const {
+    to.centre = centre;
+    to.far = from.far;
+    to.far.angle += dot(from.far.gradient, minus(centre, from.centre));
+    to.near = {};
+    to.unresolved.clear();
+    to.remainder_bound = 0;
+    to.crossed = false;
+    AngleSum far, near;
+    int32_t stack[64];
+    uint32_t visited = 0;
+    for (const uint32_t root : from.unresolved) {
+        int depth = 0;
+        stack[depth++] = int32_t(root);
+        while (depth > 0) {
+            ++visited;
+            const int32_t index = stack[--depth];
+            const Node& node = nodes_[index];
+            const Point d = minus(node.centre, centre);
+            const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
+            double error = 1;
+            if (spread < kFarthestEnd * distance)
+                error = node.area * dipole_error(spread / distance) / square;
+            if (error <= kFarError) {
+                add_dipole(node, d, square, to.far);
+                to.far.error_bound += error;
+                continue;
+            }
+            const bool is_cap = node.left < 0;
+            if (!is_cap && node.radius > radius) {
+                stack[depth++] = node.left;
+                stack[depth++] = node.right;
+                continue;
+            }
+            const double gap = distance - spread;
+            if (is_cap) {
+                const Cap& cap = caps_[node.first];
+                if (radius == 0) {
+                    add_solid_angle(far, cap, centre);
+                    continue;
+                }
+                const double most = gap > 0 ? std::min({0.5, error, kInverse4Pi * node.area / (gap * gap)}) : 0.5;
+                CapGradient gradient;
+                if (most > kNegligible && find_gradient(cap, centre, radius, most, gradient)) {
+                    const bool is_near = gradient.crosses || gradient.error_bound > kFarError;
+                    add_solid_angle(is_near ? near : far, cap, centre);
+                    LinearExpansion& sum = is_near ? to.near : to.far;
+                    sum.gradient = plus(sum.gradient, 1, gradient.gradient);
+                    sum.error_bound += gradient.error_bound;
+                    to.crossed = to.crossed || gradient.crosses;
+                    if (is_near)
+                        to.unresolved.push_back(uint32_t(index));
+                    continue;
+                }
+            }
+            to.unresolved.push_back(uint32_t(index));
+            // Caps that may pass through the ball jump by a whole number there.
+            const double most =
+                gap > 0 ? std::min((node.last - node.first) / 2.0, kInverse4Pi * node.area / (gap * gap)) : 1;
+            if (error < most) {
+                add_dipole(node, d, square, to.near);
+                to.near.error_bound += error;
+            } else {
+                to.remainder_bound += most;
+            }
+        }
+    }
+    count_work(2 * visited);
+    to.far.angle += far.over_4_pi();
+    to.near.angle += near.over_4_pi();
+}
+
+double CapWinding::at(const Point& q, double tolerance) const {
+    double total = 0;
+    AngleSum near;
+    int32_t stack[64];
+    int depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
+    const double share = nodes_.empty() ? 0 : tolerance / nodes_[0].area;
+    uint32_t visited = 0;
+    while (depth > 0) {
+        ++visited;
+        const Node& node = nodes_[stack[--depth]];
+        const Point d = minus(node.centre, q);
+        const double square = dot(d, d), distance = std::sqrt(square), t = node.radius / distance;
+        if (t < kFarthestEnd && dipole_error(t) <= share * square) {
+            total += dipole_angle(node, d, square);
+        } else if (node.left >= 0) {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+        } else {
+            add_solid_angle(near, caps_[node.first], q);
+        }
+    }
+    count_work(2 * visited);
+    return total + near.over_4_pi();
+}
+
+} // namespace voxrt::voxelize

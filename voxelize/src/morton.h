@@ -1,0 +1,24 @@
+// Morton codes (Z-order): bit 3k of the code is bit k of x, bit 3k+1 of y, bit 3k+2 of z. The lowest three bits are an
+// octant's index in its block, {z, y, x}.
+#pragma once
+
+#include <cstdint>
+
+namespace voxrt::voxelize {
+
+/// Moves bit k of the low 16 bits to bit 3k.
+constexpr std::uint64_t spread_bits(std::uint64_t v) {
+    v &= 0xFFFF;
+    v = (v | v << 16) & 0x0000'00FF'0000'00FF;
+    v = (v | v << 8) & 0x0000'F00F'0000'F00F;
+    v = (v | v << 4) & 0x000C'30C3'000C'30C3;
+    v = (v | v << 2) & 0x0000'2492'4924'9249;
+    return v;
+}
+
+/// The code of a position of 16 bits per axis.
+constexpr std::uint64_t morton(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
+}
+
+} // namespace voxrt::voxelize

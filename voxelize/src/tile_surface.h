@@ -1,0 +1,184 @@
+// The surface of one object in one tile of columns, before objects compete: shell voxels and crossings.
+//
+// A tile is kTileSide x kTileSide columns over the grid's whole height. Bricks exist where the surface is; a dense
+// table of the tile finds them (4 bytes per slot of a brick) and is cleared entry by entry.
+//
+// A crossing of a column's ray is one bit in `enters` or `leaves` of the voxel it is marked at. Opposite crossings in a
+// voxel cancel; repeated ones go to a list. So the winding number along a column is a running sum of bits.
+#pragma once
+
+#include "brick.h"
+#include "triangle_coverage.h"
+
+#include <vector>
+
+namespace voxrt::voxelize {
+
+inline constexpr int kTileBricks = kTileSide / kBrickSide;
+inline constexpr int kTileColumns = kTileBricks * kTileBricks; // brick columns
+
+/// Materials of a brick voxel by voxel: index column_bit(x, y) + 64 z, 0 where empty.
+using Cells = std::array<uint8_t, kBrickVoxels>;
+
+inline constexpr uint32_t kNone = 0xFFFF'FFFF;
+
+struct ShellBrick {
+    Columns shell{}, enters{}, leaves{};
+    uint32_t cells = kNone;       // row of materials where the shell has several
+    uint32_t transparent = kNone; // row of voxels with fully transparent surface, where there is some
+    uint8_t material = 0;         // the shell's only material, else 0
+    bool crossed = false;         // enters or leaves may hold something
+    bool has_repeated = false;    // crossings of this brick are in the list of repeated ones too
+    bool has_shell() const { return material != 0 || cells != kNone; }
+};
+
+/// A crossing whose bit is already set.
+struct RepeatedCrossing {
+    uint32_t brick;
+    uint8_t z, bit;
+    bool enters;
+};
+
+class TileSurface {
+public:
+    /// For tiles of a grid of `side` voxels.
+    explicit TileSurface(int side)
+        : side_(side), height_((side + kBrickSide - 1) / kBrickSide), table_(size_t(kTileColumns) * height_, kNone) {}
+
+    int side() const { return side_; }
+    int height() const { return height_; }
+
+    /// Forgets the last object; the next one lies in the tile whose lowest column is (x, y).
+    void reset(int x, int y) {
+        for (uint32_t slot : slots_)
+            table_[slot] = kNone;
+        slots_.clear();
+        bricks_.clear();
+        cells_.clear();
+        transparent_.clear();
+        repeated_.clear();
+        x_ = x;
+        y_ = y;
+    }
+
+    /// The material of what is covered from now on, 1 … 255.
+    void set_material(uint8_t material) { material_ = material; }
+
+    /// Of cover_triangle: voxels lo … hi of column (x, y) are shell. A voxel keeps the first material it gets.
+    void cover(int x, int y, int lo, int hi) {
+        const auto [column, bit] = locate(x, y);
+        for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
+            ShellBrick& brick = at(column, k);
+            const int from = std::max(lo - k * kBrickSide, 0), to = std::min(hi - k * kBrickSide, kBrickSide - 1);
+            const uint8_t interval = column_interval(from, to);
+            if (brick.material != material_) {
+                if (brick.material != 0 || brick.cells != kNone)
+                    cover_mixed(brick, interval, bit);
+                else
+                    brick.material = material_;
+            }
+            brick.shell[bit] |= interval;
+        }
+    }
+
+    /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
+    void cover_transparent(int x, int y, int z) {
+        const auto [column, bit] = locate(x, y);
+        ShellBrick& brick = at(column, z >> kBrickBits);
+        if (brick.transparent == kNone) {
+            brick.transparent = uint32_t(transparent_.size());
+            transparent_.emplace_back();
+        }
+        transparent_[brick.transparent][bit] |= uint8_t(1 << (z & (kBrickSide - 1)));
+    }
+
+    /// Of cover_triangle: the ray of column (x, y) crosses the surface at voxel z.
+    void cross(int x, int y, int z, bool enters) {
+        const auto [column, bit] = locate(x, y);
+        ShellBrick& brick = at(column, z >> kBrickBits);
+        const int slice = z & (kBrickSide - 1);
+        const auto one = uint8_t(1 << slice);
+        Columns& same = enters ? brick.enters : brick.leaves;
+        Columns& opposite = enters ? brick.leaves : brick.enters;
+        brick.crossed = true;
+        if (opposite[bit] & one) {
+            opposite[bit] ^= one;
+        } else if (same[bit] & one) {
+            brick.has_repeated = true;
+            repeated_.push_back({uint32_t(&brick - bricks_.data()), uint8_t(slice), uint8_t(bit), enters});
+        } else {
+            same[bit] |= one;
+        }
+    }
+
+    /// Brick `k` (along z) of a brick column, or null.
+    ShellBrick* find(int column, int k) {
+        const uint32_t index = table_[size_t(column) * height_ + k];
+        return index == kNone ? nullptr : &bricks_[index];
+    }
+
+    /// The same brick, made where there is none.
+    ShellBrick& at(int column, int k) {
+        uint32_t& index = table_[size_t(column) * height_ + k];
+        if (index == kNone) {
+            index = uint32_t(bricks_.size());
+            bricks_.emplace_back();
+            slots_.push_back(uint32_t(size_t(column) * height_ + k));
+        }
+        return bricks_[index];
+    }
+
+    bool empty() const { return bricks_.empty(); }
+    /// Slots of all bricks: column * height() + k.
+    const std::vector<uint32_t>& slots() const { return slots_; }
+    const std::vector<RepeatedCrossing>& repeated_crossings() const { return repeated_; }
+    uint32_t index_of(const ShellBrick& brick) const { return uint32_t(&brick - bricks_.data()); }
+    const Cells& cells(uint32_t row) const { return cells_[row]; }
+
+    /// The voxels of a brick that have surface: its shell, and what is fully transparent.
+    Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
+        Slices found = shell;
+        if (brick.transparent != kNone) {
+            const Slices transparent = slices_of(transparent_[brick.transparent]);
+            for (int z = 0; z < kBrickSide; ++z)
+                found[z] |= transparent[z];
+        }
+        return found;
+    }
+
+private:
+    struct Position {
+        int column, bit;
+    };
+    Position locate(int x, int y) const {
+        const int u = x - x_, v = y - y_;
+        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), column_bit(u, v)};
+    }
+
+    /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.
+    void cover_mixed(ShellBrick& brick, uint8_t interval, int bit) {
+        if (brick.cells == kNone) {
+            brick.cells = uint32_t(cells_.size());
+            Cells& row = cells_.emplace_back();
+            for (int z = 0; z < kBrickSide; ++z)
+                for (int i = 0; i < 64; ++i)
+                    row[z * 64 + i] = brick.shell[i] >> z & 1 ? brick.material : 0;
+            brick.material = 0;
+        }
+        Cells& row = cells_[brick.cells];
+        for (uint32_t fresh = interval & ~uint32_t{brick.shell[bit]}; fresh != 0; fresh &= fresh - 1)
+            row[std::countr_zero(fresh) * 64 + bit] = material_;
+    }
+
+    int side_, height_;
+    int x_ = 0, y_ = 0;
+    uint8_t material_ = 0;
+    std::vector<uint32_t> table_;
+    std::vector<ShellBrick> bricks_;
+    std::vector<uint32_t> slots_;
+    std::vector<Cells> cells_;
+    std::vector<Columns> transparent_;
+    std::vector<RepeatedCrossing> repeated_;
+};
+
+} // namespace voxrt::voxelize

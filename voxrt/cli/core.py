@@ -1,0 +1,90 @@
+"""``voxrt core``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path  # noqa: TC003 - cyclopts reads the signature
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from voxrt.cli.arguments import UsageError
+from voxrt.cli.messages import stage_bar, summarize, tabulate
+from voxrt.outputs import check_folder, writing
+from voxrt.plain_verilog import STAGES, plain_verilog
+from voxrt.rtl.configurations import RTL, Configuration, read_configurations
+
+
+def core(
+    *,
+    path: Annotated[bool, Parameter(show_default=False)] = False,
+    config: Annotated[str | None, Parameter(metavar="NAME")] = None,
+    verilog: Annotated[Path | None, Parameter(metavar="FILE")] = None,
+    debug: Annotated[bool, Parameter(show_default=False)] = False,  # noqa: ARG001 - read where errors are explained
+) -> None:
+    """Show the configurations of the hardware, or give its sources to a design of your own.
+
+    Without options it lists the configurations.
+
+    Parameters
+    ----------
+    path
+        Print the folder of the SystemVerilog sources. Its voxrt.f lists them in the order in which tools must read
+        them; its README.md is their manual.
+    config
+        The configuration that --verilog writes.
+    verilog
+        A .v to write: the configuration as one file of plain Verilog, top module voxrt_core, for tools that do not
+        read the SystemVerilog sources. yosys makes it.
+    debug
+        Show the traceback of an error.
+    """
+    if path and (config or verilog):
+        raise UsageError("--path excludes --config and --verilog")
+    if (config is None) != (verilog is None):
+        raise UsageError("--config and --verilog need each other")
+    if path:
+        sys.stdout.write(f"{RTL}\n")
+    elif config is not None and verilog is not None:
+        _write(config, verilog)
+    else:
+        _list()
+
+
+def _list() -> None:
+    tabulate(
+        ("configuration", "lanes", "depth", "octree words", "memory", "features"),
+        [
+            (
+                each.name,
+                str(each.parameters["Lanes"]),
+                str(each.parameters["MaxDepth"]),
+                f"{each.words:,}",
+                "banked" if each.parameters["Banked"] else "private",
+                " ".join(each.features),
+            )
+            for each in read_configurations().values()
+        ],
+    )
+
+
+def _write(name: str, file: Path) -> None:
+    from voxrt.export.atomic import write_atomically  # noqa: PLC0415 - NumPy comes with it
+
+    configuration = _find(name)
+    if file.suffix.lower() != ".v":
+        raise UsageError(f"{file}: plain Verilog is written to a file that ends in .v")
+    check_folder(file.parent)
+    with stage_bar(len(STAGES)) as begin:
+        text = plain_verilog(configuration, progress=begin)
+    with writing(file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(file, text.encode())
+    summarize(f"{name}:", [("top", "voxrt_core, without parameters"), ("wrote", str(file))])
+
+
+def _find(name: str) -> Configuration:
+    configurations = read_configurations()
+    if name not in configurations:
+        raise UsageError(f"--config {name}: there is no such configuration; name one of {', '.join(configurations)}")
+    return configurations[name]
