@@ -152,7 +152,7 @@ class Load:
 
     async def read_nothing(self) -> None:
         """Connect and read nothing for a while."""
-        address = f"ws://127.0.0.1:{self.server.port}/v1"
+        address = f"ws://127.0.0.1:{self.server.port}/v2"
         async with connect(address, proxy=None, compression=None, max_queue=1) as slow:
             slow.transport.pause_reading()
             await asyncio.sleep(0.3)
@@ -161,7 +161,7 @@ class Load:
 
     async def send_malformed(self) -> None:
         """Send malformed messages, and at last one that is too long."""
-        address = f"ws://127.0.0.1:{self.server.port}/v1"
+        address = f"ws://127.0.0.1:{self.server.port}/v2"
         async with connect(address, proxy=None, compression=None) as client:
             for _ in range(10):
                 await client.send(self.random.bytes(int(self.random.integers(0, 200))))
@@ -178,7 +178,7 @@ class Load:
         return [
             b"",
             self.random.bytes(int(self.random.integers(1, 400))),
-            b"GET /v1 HTTP/1.1\r\nHost:",
+            b"GET /v2 HTTP/1.1\r\nHost:",
             b"GET / HTTP/1.1\r\nX: " + b"a" * 100_000 + b"\r\n\r\n",
             b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
         ]

@@ -48,13 +48,13 @@ def main() -> None:
         for name, scene, size, dark in SHOTS:
             with chromium(size, dark) as browser:
                 browser.open(told["url"])
-                browser.until("document.querySelector('#steering').innerText === 'you steer'")
+                browser.until("document.querySelector('#control').innerText === 'you have control'")
                 browser.run("document.querySelector(arguments[0]).click()", f"[data-scene={scene}]")
                 browser.until(f"document.querySelector('#scene').innerText.startsWith('{scene}')")
                 browser.keys(["\ue012"], 0.5)  # turns, so that there is a latency to show, and back
                 browser.keys(["\ue014"], 0.5)
                 browser.run("document.querySelector('#reset').click()")
-                browser.until("document.querySelector('#overlay').innerText.includes('still')")
+                browser.until("document.querySelector('#overlay').innerText.includes('idle')")
                 (PICTURES / f"{name}.png").write_bytes(browser.screenshot())
     finally:
         finished.set()

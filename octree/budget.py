@@ -188,10 +188,11 @@ def fit(
     """
     instance("octree", octree, Octree)
     words = whole("words", words, 1, 1 << 32)
+    costs = _sight_costs(colours)
     shared = share(octree)
     if len(shared.words) <= words:
         return _measure(octree, shared, shared)
-    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, _sight_costs(colours))]
+    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, costs)]
     return choose(fits) if choose else min(fits, key=lambda fit: (fit.changed + fit.appeared, len(fit.octree.words)))
 
 

@@ -15,7 +15,7 @@ from ..board.errors import Refused
 if TYPE_CHECKING:
     from typing import Final
 
-PROTOCOL_VERSION: Final = 1
+PROTOCOL_VERSION: Final = 2
 """Version of the protocol, JSON messages included. A client refuses a server with another version."""
 
 FRAME_MAGIC: Final = b"VXFR"

@@ -1,6 +1,6 @@
-// The camera for people (eye, yaw, pitch, field of view) and the registers that the ray generator reads.
-// direction(column, row) = look + right * (column - W/2) + up * (H/2 - row), right = look x up in a right-handed grid,
-// in the largest whole numbers whose directions stay below 2**20: so turning the head turns right and up with it.
+// The camera of the page (eye, yaw, pitch, field of view), and its conversion from and to the camera registers:
+// direction(column, row) = look + right * (column - W/2) + up * (H/2 - row), with right = look x up in a right-handed grid.
+// The registers get the largest integers whose directions stay below 2**20.
 
 const REGISTER_LIMIT = 32767;
 const DIRECTION_LIMIT = (1 << 20) - 1;
@@ -12,8 +12,8 @@ export const length = (a) => Math.hypot(...a);
 const scale = (a, factor) => a.map((value) => value * factor);
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
-// A pose: eye in voxels; yaw and pitch in radians, both 0 when looking along -z; fov in degrees across the frame's
-// shorter side; flips mirror the picture.
+// A pose: eye in voxels; yaw and pitch in radians, both 0 for a look along -z; fov in degrees across the shorter side of
+// the frame; flips mirror the picture.
 export const pose = (eye, yaw, pitch, fov, flipX = false, flipY = false) => ({ eye, yaw, pitch, fov, flipX, flipY });
 
 export function axes({ yaw, pitch }) {
@@ -45,7 +45,7 @@ export function toRegisters(view, size) {
 export function fromRegisters({ position, look, right, up }, size) {
   const ahead = scale(look, 1 / (length(look) || 1));
   const pitch = Math.asin(clamp(ahead[1], -1, 1));
-  // Straight up or down the look has no yaw; right has it always.
+  // A look straight up or down has no yaw; then right gives it.
   const level = Math.hypot(look[0], look[2]) > 1e-6 * length(look);
   let yaw = level ? Math.atan2(ahead[0], -ahead[2]) : Math.atan2(right[2], right[0]);
   const upright = axes({ yaw, pitch });
@@ -60,7 +60,7 @@ export function turn(view, right, up) {
   return { ...view, yaw: view.yaw + right, pitch: clamp(view.pitch + up, -Math.PI / 2, Math.PI / 2) };
 }
 
-// Along the view's own axes: rightwards, upwards (the world's), forwards, in voxels.
+// Move in voxels: to the right of the view, up in the world, forward in the view.
 export function move(view, [sideways, upwards, forwards], limit) {
   const { look, right } = axes(view);
   const eye = add(add(add(view.eye, right, sideways), [0, 1, 0], upwards), look, forwards);
@@ -78,7 +78,7 @@ export function lookAlong(view, direction) {
   return { ...view, yaw: Math.hypot(x, z) > 1e-9 ? Math.atan2(x, -z) : view.yaw, pitch: Math.asin(clamp(y, -1, 1)) };
 }
 
-// From outside, the whole world of `side` voxels in the picture, looking along `direction`.
+// A view from outside along `direction` that shows a whole world of `side` voxels per side.
 export function faceWorld(side, direction, fov = FIELD_OF_VIEW.usual) {
   const straight = direction.filter((value) => value !== 0).length === 1;
   const radius = straight ? side * 0.5 : side * Math.sqrt(3) * 0.5;

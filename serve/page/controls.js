@@ -1,18 +1,18 @@
-// Keys, mouse, touch and gamepad, turned into moves of the camera a frame of the screen.
+// Camera controls: keys, mouse, touch and gamepad move the camera once per frame of the screen.
 
 import { move, turn, zoom } from "./camera.js";
 
-const TURN = 1.6; // radians a second, by keys
-const DRAG = 0.0045; // radians a pixel, at the usual field of view
+const TURN = 1.6; // radians per second, by keys
+const DRAG = 0.0045; // radians per pixel, at the usual field of view
 const WHEEL = 0.0012;
-const DEAD = 0.15; // of a gamepad's stick
+const DEAD_ZONE = 0.15; // of the sticks of a gamepad
 const MOVES = { KeyD: [0, 1], KeyA: [0, -1], KeyE: [1, 1], KeyQ: [1, -1], KeyW: [2, 1], KeyS: [2, -1] };
 const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
 const ZOOMS = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
 
-// `commands` maps key codes to what they do once; `change(f)` replaces the view by f(view); `world()` gives the world's
-// side and how far out the camera may stand, in voxels.
-export class Steering {
+// `commands` maps key codes to functions; `change(f)` replaces the view by f(view); `world()` returns the side of the world
+// and the largest distance of the camera from its corner, in voxels.
+export class CameraControls {
   constructor(canvas, pad, { change, world, commands }) {
     this.change = change;
     this.world = world;
@@ -63,7 +63,7 @@ export class Steering {
     }
     const [dx, dy] = locked ? [event.movementX, event.movementY] : [event.clientX - before.clientX, event.clientY - before.clientY];
     if (before) this.pointers.set(event.pointerId, event);
-    // A locked mouse turns the head; a drag pulls the picture along.
+    // A locked mouse turns the camera; a drag moves the picture with the pointer.
     const sense = locked ? 1 : -1;
     this.change((view) => {
       const step = DRAG * (view.fov / 35) * 0.5 * sense;
@@ -71,7 +71,7 @@ export class Steering {
     });
   }
 
-  // Once a frame of the screen.
+  // Called once per frame of the screen.
   step() {
     const now = performance.now();
     const seconds = Math.min(0.1, (now - this.last) / 1000);
@@ -86,7 +86,7 @@ export class Steering {
     }
     for (const gamepad of navigator.getGamepads?.() ?? []) {
       if (!gamepad) continue;
-      const stick = (axis) => (Math.abs(gamepad.axes[axis] ?? 0) > DEAD ? gamepad.axes[axis] : 0);
+      const stick = (axis) => (Math.abs(gamepad.axes[axis] ?? 0) > DEAD_ZONE ? gamepad.axes[axis] : 0);
       const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
       going[0] += stick(0);
       going[2] -= stick(1);
@@ -96,11 +96,11 @@ export class Steering {
     }
     if (![...going, ...turning, zooming].some(Boolean)) return;
     const { side, limit } = this.world();
-    const pace = side * 0.3 * seconds * (this.modifiers?.shiftKey ? 3 : 1) * (this.modifiers?.altKey ? 0.2 : 1);
+    const speed = side * 0.3 * seconds * (this.modifiers?.shiftKey ? 3 : 1) * (this.modifiers?.altKey ? 0.2 : 1);
     this.change((view) => {
       const mirrored = [view.flipX ? -1 : 1, view.flipY ? -1 : 1];
       const angle = TURN * seconds * Math.min(1, view.fov / 50);
-      const moved = move(view, [going[0] * pace * mirrored[0], going[1] * pace, going[2] * pace], limit);
+      const moved = move(view, [going[0] * speed * mirrored[0], going[1] * speed, going[2] * speed], limit);
       return zoom(turn(moved, turning[0] * angle * mirrored[0], turning[1] * angle * mirrored[1]), Math.exp(zooming * seconds));
     });
   }

@@ -1,21 +1,21 @@
-// The page: line, picture, steering and panel put together. The view lives here; the server's is followed while
-// another viewer steers.
+// The page: it joins connection, picture, camera controls and panel. While this viewer has control, the page owns the
+// view and sends it to the server. While another viewer has control, the page follows the view of the server.
 
 import { fromRegisters, toRegisters } from "./camera.js";
-import { Link } from "./link.js";
+import { Connection } from "./connection.js";
+import { CameraControls } from "./controls.js";
 import { $, Panel, toggled } from "./panel.js";
 import { Picture } from "./picture.js";
-import { Steering } from "./steering.js";
-import { upload } from "./upload.js";
+import { uploadFiles } from "./upload.js";
 
-const link = new Link();
+const connection = new Connection();
 const picture = new Picture($("picture"), $("overlay"));
-let view = null; // what we want to see
-let wanted = false; // whether the server has still to hear of it
-let scene = null; // number of the scene that `view` is of
+let view = null; // the camera for people of camera.js
+let viewChanged = false; // the server does not have `view` yet
+let scene = null; // number of the scene to which `view` belongs
 
-const state = () => link.state;
-const steers = () => link.live && state()?.controller === link.hello.viewer;
+const state = () => connection.state;
+const hasControl = () => connection.connected && state()?.controller === connection.hello.viewer;
 const size = () => state().view.size;
 
 const app = {
@@ -23,17 +23,17 @@ const app = {
   size,
   side: () => 2 ** state().scene.depth,
   change(how) {
-    if (!view || !steers()) return;
+    if (!view || !hasControl()) return;
     view = how(view);
-    wanted = true;
+    viewChanged = true;
   },
-  set(fields) { if (steers()) link.change(fields); },
-  resize(to) { if (steers() && view) link.change({ size: to, camera: toRegisters(view, to) }); },
-  show(name) { work(name, (report) => link.ask("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total))); },
+  set(fields) { if (hasControl()) connection.changeView(fields); },
+  resize(to) { if (hasControl() && view) connection.changeView({ size: to, camera: toRegisters(view, to) }); },
+  load(name) { loadScene(name, (report) => connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total))); },
 };
 const panel = new Panel(app);
 
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the board", verify: "Reading back",
+const STAGES = { send: "Sending", read: "Reading", write: "Writing to the board", verify: "Verifying",
   load: "Loading the file", fit: "Fitting the grid", voxelize: "Voxelizing", octree: "Building the octree" };
 
 function notice(kind, title, text = "", progress = null) {
@@ -45,100 +45,101 @@ function notice(kind, title, text = "", progress = null) {
   const bar = box.querySelector("progress");
   bar.hidden = progress === null;
   if (progress !== null) bar.value = progress;
-  box.querySelector("button").hidden = kind !== "trouble";
+  box.querySelector("button").hidden = kind !== "error";
 }
 const dismiss = () => { $("notice").hidden = true; };
 $("notice").querySelector("button").onclick = dismiss;
 
-// Something that takes long and puts another scene on.
-async function work(name, run) {
-  if (!steers()) return notice("trouble", "You do not steer", "Take control first; then the scene can be changed.");
-  notice("work", `${name} …`, "", 0);
+// Run what loads another scene, and show its progress.
+async function loadScene(name, run) {
+  if (!hasControl()) return notice("error", "You do not have control", "Take control before you change the scene.");
+  notice("progress", `${name} …`, "", 0);
   try {
-    await run((stage, done, total) => notice("work", `${name} …`, STAGES[stage] ?? stage, total ? done / total : 0));
+    await run((stage, done, total) => notice("progress", `${name} …`, STAGES[stage] ?? stage, total ? done / total : 0));
     dismiss();
   } catch (error) {
-    notice("trouble", `${name} was not put on`, `${error.message}. The scene that ran before still runs.`);
+    notice("error", `${name} was not loaded`, `${error.message}. The scene has not changed.`);
   }
 }
-const openFiles = (files) => { if (files.length) work(files[0].name, (report) => upload(link, [...files], report)); };
+const openFiles = (files) => { if (files.length) loadScene(files[0].name, (report) => uploadFiles(connection, [...files], report)); };
 
-link.addEventListener("hello", ({ detail }) => {
-  $("link").dataset.state = "live";
-  $("link").textContent = "live";
+connection.addEventListener("hello", ({ detail }) => {
+  $("connection").dataset.state = "connected";
+  $("connection").textContent = "connected";
   dismiss();
   panel.hello(detail);
 });
 
-link.addEventListener("away", ({ detail }) => {
-  $("link").dataset.state = "away";
-  $("link").textContent = "away";
-  $("steering").textContent = "";
-  $("take").hidden = $("pass").hidden = true;
-  const why = detail.code === 1013 ? "It has too many viewers." : detail.was ? "The connection broke." : "No frame server answers, or it wants its token: open the address that it printed.";
-  notice("away", "The board is away", `${why} Trying again by itself.`);
+connection.addEventListener("disconnected", ({ detail }) => {
+  $("connection").dataset.state = "disconnected";
+  $("connection").textContent = "not connected";
+  $("control").textContent = "";
+  $("take").hidden = $("release").hidden = true;
+  const reason = detail.code === 1013 ? "The server has too many viewers." : detail.wasConnected ? "The connection was lost."
+    : "No frame server answers, or the token is missing: open the address that the server printed.";
+  notice("disconnected", "Not connected to the board", `${reason} The page tries again by itself.`);
 });
 
-let asked = false;
-link.addEventListener("state", ({ detail }) => {
+let requested = false; // control, since nobody has it
+connection.addEventListener("state", ({ detail }) => {
   const { controller, waiting, viewers } = detail;
-  const mine = controller === link.hello.viewer;
-  if (!mine || detail.trouble) link.sent.clear(); // their frames will not come
-  if (controller === null && !asked) link.ask("take").catch(() => {});
-  asked = controller === null;
-  $("steering").dataset.state = mine ? "mine" : "";
-  $("steering").textContent = mine
-    ? waiting.length ? `viewer ${waiting[0]} asks to steer` : `you steer${viewers > 1 ? ` · ${viewers} viewers` : ""}`
-    : controller === null ? "nobody steers" : `viewer ${controller} steers`;
+  const mine = controller === connection.hello.viewer;
+  if (!mine || detail.trouble) connection.sent.clear(); // no frame will answer these
+  if (controller === null && !requested) connection.request("take").catch(() => {});
+  requested = controller === null;
+  $("control").dataset.state = mine ? "mine" : "";
+  $("control").textContent = mine
+    ? waiting.length ? `viewer ${waiting[0]} asks for control` : `you have control${viewers > 1 ? ` · ${viewers} viewers` : ""}`
+    : controller === null ? "nobody has control" : `viewer ${controller} has control`;
   $("take").hidden = mine;
-  $("take").disabled = waiting.includes(link.hello.viewer);
-  $("take").textContent = $("take").disabled ? "Asked for control" : "Take control";
-  $("pass").hidden = !mine || waiting.length === 0;
+  $("take").disabled = waiting.includes(connection.hello.viewer);
+  $("take").textContent = $("take").disabled ? "Control requested" : "Take control";
+  $("release").hidden = !mine || waiting.length === 0;
   if (scene !== detail.scene.number || !mine || !view) {
     scene = detail.scene.number;
     view = fromRegisters(detail.view.camera, detail.view.size);
-    wanted = false;
+    viewChanged = false;
   }
   panel.show(detail, mine);
   panel.showCamera(view, detail.view.size);
-  if (detail.trouble) notice("trouble", "The device is in trouble", detail.trouble);
-  else if (detail.scene.number === 0) notice("hint", "No scene yet", `Drop a file on the picture: ${link.hello.suffixes.join(" ")}`);
+  if (detail.trouble) notice("error", "The device has failed", detail.trouble);
+  else if (detail.scene.number === 0) notice("hint", "No scene yet", `Drop a file on the picture: ${connection.hello.suffixes.join(" ")}`);
   else if (["hint"].includes($("notice").dataset.kind)) dismiss();
 });
 
-link.addEventListener("refused", ({ detail }) => notice("trouble", "The board refused", detail.problem));
-link.addEventListener("frame", ({ detail }) => picture.show(detail));
+connection.addEventListener("refused", ({ detail }) => notice("error", "The request was refused", detail.problem));
+connection.addEventListener("frame", ({ detail }) => picture.show(detail));
 
 const commands = {
   KeyR: () => { if (state()) app.change(() => fromRegisters(state().scene.camera, state().scene.size)); },
   KeyN: () => $("nonstop").click(),
-  KeyO: () => $("figures").click(),
+  KeyO: () => $("statistics").click(),
   KeyP: () => $("save").click(),
   KeyH: () => $("keys").showModal(),
 };
 for (let i = 0; i < 7; i++) commands[`Digit${i + 1}`] = () => { if (state()) panel.preset(i); };
-const steering = new Steering($("picture"), $("pad"), {
+const controls = new CameraControls($("picture"), $("pad"), {
   change: app.change,
-  world: () => ({ side: app.side(), limit: Math.min(8 * app.side() + 512, link.hello.device.position_limit / 16 - 1) }),
+  world: () => ({ side: app.side(), limit: Math.min(8 * app.side() + 512, connection.hello.device.position_limit / 16 - 1) }),
   commands,
 });
 
-$("take").onclick = () => link.ask("take").catch(() => {});
-$("pass").onclick = () => link.ask("release").catch(() => {});
+$("take").onclick = () => connection.request("take").catch(() => {});
+$("release").onclick = () => connection.request("release").catch(() => {});
 $("reset").onclick = commands.KeyR;
 $("help").onclick = commands.KeyH;
 $("save").onclick = () => picture.save(`${state()?.scene.name ?? "voxrt"}-${picture.newest?.sequence ?? 0}`);
 $("open").onclick = () => $("files").click();
 $("files").onchange = ({ target }) => { openFiles(target.files); target.value = ""; };
 $("nonstop").onclick = ({ currentTarget }) => app.set({ nonstop: toggled(currentTarget) });
-$("figures").onclick = ({ currentTarget }) => {
+$("statistics").onclick = ({ currentTarget }) => {
   const on = toggled(currentTarget);
   currentTarget.setAttribute("aria-pressed", String(on));
   $("overlay").hidden = !on;
 };
-$("fold").onclick = ({ currentTarget }) => {
-  const folded = document.body.classList.toggle("folded");
-  currentTarget.setAttribute("aria-expanded", String(!folded));
+$("toggle-panel").onclick = ({ currentTarget }) => {
+  const hidden = document.body.classList.toggle("panel-hidden");
+  currentTarget.setAttribute("aria-expanded", String(!hidden));
 };
 
 let drags = 0;
@@ -152,13 +153,13 @@ addEventListener("drop", (event) => {
   openFiles(event.dataTransfer.files);
 });
 
-// No more than two views under way: what is steered meanwhile goes out with the next one.
+// At most two view changes wait for their frames. Later changes are sent together with the next one.
 function animate() {
-  if (steers() && view) {
-    steering.step();
-    if (wanted && link.sent.size < 2) {
-      wanted = false;
-      link.change({ camera: toRegisters(view, size()) });
+  if (hasControl() && view) {
+    controls.step();
+    if (viewChanged && connection.sent.size < 2) {
+      viewChanged = false;
+      connection.changeView({ camera: toRegisters(view, size()) });
       panel.showCamera(view, size());
     }
   }
@@ -167,16 +168,16 @@ function animate() {
 requestAnimationFrame(animate);
 
 async function readRegisters() {
-  if (!$("registers").open || !link.live) return;
+  if (!$("registers").open || !connection.connected) return;
   try {
-    const [{ registers }, { counters }] = await Promise.all([link.ask("registers"), link.ask("counters")]);
+    const [{ registers }, { counters }] = await Promise.all([connection.request("registers"), connection.request("counters")]);
     const rows = [...Object.entries(registers), ...Object.entries(counters).map(([name, value]) => [`server ${name}`, value])];
     $("registers").querySelector("tbody").replaceChildren(...rows.map(([name, value]) => {
       const row = document.createElement("tr");
       for (const text of [name, value.toLocaleString()]) row.insertCell().textContent = text;
       return row;
     }));
-  } catch { /* the board went away; the notice says so */ }
+  } catch { /* the connection was lost; the notice says so */ }
 }
 $("registers").addEventListener("toggle", readRegisters);
-setInterval(() => { picture.figures(); readRegisters(); }, 500);
+setInterval(() => { picture.showStatistics(); readRegisters(); }, 500);

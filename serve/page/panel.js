@@ -1,4 +1,4 @@
-// The controls beside the picture: made once, then kept equal to the view.
+// The panel beside the picture. It is made once; then its controls follow the view.
 
 import { axes, faceWorld, fieldOfView, focal, lookAlong } from "./camera.js";
 
@@ -43,7 +43,7 @@ function button(parent, label, onClick, title = "") {
   return made;
 }
 
-// `app` gives view(), size(), side(), change(f), set(fields) for what is no camera, and show(name).
+// `app` has view(), size(), side(), change(f), set(fields) for all but the camera, resize(size), and load(name).
 export class Panel {
   constructor(app) {
     this.app = app;
@@ -60,7 +60,7 @@ export class Panel {
     $("flip-x").onclick = () => app.change((view) => ({ ...view, flipX: !view.flipX }));
     $("flip-y").onclick = () => app.change((view) => ({ ...view, flipY: !view.flipY }));
     PRESETS.forEach(([name], i) => button($("presets"), name, () => this.preset(i), `Key ${i + 1}`));
-    $("keep").onsubmit = (event) => { event.preventDefault(); this.keep(event.target.elements.name); };
+    $("save-view").onsubmit = (event) => { event.preventDefault(); this.saveView(event.target.elements.name); };
     $("background").oninput = ({ target }) =>
       app.set({ background: [1, 3, 5].map((at) => parseInt(target.value.slice(at, at + 2), 16)) });
     $("bounces").oninput = ({ target }) => { if (target.value !== "") app.set({ bounces: Math.round(Number(target.value)) }); };
@@ -74,13 +74,13 @@ export class Panel {
 
   preset(i) { this.app.change((view) => ({ ...faceWorld(this.app.side(), PRESETS[i][1]), flipX: view.flipX, flipY: view.flipY })); }
 
-  // What this device can do, and which scenes there are.
+  // Show the features of the device and the list of scenes.
   hello({ device, scenes, suffixes }) {
     $("device").textContent = `${device.name} · ${device.capacity.toLocaleString()} words · depth ${device.depth}`;
-    $("formats").textContent = `Opens ${suffixes.join(" ")} — or drop the files on the picture.`;
+    $("formats").textContent = `Opens ${suffixes.join(" ")}. You can also drop files on the picture.`;
     $("files").accept = [...suffixes, ".json", ".bin", ".mtl", ".png", ".jpg"].join(",");
     $("library").replaceChildren();
-    for (const name of scenes) button($("library"), name, () => this.app.show(name)).dataset.scene = name;
+    for (const name of scenes) button($("library"), name, () => this.app.load(name)).dataset.scene = name;
     $("features").replaceChildren();
     for (const [name, label] of Object.entries(FEATURES)) {
       if (!device.features.includes(name)) continue;
@@ -92,13 +92,13 @@ export class Panel {
       pressed(toggle, false);
     }
     $("light").hidden = !device.features.includes("light");
-    $("bounces-line").hidden = !device.features.includes("mirrors");
-    this.largest = device.size;
+    $("bounces-row").hidden = !device.features.includes("mirrors");
+    this.maxSize = device.size;
     this.widthStep = device.width_step;
   }
 
-  // What the server shows, besides the camera.
-  show(state, steers) {
+  // Show the state of the server, all but the camera.
+  show(state, hasControl) {
     this.state = state;
     const { view, scene } = state;
     $("scene").textContent = `${scene.name} · ${2 ** scene.depth}³ voxels · ${scene.words.toLocaleString()} words`;
@@ -109,7 +109,7 @@ export class Panel {
     if (document.activeElement !== $("bounces")) $("bounces").value = view.bounces;
     pressed($("nonstop"), view.nonstop);
     const now = view.size.join("x");
-    const sizes = SIZES.filter((size) => size.every((part, i) => part <= this.largest[i]) && size[0] % this.widthStep === 0)
+    const sizes = SIZES.filter((size) => size.every((part, i) => part <= this.maxSize[i]) && size[0] % this.widthStep === 0)
       .map((size) => size.join("x"));
     if (!sizes.includes(now)) sizes.push(now);
     if ($("size").options.length !== sizes.length || $("size").value !== now)
@@ -119,7 +119,7 @@ export class Panel {
     this.light.forEach((slider, i) => { slider.range(-2 * side, 3 * side); slider.set(view.light[i] / 16); });
     this.ambient.set(view.ambient);
     for (const made of $("panel").querySelectorAll("button, input, select"))
-      if (!["figures", "help", "save"].includes(made.id)) made.disabled = !steers;
+      if (!["statistics", "help", "save"].includes(made.id)) made.disabled = !hasControl;
   }
 
   showCamera(view, size) {
@@ -136,7 +136,7 @@ export class Panel {
     try { return JSON.parse(localStorage.getItem(SAVED)) ?? {}; } catch { return {}; }
   }
 
-  keep(input) {
+  saveView(input) {
     const views = this.saved();
     const name = input.value.trim() || `View ${Object.keys(views).length + 1}`;
     localStorage.setItem(SAVED, JSON.stringify({ ...views, [name]: this.app.view() }));
@@ -154,7 +154,7 @@ export class Panel {
         const { [name]: _gone, ...rest } = this.saved();
         localStorage.setItem(SAVED, JSON.stringify(rest));
         this.showSaved();
-      }, `Forget ${name}`);
+      }, `Delete ${name}`);
       $("saved").append(row);
     }
   }

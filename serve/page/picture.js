@@ -1,4 +1,4 @@
-// The picture and the figures over it.
+// The picture, and the statistics over it.
 
 export class Picture {
   constructor(canvas, overlay) {
@@ -26,25 +26,25 @@ export class Picture {
     if (this.newest && frame.sequence > this.newest.sequence + 1) this.missed += frame.sequence - this.newest.sequence - 1;
     this.newest = frame;
     this.times = [...this.times.filter((time) => now - time < 2000), now];
-    if (frame.asked) this.latency = now - frame.asked;
+    if (frame.requested) this.latency = now - frame.requested;
   }
 
-  // Frames a second while frames come, 0 when they have stopped.
+  // Frames per second while frames arrive; 0 when they have stopped.
   rate() {
     const now = performance.now();
     const recent = this.times.filter((time) => now - time < 2000);
     return recent.length < 2 ? 0 : ((recent.length - 1) * 1000) / (recent[recent.length - 1] - recent[0]);
   }
 
-  figures() {
+  showStatistics() {
     const frame = this.newest;
     if (!frame) return;
     const rows = [
-      ["frames a second", this.rate() ? this.rate().toFixed(1) : "still"],
+      ["frames per second", this.rate() ? this.rate().toFixed(1) : "idle"],
       ["latency", this.latency === null ? "–" : `${this.latency.toFixed(0)} ms`],
       ["render time", `${(frame.seconds * 1000).toFixed(1)} ms`],
-      ["cycles a pixel", frame.cycles === null ? "no clock" : (frame.cycles / frame.rays).toFixed(2)],
-      ["words a ray", frame.words === null ? "not counted" : (frame.words / frame.rays).toFixed(2)],
+      ["cycles per pixel", frame.cycles === null ? "no clock" : (frame.cycles / frame.rays).toFixed(2)],
+      ["words per ray", frame.words === null ? "not counted" : (frame.words / frame.rays).toFixed(2)],
       ["picture", `${frame.width} × ${frame.height}`],
       ["frame", frame.sequence.toLocaleString() + (this.missed ? ` (${this.missed} missed)` : "")],
     ];

@@ -1,6 +1,7 @@
-// Scenes from files: announced, sent in chunks with a CRC-32 each, then the server's own progress until the swap.
+// The upload of a scene: the files are announced and sent in chunks, each with a CRC-32. Then the server reports its
+// progress until the scene is loaded.
 
-const WINDOW = 8; // chunks under way
+const WINDOW = 8; // chunks that the server has not acknowledged
 const TABLE = Uint32Array.from({ length: 256 }, (_, n) => {
   for (let bit = 0; bit < 8; bit++) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
   return n >>> 0;
@@ -23,13 +24,13 @@ function chunk(upload, offset, bytes) {
   return message;
 }
 
-// `report(stage, done, total)`; resolves with the scene, rejects with the server's reason.
-export async function upload(link, files, report) {
+// Calls `report(stage, done, total)`; resolves with the scene, rejects with the reason of the server.
+export async function uploadFiles(connection, files, report) {
   const parts = await Promise.all(files.map(async (file) => new Uint8Array(await file.arrayBuffer())));
   const total = parts.reduce((sum, part) => sum + part.length, 0);
-  const { upload: limit, chunk: step } = link.hello.limits;
+  const { upload: limit, chunk: step } = connection.hello.limits;
   if (total === 0) throw new Error("the file is empty");
-  if (total > limit) throw new Error(`${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the board takes`);
+  if (total > limit) throw new Error(`${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the server accepts`);
   const data = new Uint8Array(total);
   parts.reduce((at, part) => (data.set(part, at), at + part.length), 0);
 
@@ -43,13 +44,13 @@ export async function upload(link, files, report) {
     wake();
   };
   const announced = files.map((file, i) => ({ name: file.name, size: parts[i].length, crc32: crc32(parts[i]) }));
-  const ready = await link.ask("upload", { files: announced });
-  let fault = null;
-  const done = new Promise((resolve, reject) => link.pending.set(ready.request, { resolve, reject, progress }));
-  done.catch((error) => { fault = error; wake(); });
-  for (let offset = 0; offset < total && !fault; offset += step) {
-    while (offset - received >= WINDOW * step && !fault) await new Promise((resolve) => { wake = resolve; });
-    if (!fault) link.socket.send(chunk(ready.upload, offset, data.subarray(offset, offset + step)));
+  const ready = await connection.request("upload", { files: announced });
+  let failure = null;
+  const done = new Promise((resolve, reject) => connection.pending.set(ready.request, { resolve, reject, progress }));
+  done.catch((error) => { failure = error; wake(); });
+  for (let offset = 0; offset < total && !failure; offset += step) {
+    while (offset - received >= WINDOW * step && !failure) await new Promise((resolve) => { wake = resolve; });
+    if (!failure) connection.socket.send(chunk(ready.upload, offset, data.subarray(offset, offset + step)));
   }
   return (await done).scene;
 }

@@ -203,7 +203,8 @@ def test_a_failed_or_aborted_load(open_device, monkeypatch):
 
 def test_scenes_that_do_not_fit_together(open_device):
     device = open_device()
-    capacity = device.identity.capacity
+    capacity = 16377
+    device.identity = replace(device.identity, capacity=capacity)
     recorder = Recorder(device)
     memory = SceneMemory(device)
     for scene in (scene_of(3, 3, capacity - 100), scene_of(4, 4, capacity - 200)):

@@ -34,7 +34,7 @@ def wide_scene(name: str, blocks: int, material: int = 1) -> Scene:
 
 
 class FakeDevice:
-    """All pixels are (material of the root's octant 1, camera's x, number of the frame). Faults can be set."""
+    """All pixels are (material at the end of the path of octants 1, camera's x, number of the frame)."""
 
     def __init__(self, capacity: int = CAPACITY, size: tuple[int, int] = (64, 48), **identity) -> None:
         self.identity = Identity("fake", "1", capacity, 16, size, 1 << 20, **identity)
@@ -103,9 +103,10 @@ class FakeDevice:
             self.frames += 1
             self.calls.append("frame")
             word = int(self.memory[self.root])
-            material = word & 0xFF if word >> 31 else int(self.memory[word + 1]) & 0xFF
+            for _ in range(self.depth):
+                word = word if word >> 31 else int(self.memory[word + 1])
             colour = np.empty((view.size[1], view.size[0], 3), dtype=np.uint8)
-            colour[:] = (material, view.camera.position[0] & 0xFF, self.frames & 0xFF)
+            colour[:] = (word & 0xFF, view.camera.position[0] & 0xFF, self.frames & 0xFF)
             return Frame(colour, Counters(colour.shape[0] * colour.shape[1], 7, 11, 0.001))
         finally:
             self.busy.release()

@@ -3,7 +3,7 @@
 from voxrt.serve.access_control import AccessControl, is_loopback
 
 
-def status_of(access, origin=None, target="/v1", authorization=None, address=("127.0.0.1", 80)):
+def status_of(access, origin=None, target="/v2", authorization=None, address=("127.0.0.1", 80)):
     refusal = access.check(target, authorization, origin, address)
     return refusal and refusal.status
 
@@ -36,9 +36,9 @@ def test_origins():
 def test_tokens():
     access = AccessControl("sesame")
     assert status_of(access) == 401
-    assert status_of(access, target="/v1?token=sesam") == 401
-    assert status_of(access, target="/v1?token=%ff%00é") == 401
-    assert status_of(access, target="/v1?token=sesame") is None
+    assert status_of(access, target="/v2?token=sesam") == 401
+    assert status_of(access, target="/v2?token=%ff%00é") == 401
+    assert status_of(access, target="/v2?token=sesame") is None
     assert status_of(access, authorization="Bearer sesame") is None
     assert status_of(access, authorization="Basic sesame") == 401
 

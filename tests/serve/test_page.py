@@ -1,4 +1,4 @@
-"""The page in headless Chromium, end to end with the exact model behind it."""
+"""The page in headless Chromium, with a frame server and the exact model."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def rom_of(name, world, depth):
 
 @contextmanager
 def serving(scene, port=0):
-    """A server in a thread of its own; yields it."""
+    """A server in a thread of its own."""
     ready, loop = threading.Event(), asyncio.new_event_loop()
     kept = {}
 
@@ -66,7 +66,7 @@ def picture(browser):
 
 
 def shown(server, browser):
-    """Whether the canvas comes to hold exactly the frame that the model renders of the server's view."""
+    """Whether the canvas shows exactly the frame that the model renders for the view of the server."""
     view, scene = server.session.renderer.view, server.session.renderer.scene
     device = ModelDevice()
     device.write_memory(0, scene.words)
@@ -78,19 +78,19 @@ def shown(server, browser):
 
 def test_page(tmp_path):
     first = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
-    still = "document.querySelector('#overlay').innerText.includes('still')"
+    idle = "document.querySelector('#overlay').innerText.includes('idle')"
     with chromium() as browser, serving(first) as server:
         browser.open(server.url)
-        assert browser.until("document.querySelector('#steering').innerText === 'you steer'")
-        assert browser.until(still)
+        assert browser.until("document.querySelector('#control').innerText === 'you have control'")
+        assert browser.until(idle)
         assert shown(server, browser)
         before = server.session.renderer.view.camera
 
-        # A turned head turns right and up too: right-handed, square, at the largest scale.
+        # Turning the camera turns look, right and up: right-handed, orthogonal, at the largest scale.
         browser.run("document.querySelector('#picture').focus()")
         browser.keys(["\ue012"], 0.3)  # left arrow
         browser.keys(["w"], 0.3)
-        assert browser.until(still)
+        assert browser.until(idle)
         camera = server.session.renderer.view.camera
         assert camera != before
         look, right, up = (np.array(triple, dtype=float) for triple in (camera.look, camera.right, camera.up))
@@ -104,7 +104,7 @@ def test_page(tmp_path):
         )
         assert shown(server, browser)
 
-        # A memory and a mesh, by the file dialogue that dropping shares.
+        # A memory and a mesh, by the file dialogue; dropped files take the same way.
         files = write_rom(tmp_path, rom_of("second", worlds.ball(4), 4))
         browser.give_files("#files", [str(files.mem), str(files.manifest)])
         assert browser.until("document.querySelector('#scene').innerText.startsWith('second')")
@@ -116,7 +116,7 @@ def test_page(tmp_path):
         assert browser.until("document.querySelector('#scene').innerText.startsWith('cube')")
         (tmp_path / "cube.obj").write_text("f 1 2 3\n")
         browser.give_files("#files", [str(tmp_path / "cube.obj")])
-        assert browser.until("document.querySelector('#notice').innerText.includes('still runs')")
+        assert browser.until("document.querySelector('#notice').innerText.includes('was not loaded')")
         browser.run("document.querySelector('#notice button').click()")
 
         # Controls of the panel: flat colours, background, flip, a preset.
@@ -126,22 +126,22 @@ def test_page(tmp_path):
         browser.run(
             "const c = document.querySelector('#background'); c.value = '#204060'; c.dispatchEvent(new Event('input'))"
         )
-        assert browser.until(still)
+        assert browser.until(idle)
         assert server.session.renderer.view.background == (0x20, 0x40, 0x60)
         assert server.session.renderer.view.lighting.features == {"flat"}
         assert shown(server, browser)
         assert browser.faults() == []
 
 
-def test_the_board_goes_away_and_comes_back():
+def test_the_connection_is_lost_and_restored():
     scene = board_scene(Blob(rom_of("first", worlds.boxes(4, 9, 3), 4)))
     with chromium((420, 800), dark=False) as browser:
         with serving(scene) as server:
             port = server.port
             browser.open(server.url)
-            assert browser.until("document.querySelector('#link').innerText === 'live'")
-        assert browser.until("document.querySelector('#notice').innerText.includes('The board is away')")
+            assert browser.until("document.querySelector('#connection').innerText === 'connected'")
+        assert browser.until("document.querySelector('#notice').innerText.includes('Not connected to the board')")
         with serving(scene, port):
-            assert browser.until("document.querySelector('#steering').innerText === 'you steer'")
+            assert browser.until("document.querySelector('#control').innerText === 'you have control'")
             assert browser.run("return document.querySelector('#notice').hidden")
             assert browser.run("return document.documentElement.scrollWidth <= innerWidth")

@@ -7,10 +7,12 @@ import contextlib
 import json
 import zlib
 from contextlib import asynccontextmanager
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from fakes.device import FakeDevice, scene
+from fakes.device import FakeDevice, scene, wide_scene
 from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -64,7 +66,7 @@ def pixel(packet):
 def test_client(run):
     async def check():
         async with served(loaded=scene(material=5)) as server, open_client(server.url) as client:
-            assert client.hello["protocol"] == 1
+            assert client.hello["protocol"] == 2
             assert client.hello["device"]["capacity"] == 4096
             packet = await client.next_frame()
             assert packet.frame.colour.shape == (48, 64, 3)
@@ -171,6 +173,32 @@ def test_upload(run):
             assert set(stages) == {"send", "read", "write", "verify"}
             packet = await frame_where(client, lambda packet: packet.scene == 2)
             assert pixel(packet)[0] == 6
+
+    run(check())
+
+
+def test_frames_while_a_scene_is_loaded(run):
+    """Frames and the steps of the upload take turns: before `done` all frames show the old scene, then the new one."""
+
+    async def check():
+        device = FakeDevice(capacity=40000)
+        old, new = (replace(wide_scene(str(material), 2000, material), depth=6) for material in (5, 6))
+        async with served(device, old) as server:
+            renderer = server.session.renderer
+            device.calls.clear()
+            loading = asyncio.create_task(renderer.load(new, ignore))
+            materials = []
+            while not loading.done():
+                materials.append(int((await renderer.render_view(renderer.view)).colour[0, 0, 0]))
+            await loading
+            after = await renderer.render_view(renderer.view)
+            assert after.colour[0, 0, 0] == 6
+            before = [material for material in materials if material == 5]
+            assert materials == before + [6] * (len(materials) - len(before))
+            assert len(before) >= 8  # 4 bursts are written and 4 read back
+            written = [number for number, call in enumerate(device.calls) if call == "write_memory"]
+            assert all("frame" in device.calls[a:b] for a, b in pairwise(written))
+            assert "hold" not in device.calls
 
     run(check())
 
@@ -309,7 +337,7 @@ def test_a_slow_viewer_stalls_nobody(run):
         async with (
             served(device, scene()) as server,
             open_client(server.url) as fast,
-            connect(f"ws://127.0.0.1:{server.port}/v1", max_queue=1, proxy=None, compression=None) as slow,
+            connect(f"ws://127.0.0.1:{server.port}/v2", max_queue=1, proxy=None, compression=None) as slow,
         ):
             slow.transport.pause_reading()
             await fast.take_control()
@@ -328,7 +356,7 @@ def test_access(run):
     async def check():
         async def status(server, query="", **headers):
             try:
-                async with connect(f"ws://127.0.0.1:{server.port}/v1{query}", additional_headers=headers, proxy=None):
+                async with connect(f"ws://127.0.0.1:{server.port}/v2{query}", additional_headers=headers, proxy=None):
                     return 101
             except InvalidStatus as error:
                 return error.response.status_code
@@ -372,7 +400,7 @@ def test_page(run):
                 assert b" 200 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             for name in (b"nothing", b"../server.py", b"%2e%2e/server.py", b"page_files.py"):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
-            assert b" 426 " in await http(server.port, b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n")
+            assert b" 426 " in await http(server.port, b"GET /v2 HTTP/1.1\r\nHost: x\r\n\r\n")
 
     run(check())
 
@@ -400,7 +428,7 @@ def test_malformed_and_excess_connections(run):
             oversized = b"GET / HTTP/1.1\r\nX: " + b"a" * 100_000 + b"\r\n\r\n"
             await asyncio.gather(http(server.port, oversized), return_exceptions=True)
             # Abandoned before, during and after the handshake.
-            for opening in (b"", b"GET /v1 HTTP/1.1\r\nHost:", b"GET /v1 HTTP/1.1\r\nHost: x\r\n\r\n"):
+            for opening in (b"", b"GET /v2 HTTP/1.1\r\nHost:", b"GET /v2 HTTP/1.1\r\nHost: x\r\n\r\n"):
                 async with raw_connection(server.port) as (_, writer):
                     writer.write(opening)
             # More connections than the limit: the server closes the excess ones.
@@ -409,7 +437,7 @@ def test_malformed_and_excess_connections(run):
                 await correct.request("counters")
                 assert all(await asyncio.gather(*(ended(reader) for reader in readers[150:])))
             # Malformed messages.
-            async with connect(f"ws://127.0.0.1:{server.port}/v1", proxy=None) as malformed:
+            async with connect(f"ws://127.0.0.1:{server.port}/v2", proxy=None) as malformed:
                 for _ in range(50):
                     await malformed.send(random.bytes(int(random.integers(0, 200))))
                     await malformed.send('{"type": "view", "camera": 3}')

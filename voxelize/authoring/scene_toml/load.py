@@ -206,7 +206,7 @@ class _Builder:
                 )
             found = self._external_files.find(asset.file)
             if found is not None and not self._external_files.allows(found):
-                problem = f"asset {asset.file[:60]!r} lies outside the scene file's folder"
+                problem = f"asset {asset.file[:60]!r} is outside the scene file's folder"
                 raise self._checked.error((*where, "file"), problem, ALLOW_OUTSIDE)
             try:
                 self._assets[key] = load(
