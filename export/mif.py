@@ -1,8 +1,8 @@
 """``.mif`` files: memory words for Intel (Altera) tools, and AMD (Xilinx) ones under the same suffix.
 
-Written: the Intel form, hexadecimal, one word per line. Read: the Intel form (Quartus Prime, "Memory Initialization File
-definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) as long as
-every word has a value, and the AMD form (32 binary digits per line).
+Written: the Intel form, hexadecimal, one word per line. Read: the Intel form (Quartus Prime, "Memory Initialization
+File definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) if every
+word has a value, and the AMD form (32 binary digits per line).
 """
 
 from __future__ import annotations
