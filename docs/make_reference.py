@@ -124,12 +124,15 @@ def page(package: str, listed: dict[int, str] | None = None) -> str:
         Full names by the identity of what they stand for: what other pages describe, which this one only refers to.
     """
     names = exports(package)
+    rooms = [name for name in names if inspect.ismodule(_value(name))]
     elsewhere = {name: listed[id(_value(name))] for name in names if listed and id(_value(name)) in listed}
-    here = [name for name in names if name not in elsewhere]
+    here = [name for name in names if name not in elsewhere and name not in rooms]
     lines = [package, "=" * len(package), "", f".. automodule:: {package}", "   :no-members:", ""]
     summarized = [name.removeprefix(f"{package}.") for name in here if _kind(name) != "Constants and types"]
     if summarized:
         lines += [".. autosummary::", "", *(f"   {name}" for name in summarized), ""]
+    if rooms:
+        lines += ["Packages:", "", *(f"- :doc:`{name}`" for name in rooms), ""]
     if elsewhere:
         lines += ["Also here, and described with their packages:", ""]
         roles = {"Functions": "func", "Classes": "class", "Exceptions": "exc", "Constants and types": "data"}

@@ -1,8 +1,8 @@
 """The blob: a whole scene in one file, for a board that reads no other.
 
 ``docs/blob.md`` describes it byte by byte, ``docs/voxrt_blob.h`` for C and ``docs/voxrt_blob.ksy`` for Kaitai Struct.
-All numbers are little-endian. A header and a table name the sections, each with its CRC-32; a reader passes over
-sections that it does not know.
+All numbers are little-endian. A header and a table name the sections, each with its CRC-32. A reader skips sections
+that it does not know.
 """
 
 from __future__ import annotations
@@ -39,9 +39,21 @@ _LIGHT_ON, _FLAT = 1, 2
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Blob:
-    """What a blob holds; `view` and `lighting` are None where the file leaves them to the board.
+    """What a blob holds: a memory, and how it is to be seen.
 
-    The background is the colour of material 0.
+    Attributes
+    ----------
+    rom
+        The memory. The colour of material 0 is the background.
+    view, lighting
+        The camera and the lighting to start with; None leaves them to the board.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> Blob(rom).lighting is None
+    True
     """
 
     rom: Rom
@@ -50,7 +62,14 @@ class Blob:
 
 
 def blob_bytes(blob: Blob) -> bytes:
-    """Format a blob as the bytes of its file."""
+    """Return a blob as the bytes of its file.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> blob_bytes(Blob(voxrt.build("examples/house.obj", depth=4).rom))[:8]
+    b'VOXRTBLB'
+    """
     rom = blob.rom
     sections = {
         b"NAME": rom.name.encode(),
@@ -72,7 +91,19 @@ def blob_bytes(blob: Blob) -> bytes:
 
 
 def write_blob(path: Path, blob: Blob) -> None:
-    """Write a blob to `path`, atomically."""
+    """Write a blob. An interruption leaves the old file or the new one.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> write_blob(Path("house.blob"), Blob(voxrt.build("examples/house.obj", depth=4).rom))
+    """
     write_atomically(path, blob_bytes(blob))
 
 
@@ -82,7 +113,16 @@ def read_blob(path: Path) -> Blob:
     Raises
     ------
     RomError
-        Where the file cannot be read, is damaged, or its octree is no octree: names the section.
+        The file cannot be read, is damaged, or holds no valid octree. The message names the section.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> path = Path("house.blob")
+    >>> write_blob(path, Blob(voxrt.build("examples/house.obj", depth=4).rom))
+    >>> read_blob(path).rom
+    <Rom 'house': depth 4, 721 words, 5 materials>
     """
     sections = _sections(path, read_bytes(path))
     for name in (b"NAME", b"WRLD", b"MATL", b"WORD"):

@@ -1,6 +1,6 @@
 """``.coe`` files: memory words for the AMD (Xilinx) block memory generator.
 
-Written: radix 16, one word a line. Read: radix 2, 10 or 16; words parted by commas or white space; lines that begin
+Written: radix 16, one word per line. Read: radix 2, 10 or 16; words parted by commas or white space; lines that begin
 with ``;`` are comments (AMD PG058, "Specifying initial memory contents").
 """
 
@@ -27,13 +27,32 @@ _COMMENT = re.compile(rb"^[ \t]*;[^\n]*", re.MULTILINE)
 
 
 def coe_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Format words (uint32, shape (N,), N at least 1) as the bytes of a ``.coe`` file."""
+    """Return words (uint32, shape (N,), N at least 1) as the bytes of a ``.coe`` file."""
     lines = b",\n".join(b"%08X" % word for word in words.tolist())
     return b"memory_initialization_radix=16;\nmemory_initialization_vector=\n" + lines + b";\n"
 
 
 def write_coe(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
+    """Write words as a ``.coe`` file. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    path
+        The file.
+    words
+        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_coe(Path("dot.coe"), from_points([[1, 2, 3]], [7], depth=2).words)
+    """
     write_atomically(path, coe_bytes(words))
 
 
@@ -43,7 +62,15 @@ def read_coe(path: Path) -> WordFile:
     Raises
     ------
     RomError
-        Where the file cannot be read or breaks the syntax: names the line.
+        The file cannot be read or breaks the syntax. The message names the line.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_coe(Path("dot.coe"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> len(read_coe(Path("dot.coe")).words)
+    17
     """
     text = _COMMENT.sub(b"", read_bytes(path))
     radix_statement = _RADIX.match(text)

@@ -1,4 +1,4 @@
-"""What there is to know of a memory at a glance."""
+"""The facts of a memory at a glance."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LevelInfo:
-    """Leaves of side 2**level voxels: how many are solid, how many empty."""
+    """How many leaves of 2**level voxels per side are solid, and how many are empty."""
 
     level: int
     solid: int
@@ -43,20 +43,20 @@ class BoardInfo:
 
 @dataclass(frozen=True, slots=True)
 class RomInfo:
-    """What there is to know of a memory.
+    """The facts of a memory, as :func:`rom_info` returns them.
 
     Attributes
     ----------
     name, depth, words, blocks
         As in the manifest.
     shared_words
-        Words once equal blocks are shared: fewer than `words` where the memory repeats itself.
+        Words once equal blocks are shared: fewer than `words` if the memory stores a block twice.
     unshared_blocks
-        Blocks that it would take without sharing, a block a mixed octant.
+        Blocks without sharing: one per octant that is not uniform.
     voxels
         Solid voxels.
     bounds
-        The smallest box (lowest voxel, one behind the highest) that holds them; None where all is empty.
+        The smallest box that holds them: its lowest voxel, and one behind its highest. None if all is empty.
     levels
         From the largest octants to the smallest.
     materials
@@ -79,7 +79,15 @@ class RomInfo:
 
 
 def rom_info(rom: Rom) -> RomInfo:
-    """Tell what there is to know of `rom`, counting shared blocks wherever they stand."""
+    """Return the facts of a memory. A shared block counts once for each place where it stands.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> facts = rom_info(voxrt.build("examples/house.obj", depth=4).rom)
+    >>> facts.words, facts.voxels, facts.bounds, facts.boards[0].fits
+    (721, 2504, ((0, 0, 0), (16, 16, 16)), True)
+    """
     counts = census(rom.octree)
     voxels = counts.voxels
     leaves = [int(row.sum()) for row in counts.leaves]

@@ -1,6 +1,6 @@
 """The node listing that the original's authoring script printed, so that scenes made with it are not lost.
 
-One line a node, breadth-first, the root first::
+One line per node, breadth-first, the root first::
 
     Node 0: Material ID = None, MID1 = False, First Child Index = 1
     Node 1: Material ID = Red (Instance), MID1 = False
@@ -36,21 +36,31 @@ _LEAF_NODE = -1
 
 
 def read_listing(path: Path, colours: Mapping[str, tuple[int, int, int]], depth: int | None = None) -> Rom:
-    """Read a node listing.
+    r"""Read a node listing.
 
     Parameters
     ----------
     path
         The file.
     colours
-        sRGB by the author's name of each material, without " (Instance)"; their order gives the ids 1, 2, ….
+        sRGB by the author's name of each material, without " (Instance)". Their order gives the ids 1, 2, ….
     depth
-        Levels of the world; None takes the least that the listing has.
+        Levels of the world; None takes the least that the listing needs.
 
     Raises
     ------
     RomError
-        Where a line is none of a listing, a child is missing, or a material has no colour: names the line.
+        A line is none of a listing, a child is missing, or a material has no colour. The message names the line.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> empty = "Material ID = None, MID1 = False"
+    >>> lines = [f"Node 0: {empty}, First Child Index = 1", *(f"Node {n}: {empty}" for n in range(1, 8))]
+    >>> path = Path("scene.txt")
+    >>> _ = path.write_text("\n".join([*lines, "Node 8: Material ID = Roof (Instance), MID1 = False"]))
+    >>> read_listing(path, {"Roof": (214, 84, 56)})
+    <Rom 'scene': depth 1, 9 words, 1 material>
     """
     text = read_bytes(path).decode("utf-8", "replace")
     materials = _Materials(path, colours)

@@ -1,7 +1,7 @@
 """The manifest: what a ``.mem`` file cannot say about itself, as JSON beside it.
 
-Every field is required, but the two on how to see the world, and none other is allowed; a reader refuses a schema
-version that it does not know.
+Every field is required except the camera and the lighting. No other field is allowed. A reader refuses a schema version
+that it does not know.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class MaterialEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where the voxels stand: `matrix` (rows, column vectors) takes voxel coordinates to the scene frame, metres."""
+    """Where the voxels stand: `matrix` (rows, for column vectors) maps voxel coordinates to the scene frame, metres."""
 
     origin: tuple[float, float, float]
     voxel_size: float
@@ -50,7 +50,13 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the memory was built from: the file's name and the settings that differ from run to run."""
+    """What the memory was built from: the name of the file, and the options of the build.
+
+    Examples
+    --------
+    >>> Source("house.obj", {"fill": "solid"}).file
+    'house.obj'
+    """
 
     file: str
     settings: dict[str, str | int | float | bool | None]
@@ -68,7 +74,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     words, blocks
         Sizes of the memory.
     depth
-        Levels: the world is 2**depth voxels a side.
+        Levels: the world is 2**depth voxels per side.
     dialect
         How the ``.mem`` marks its leaves.
     crc32
@@ -82,9 +88,9 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     objects
         How each object was voxelized, in authored order.
     warnings
-        What the input said that was not honoured as it stands.
+        What the asset said and the build did not honour as it stands.
     seconds
-        Wall seconds a stage.
+        Wall seconds per stage.
     source
         What it was built from; null where that is not known.
     view, lighting
@@ -131,7 +137,7 @@ def make_manifest(
     view: Camera | None = None,
     lighting: Lighting | None = None,
 ) -> Manifest:
-    """Describe `rom` and the bytes `mem` of its ``.mem`` file."""
+    """Return the manifest of a memory and of the bytes of its ``.mem`` file."""
     voxels = census(rom.octree).voxels
     return Manifest(
         schema=SCHEMA_VERSION,
@@ -157,12 +163,24 @@ def make_manifest(
 
 
 def manifest_bytes(manifest: Manifest) -> bytes:
-    """Format a manifest as the bytes of a ``.json`` file."""
+    """Return a manifest as the bytes of a ``.json`` file."""
     return msgspec.json.format(msgspec.json.encode(manifest), indent=2) + b"\n"
 
 
 def write_manifest(path: Path, manifest: Manifest) -> None:
-    """Write `manifest` to `path`, atomically."""
+    """Write a manifest. An interruption leaves the old file or the new one.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> files = voxrt.build("examples/house.obj", "out", depth=4).outputs
+    >>> write_manifest(files["manifest"], read_manifest(files["manifest"]))
+    """
     write_atomically(path, manifest_bytes(manifest))
 
 
@@ -172,7 +190,14 @@ def read_manifest(path: Path) -> Manifest:
     Raises
     ------
     RomError
-        Where the file cannot be read, is not JSON, breaks the schema, or contradicts itself: names the field.
+        The file cannot be read, is not JSON, breaks the schema, or contradicts itself. The message names the field.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> files = voxrt.build("examples/house.obj", "out", depth=4).outputs
+    >>> read_manifest(files["manifest"]).voxels
+    2504
     """
     try:
         data = path.read_bytes()

@@ -1,6 +1,6 @@
 """``.mem`` files: memory words as text for ``$readmemh``.
 
-Written: one word a line, eight upper-case hex digits, a newline after every word, the last included. Read: all that
+Written: one word per line, eight upper-case hex digits, a newline after every word, the last included. Read: all that
 ``$readmemh`` takes (IEEE 1800-2017, 21.4) and an octree memory can mean: any white space between words, ``//`` and
 ``/* */`` comments, underscores, ``@`` addresses where they name the next word; the last word with or without newline.
 """
@@ -29,7 +29,26 @@ _LINE_LENGTH = 9
 
 
 def write_mem(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
+    """Write words as a ``.mem`` file. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    path
+        The file.
+    words
+        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_mem(Path("dot.mem"), from_points([[1, 2, 3]], [7], depth=2).words)
+    """
     write_atomically(path, mem_bytes(words))
 
 
@@ -39,7 +58,15 @@ def read_mem(path: Path) -> WordFile:
     Raises
     ------
     RomError
-        Where the file cannot be read or holds something that is no word: names the line.
+        The file cannot be read or holds something that is no word. The message names the line.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_mem(Path("dot.mem"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> len(read_mem(Path("dot.mem")).words)
+    17
     """
     data = read_bytes(path)
     crc32 = zlib.crc32(data)

@@ -1,8 +1,8 @@
 """``.mif`` files: memory words for Intel (Altera) tools, and AMD (Xilinx) ones under the same suffix.
 
-Written: the Intel form, hexadecimal, one word a line. Read: the Intel form (Quartus Prime, "Memory Initialization File
-definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) as long as
-every word has a value, and the AMD form (a word of 32 binary digits a line).
+Written: the Intel form, hexadecimal, one word per line. Read: the Intel form (Quartus Prime, "Memory Initialization
+File definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) if every
+word has a value, and the AMD form (32 binary digits per line).
 """
 
 from __future__ import annotations
@@ -31,13 +31,32 @@ _WORD_LIMIT = 1 << 26
 
 
 def mif_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Format words (uint32, shape (N,)) as the bytes of a ``.mif`` file, Intel form."""
+    """Return words (uint32, shape (N,)) as the bytes of a ``.mif`` file, Intel form."""
     head = b"WIDTH=32;\nDEPTH=%d;\nADDRESS_RADIX=HEX;\nDATA_RADIX=HEX;\nCONTENT BEGIN\n" % len(words)
     return head + b"".join(b"%X : %08X;\n" % entry for entry in enumerate(words.tolist())) + b"END;\n"
 
 
 def write_mif(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
+    """Write words as a ``.mif`` file. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    path
+        The file.
+    words
+        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_mif(Path("dot.mif"), from_points([[1, 2, 3]], [7], depth=2).words)
+    """
     write_atomically(path, mif_bytes(words))
 
 
@@ -47,7 +66,15 @@ def read_mif(path: Path) -> WordFile:
     Raises
     ------
     RomError
-        Where the file cannot be read, breaks the syntax, or leaves a word out: names the line or the word.
+        The file cannot be read, breaks the syntax, or leaves a word out: The message names the line or the word.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_mif(Path("dot.mif"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> len(read_mif(Path("dot.mif")).words)
+    17
     """
     data = read_bytes(path)
     if _BINARY_LINES.match(data):
@@ -56,7 +83,7 @@ def read_mif(path: Path) -> WordFile:
     text = _COMMENT.sub(lambda comment: b"\n" * comment[0].count(b"\n"), data)
     content = _CONTENT.search(text)
     if content is None:
-        raise RomError(f"{path}: has no CONTENT BEGIN ... END; name a .mif file, or one of 32 binary digits a line")
+        raise RomError(f"{path}: has no CONTENT BEGIN ... END; name a .mif file, or one of 32 binary digits per line")
     settings = {name.upper(): value.upper() for name, value in _SETTING.findall(text[: content.start()])}
     if settings.get(b"WIDTH") != b"32":
         raise RomError(f"{path}: WIDTH is not 32; write the memory as words of 32 bits")

@@ -1,10 +1,11 @@
-"""Colours for memories that come without any."""
+"""Colours for memories that have none."""
 
 from __future__ import annotations
 
 import colorsys
 
 from voxrt.voxelize import EMPTY, Material
+from voxrt.voxelize.arguments import whole
 
 _ORIGINAL = ((255, 255, 255), (0, 255, 0), (0, 0, 255), (255, 0, 0), (255, 255, 0))
 """Materials 1 … 5 as the report of the original lists them (appendix, ``material_table``)."""
@@ -13,11 +14,27 @@ _GOLDEN_TURN = 0.6180339887498949
 
 
 def default_materials(highest: int) -> tuple[Material, ...]:
-    """Make a material table for ids 0 … `highest` (at most 255) whose neighbours are easy to tell apart.
+    """Make a material table whose neighbours are easy to tell apart.
 
-    Ids 1 … 5 have the colours of the original's report; the hues of the rest lie a golden section of the colour circle
-    apart, in three brightnesses, so that any few that follow one another differ.
+    Ids 1 … 5 have the colours of the original's report. The hues of the rest lie a golden section of the colour circle
+    apart, in three brightnesses.
+
+    Parameters
+    ----------
+    highest
+        The highest id, 0 … 255.
+
+    Raises
+    ------
+    TypeError, ValueError
+        It is none of these.
+
+    Examples
+    --------
+    >>> [material.colour for material in default_materials(2)[1:]]
+    [(255, 255, 255), (0, 255, 0)]
     """
+    highest = whole("highest", highest, 0, 255)
     return (EMPTY, *(Material(f"material {i}", _colour(i), authored=False) for i in range(1, highest + 1)))
 
 

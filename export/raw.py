@@ -17,12 +17,31 @@ if TYPE_CHECKING:
 
 
 def raw_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Format words (uint32, shape (N,)) as the bytes of a ``.bin`` file."""
+    """Return words (uint32, shape (N,)) as the bytes of a ``.bin`` file."""
     return words.astype("<u4").tobytes()
 
 
 def write_raw(path: Path, words: NDArray[np.uint32]) -> None:
-    """Write words (uint32, shape (N,), already in the dialect of their reader) to `path`, atomically."""
+    """Write words as a ``.bin`` file. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    path
+        The file.
+    words
+        uint32, shape (N,), in the dialect of their reader: :func:`voxrt.octree.encode`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_raw(Path("dot.bin"), from_points([[1, 2, 3]], [7], depth=2).words)
+    """
     write_atomically(path, raw_bytes(words))
 
 
@@ -32,7 +51,15 @@ def read_raw(path: Path) -> WordFile:
     Raises
     ------
     RomError
-        Where the file cannot be read or its length is no multiple of 4 bytes.
+        The file cannot be read or its length is no multiple of 4 bytes.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from voxrt.octree import from_points
+    >>> write_raw(Path("dot.bin"), from_points([[1, 2, 3]], [7], depth=2).words)
+    >>> len(read_raw(Path("dot.bin")).words)
+    17
     """
     data = read_bytes(path)
     if len(data) % 4:

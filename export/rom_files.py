@@ -24,6 +24,7 @@ from voxrt.export.word_file import mem_bytes
 from voxrt.octree import Octree, Rom, RomError, census, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
+from voxrt.voxelize.arguments import choice, instance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -62,30 +63,47 @@ def write_rom(
     view: Camera | None = None,
     lighting: Lighting | None = None,
 ) -> RomFiles:
-    """Write ``folder/NAME.mem`` and ``folder/NAME.json``; an interruption leaves the old pair or the new.
+    """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
 
     Parameters
     ----------
     folder
-        Made where it is not there.
+        The folder. It is made if it is missing.
     rom
-        What to write; its name names the files.
+        The memory. Its name names the files.
     suffix
-        Which file of words to write, one of :data:`WORD_SUFFIXES`.
+        The kind of the file of words, one of :data:`WORD_SUFFIXES`.
     dialect
-        How the ``.mem`` marks its leaves, one of :data:`voxrt.octree.DIALECTS`.
+        How the file encodes materials, one of :data:`voxrt.octree.DIALECTS`.
     objects, warnings, seconds, source
-        What the manifest says of the making.
+        What the manifest says of the build.
     view, lighting
-        What it says of how the world is to be seen.
+        The camera and the lighting that the manifest names.
+
+    Returns
+    -------
+    RomFiles
+        The two files.
 
     Raises
     ------
+    TypeError, ValueError
+        The memory is none, its name cannot name a file, or there is no such dialect or suffix.
     DoesNotFitError
-        Where the dialect cannot name a material in use.
+        The dialect cannot name a material in use.
     OSError
-        Where the folder cannot be written to.
+        The folder cannot be written to.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> write_rom(Path("out"), rom).mem.name
+    'house.mem'
     """
+    instance("rom", rom, Rom)
+    choice("suffix", suffix.lower(), WORD_SUFFIXES)
     if rom.name in {"", ".", ".."} or any(c in rom.name for c in "/\\\0"):
         raise ValueError(f"{rom.name!r} cannot name a file")
     words = encode(rom.octree.words, dialect)
@@ -113,26 +131,36 @@ def write_rom(
 def read_rom(
     path: Path | str, depth: int | None = None, dialect: str | None = None
 ) -> tuple[Rom, tuple[SceneWarning, ...]]:
-    """Read a ``.mem`` with the manifest beside it, or without.
+    """Read a ``.mem`` file, with the manifest beside it or without.
 
     Parameters
     ----------
     path
-        ``NAME.mem``, or with another of :data:`WORD_SUFFIXES`; the manifest is looked for as ``NAME.json``.
+        ``NAME.mem``, or with another of :data:`WORD_SUFFIXES`. The manifest is ``NAME.json``.
     depth, dialect
-        What no manifest says. Without them the depth is the least that the memory has, the dialect is told by the
-        leaves, the materials get the default palette, and a warning says so.
+        Needed only without a manifest. If they are not given either, the depth is the least that the memory needs, the
+        leaves tell the dialect, the materials get default colours, and warnings say so.
 
     Returns
     -------
-    tuple[Rom, tuple[SceneWarning, ...]]
-        The ROM, and what was assumed of it.
+    rom
+        The memory.
+    warnings
+        What was assumed.
 
     Raises
     ------
     RomError
-        Where the memory or the manifest is malformed, they do not belong together, or `depth` or `dialect` contradict
-        the manifest.
+        The memory or the manifest is malformed, they do not belong together, or `depth` or `dialect` contradicts the
+        manifest.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> files = voxrt.build("examples/house.obj", "out", depth=4).outputs
+    >>> rom, warnings = read_rom(files["mem"])
+    >>> rom, warnings
+    (<Rom 'house': depth 4, 721 words, 5 materials>, ())
     """
     blob, warnings = read_words(Path(path), depth, dialect)
     return blob.rom, warnings
@@ -141,7 +169,7 @@ def read_rom(
 def read_words(
     mem_path: Path, depth: int | None = None, dialect: str | None = None
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
-    """As :func:`read_rom`, with what the manifest says of how the world is to be seen."""
+    """Read as :func:`read_rom` does, with the camera and the lighting that the manifest names."""
     if mem_path.suffix.lower() not in _READERS:
         raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
     mem = _READERS[mem_path.suffix.lower()](mem_path)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize import SceneWarning
 
-_MODEL = 256  # the most voxels a side of a model
+_MODEL = 256  # the most voxels per side of a model
 _WORLD = 2048  # and of a scene
 _VERSION = 150
 
@@ -34,8 +34,15 @@ _VERSION = 150
 def read_vox(path: Path | str) -> tuple[Rom, tuple[SceneWarning, ...]]:
     """Read a MagicaVoxel file.
 
-    The world is the smallest cube that holds every visible instance, its lowest corner that of their bounds. Where
+    The world is the smallest cube that holds every visible instance; its lowest corner is that of their bounds. Where
     instances overlap, the first in the file wins. Materials are the colours in use, in the order of the palette.
+
+    Returns
+    -------
+    rom
+        The memory.
+    warnings
+        What the file says and was not honoured as it stands.
 
     Raises
     ------
@@ -43,6 +50,14 @@ def read_vox(path: Path | str) -> tuple[Rom, tuple[SceneWarning, ...]]:
         The file cannot be read, breaks the format, or holds no visible voxel.
     DoesNotFitError
         The scene is wider than 2**16 voxels, or holds more than 2**25.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> write_vox(Path("house.vox"), voxrt.build("examples/house.obj", depth=4).rom)
+    >>> read_vox("house.vox")[0]
+    <Rom 'house': depth 4, 721 words, 5 materials>
     """
     path = Path(path)
     scene = load_vox(path)
@@ -72,9 +87,15 @@ def write_vox(path: Path, rom: Rom, high: tuple[int, int, int] | None = None) ->
     Raises
     ------
     DoesNotFitError
-        The solid voxels are more than 2048 from end to end, which MagicaVoxel has no room for.
+        The solid voxels reach over more than 2048, the largest scene of MagicaVoxel.
     OSError
         The file cannot be written.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> write_vox(Path("house.vox"), voxrt.build("examples/house.obj", depth=4).rom)
     """
     models = list(_models(rom, high))
     nodes = [_transform(0, 1), _chunk(b"nGRP", struct.pack("<iii", 1, 0, len(models)) + _numbers(models))]

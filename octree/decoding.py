@@ -1,6 +1,6 @@
-"""The validating reader: words of any dialect to an octree, or one line that says which word is wrong.
+"""The validating reader: words of any dialect to an octree, or one line that names the wrong word.
 
-Time and memory grow with the number of words and with nothing that the words say.
+Time and memory grow with the number of words, whatever the words say.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ def decode(
     words
         uint32, shape (N,).
     dialect
-        One of :data:`voxrt.octree.DIALECTS`; :func:`detect_dialect` tells it where nobody does.
+        One of :data:`voxrt.octree.DIALECTS`; :func:`detect_dialect` finds it from the words.
     depth
-        Levels of the world, 1 … 16; None takes the least that the memory has.
+        Levels of the world, 1 … 16; None takes the least that the memory needs.
     source, lines
         The file that the words come from and the line of each, for errors.
 
@@ -65,8 +65,20 @@ def decode(
     Raises
     ------
     RomError
-        Where a pointer is out of range, misaligned, part of a cycle or below `depth`, or a word is no word of the
-        dialect: names the address of the word.
+        A pointer is out of range, misaligned, part of a cycle or below `depth`, or a word is none of the dialect. The
+        message names the address of the word.
+    ValueError
+        The words are no such array, or there is no such dialect.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> decode(np.array([1, *[0xFFFFFF00] * 7, 0xFFFFFF02], np.uint32), "report", None)
+    <Octree: depth 1, 9 words>
+    >>> decode(np.array([1, 0xFFFFFF00], np.uint32), "report", None)
+    Traceback (most recent call last):
+        ...
+    voxrt.octree.errors.RomError: memory: 2 words are not a root and blocks of 8 (1 + 8k); the file is cut short, or ...
     """
     if words.ndim != 1 or words.dtype != np.uint32:
         raise ValueError(f"words must be uint32 of shape (N,), not {words.dtype} of shape {words.shape}")

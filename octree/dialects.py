@@ -38,7 +38,7 @@ _TAGS: dict[Dialect, np.uint32] = {
 
 
 def as_dialect(name: str) -> Dialect:
-    """Check that `name` is a dialect; ValueError where it is not."""
+    """Return the name of a dialect; ValueError if there is none of that name."""
     if name not in DIALECTS:
         raise ValueError(f"no dialect is called {name!r}; choose one of {', '.join(DIALECTS)}")
     return name
@@ -62,7 +62,15 @@ def encode(words: NDArray[np.uint32], dialect: str) -> NDArray[np.uint32]:
     Raises
     ------
     DoesNotFitError
-        Where the dialect cannot name a material in use.
+        The dialect cannot name a material in use.
+    ValueError
+        There is no such dialect.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> [hex(word) for word in encode(np.array([1, 0xFFFFFF02], np.uint32), "msb")]
+    ['0x1', '0x80000002']
     """
     tag = _TAGS[as_dialect(dialect)]
     leaves = (words & _LEAF) != 0
@@ -99,7 +107,7 @@ def leaf_materials(
     Raises
     ------
     RomError
-        Where a word is neither a pointer nor a leaf of that dialect.
+        A word is neither a pointer nor a leaf of that dialect.
     """
     leaves = (words & _LEAF) != 0
     known = ~leaves | _leaf_words(words)[as_dialect(dialect)]
@@ -116,11 +124,11 @@ def leaf_materials(
 def detect_dialect(
     words: NDArray[np.uint32], *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> Dialect:
-    """Tell the dialect of a memory by its leaves, or refuse.
+    """Find the dialect of a memory from its leaves.
 
-    ``msb`` leaves look like nothing else. A memory is ``seed-rtl`` where no leaf lies outside FFFFFF00 … 07 and
-    FFFFFFF0 … F7 and some leaf is FFFFFFF0, that dialect's empty space: as ``report`` it would use material 240 and
-    none of 8 … 239. FFFFFFF1 … F7 without FFFFFFF0 is refused. Every other memory of FFFFFFmm is ``report``.
+    ``msb`` leaves look like no others. A memory is ``seed-rtl`` if all leaves lie in FFFFFF00 … 07 and FFFFFFF0 … F7
+    and some leaf is FFFFFFF0, the empty space of that dialect: as ``report`` it would use material 240 and none of
+    8 … 239. FFFFFFF1 … F7 without FFFFFFF0 is refused. Every other memory of FFFFFFmm is ``report``.
 
     Parameters
     ----------
@@ -132,7 +140,13 @@ def detect_dialect(
     Raises
     ------
     RomError
-        Where the leaves fit no dialect, or more than one with different meanings.
+        The leaves fit no dialect, or several with different meanings.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> detect_dialect(np.array([1, *[0x80000000] * 7, 0x80000002], np.uint32))
+    'msb'
     """
     leaves = (words & _LEAF) != 0
     masks = _leaf_words(words)

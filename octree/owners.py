@@ -1,4 +1,4 @@
-"""Which object of the scene an octant belongs to: memory words know materials alone."""
+"""The object of the scene that an octant belongs to. Memory words hold materials only."""
 
 from __future__ import annotations
 
@@ -32,13 +32,20 @@ class Owners:
         An octree of owners: leaf i > 0 belongs to object i - 1.
     names
         The objects' names, in authored order.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> owners = Owners(from_points([[1, 2, 3], [0, 0, 0]], [1, 2], depth=2), ("lamp", "floor"))
+    >>> owners.name_at((1, 2, 3)), owners.name_at((3, 3, 3))
+    ('lamp', 'nobody')
     """
 
     octree: Octree
     names: tuple[str, ...]
 
     def of(self, solid: Leaves) -> NDArray[np.int16]:
-        """Tell whose some solid leaves are (shape (N,)): a row of `names`, or :data:`SEVERAL`."""
+        """Return the owners of some solid leaves: int16, shape (N,), rows of `names`, or :data:`SEVERAL`."""
         owned = solid_leaves(self.octree)
         codes, sought = (morton(part.corners.astype(np.int64)) for part in (owned, solid))
         if not len(codes):
@@ -49,6 +56,6 @@ class Owners:
         return np.where(within, owned.materials[found].astype(np.int16) - 1, SEVERAL).astype(np.int16)
 
     def name_at(self, voxel: Corner) -> str:
-        """Name the object that owns a voxel."""
+        """Return the name of the object that owns a voxel (x, y, z)."""
         owner = octant_at(self.octree, voxel).material
         return self.names[owner - 1] if owner else "nobody"

@@ -49,8 +49,8 @@ def from_vdb(grid: VdbGrid) -> tuple[Octree, Corner]:
     Parameters
     ----------
     grid
-        A level set, solid (material 1) where it is negative; or a grid of integers, whose active values are material
-        ids, 0 … 255; or any other of numbers or booleans, solid (material 1) where it is active and above zero.
+        A level set is solid (material 1) where it is negative. The active values of a grid of integers are material
+        ids, 0 … 255. Any other grid of numbers or booleans is solid (material 1) where it is active and above zero.
 
     Returns
     -------
@@ -64,6 +64,17 @@ def from_vdb(grid: VdbGrid) -> tuple[Octree, Corner]:
         Nothing is solid, an integer is no material id, or the grid holds vectors.
     DoesNotFitError
         More than 2**24 voxels are solid, or they reach over more than 2**16 voxels.
+
+    Examples
+    --------
+    With OpenVDB: ``octree, corner = from_vdb(openvdb.read("smoke.vdb", "density"))``. Any object with its iterators
+    does:
+
+    >>> from types import SimpleNamespace
+    >>> tile = SimpleNamespace(min=(8, 0, 0), max=(15, 7, 7), value=3)
+    >>> grid = SimpleNamespace(gridClass="unknown", citerOnValues=lambda: [tile])
+    >>> from_vdb(grid)
+    (<Octree: depth 3, 1 words>, (8, 0, 0))
     """
     boxes, materials = _solid_boxes(grid)
     if not boxes:

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FACE_NONE = 3
-"""The face of a pixel that crossed none: a miss, or a camera inside a solid."""
+"""The face of a pixel whose ray crossed none: a miss, or a camera inside a solid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,11 +20,11 @@ class RenderCost:
     Attributes
     ----------
     rays
-        Rays traced, one a pixel.
+        Rays traced: one per pixel.
     words_read
-        Octree words read; None from the model, which reads one word for many rays.
+        Octree words read; None for the model, which reads one word for many rays.
     cycles
-        Clocks from the frame's start to its last pixel accepted; None from the model, which has no clock.
+        Clock cycles from the start of the frame to its last pixel; None for the model, which has no clock.
     seconds
         Wall seconds.
     """
@@ -37,7 +37,7 @@ class RenderCost:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
-    """A frame, row 0 at the top.
+    """A rendered picture; row 0 is the top.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Frame:
     face
         uint8, shape (H, W): axis of the face crossed (0 x, 1 y, 2 z) or :data:`FACE_NONE`.
     cost
-        What it cost.
+        Rays, words, cycles and seconds.
     """
 
     colour: NDArray[np.uint8]

@@ -18,25 +18,30 @@ if TYPE_CHECKING:
 
 
 def encode_png(colour: NDArray[np.uint8]) -> bytes:
-    """Encode a picture (uint8, shape (H, W, 3), sRGB) as a PNG file's bytes: the same pixels give the same bytes."""
+    """Return a picture (uint8, shape (H, W, 3), sRGB) as the bytes of a PNG file. Equal pixels give equal bytes."""
     encoded = io.BytesIO()
     Image.fromarray(colour, "RGB").save(encoded, format="PNG")
     return encoded.getvalue()
 
 
 def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
-    """Write a picture, all of it or nothing: an interrupted write leaves the old file.
+    """Write a picture as a PNG file. An interruption leaves the old file or the new one.
 
     Parameters
     ----------
     path
-        Where to; the folder exists.
+        The file, in a folder that exists.
     colour
-        uint8, shape (H, W, 3), sRGB. The same pixels give the same bytes.
+        uint8, shape (H, W, 3), sRGB. Equal pixels give equal bytes.
 
     Raises
     ------
     OSError
         The file cannot be written.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> write_png("black.png", np.zeros((48, 64, 3), np.uint8))
     """
     write_atomically(Path(path), encode_png(colour))

@@ -1,7 +1,7 @@
-"""What voxels make of a scene: the traced picture held against one of the source meshes from the same camera.
+"""Voxels compared with the meshes that they were made from: two pictures from the same camera.
 
 The meshes are ray-cast by Open3D (Intel Embree), an optional dependency: ``pip install 'voxrt-build[compare]'``. Both
-sides shoot the same rays, in voxels, and are shaded by the same rule, so that what differs is the geometry alone.
+sides use the same rays, in voxels, and the same shading rule, so that only the geometry differs.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class View:
-    """What one side sees.
+    """What the camera sees of the meshes, or of the voxels.
 
     Attributes
     ----------
     colour
         uint8, shape (H, W, 3), sRGB.
     depth
-        float64, shape (H, W): voxels from the camera along the ray, infinite at a miss.
+        float64, shape (H, W): voxels from the camera along the ray; infinite for a miss.
     normal
-        float64, shape (H, W, 3): unit, against the ray; zero at a miss and inside a solid.
+        float64, shape (H, W, 3): unit vectors towards the camera; zero for a miss and inside a solid.
     """
 
     colour: NDArray[np.uint8]
@@ -49,20 +49,21 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """How alike the two sides are; NaN where nothing is seen that could be compared.
+    """The similarity of meshes and voxels. NaN if nothing is seen that could be compared.
 
     Attributes
     ----------
     silhouette_iou
-        Pixels covered on both sides, as a part of those covered on either.
+        Intersection over union of the silhouettes: pixels covered in both pictures, divided by those covered in either.
     depth_mean, depth_median, depth_95
-        Distance along the ray between the two surfaces, in voxels, over the pixels covered on both sides.
+        Mean, median and 95th percentile of the distance between the two surfaces along the ray, in voxels, over the
+        pixels covered in both.
     normal_cosine
         Mean cosine between the normals, over the same pixels.
     normal_agreement
-        Part of them whose voxel face lies across the axis that the mesh's normal is nearest to.
+        Share of these pixels whose voxel face has the axis that is nearest to the normal of the mesh.
     psnr, ssim
-        Of colour, over the whole frame: decibel, and 1 for equal pictures.
+        PSNR (decibel) and SSIM (1 for equal pictures) of the colours, over the whole frame.
     """
 
     silhouette_iou: float
@@ -77,7 +78,7 @@ class Likeness:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Comparison:
-    """The same camera's view of the meshes and of the voxels, and how alike they are."""
+    """What one camera sees of the meshes and of the voxels, and their similarity, as :func:`compare` returns it."""
 
     meshes: View
     voxels: View
@@ -90,18 +91,31 @@ def compare(scene: Scene, rom: Rom, camera: Camera, size: tuple[int, int]) -> Co
     Parameters
     ----------
     scene
-        The source. All triangles are cast, whatever stood in for them when the memory was made.
+        The source. All triangles are cast, also those of objects that were voxelized from colliders.
     rom
         The memory, with its grid.
     camera
-        Where from.
+        The camera.
     size
         Columns and rows.
+
+    Returns
+    -------
+    Comparison
+        Both pictures and their similarity.
 
     Raises
     ------
     SimulatorError
-        Open3D is not installed, or the memory does not say where it stands in the scene.
+        Open3D is not installed, or the memory has no place in the scene.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> built = voxrt.build("examples/house.obj", depth=6)
+    >>> found = compare(built.scene, built.rom, voxrt.aim_camera(built.rom, (64, 48)), (64, 48))
+    >>> found.likeness.silhouette_iou > 0.8
+    True
     """
     if rom.grid is None:
         raise SimulatorError(f"{rom.name} does not say where it stands in its scene; build it anew, with a manifest")
@@ -113,20 +127,28 @@ def compare(scene: Scene, rom: Rom, camera: Camera, size: tuple[int, int]) -> Co
 
 
 def comparison_sheet(comparison: Comparison, hardware: NDArray[np.uint8] | None = None) -> NDArray[np.uint8]:
-    """Lay out pictures side by side.
+    """Place the pictures of a comparison side by side.
 
     Parameters
     ----------
     comparison
-        The meshes and the exact model's picture of the voxels.
+        The pictures of the meshes and of the voxels, the latter by the exact model.
     hardware
-        uint8, shape (H, W, 3): the simulated hardware's picture of them.
+        uint8, shape (H, W, 3): the voxels by the simulated hardware; None leaves it out.
 
     Returns
     -------
     NDArray[np.uint8]
-        Shape (H, 3 W or 4 W, 3): meshes, hardware if there is one, model, and the difference of meshes and model,
+        Shape (H, 3 W or 4 W, 3): meshes, hardware if given, model, and the difference of meshes and model, which is
         black where they agree.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> built = voxrt.build("examples/house.obj", depth=5)
+    >>> found = compare(built.scene, built.rom, voxrt.aim_camera(built.rom, (64, 48)), (64, 48))
+    >>> comparison_sheet(found).shape
+    (48, 192, 3)
     """
     meshes, voxels = comparison.meshes.colour, comparison.voxels.colour
     difference = np.abs(meshes.astype(np.int16) - voxels.astype(np.int16)).astype(np.uint8)

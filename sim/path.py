@@ -87,7 +87,7 @@ class RayPath:
     >>> from voxrt.octree import from_points
     >>> path = follow_ray(from_points([[5, 2, 2]], [7], depth=3), (0, 40, 40), (1, 0, 0))
     >>> path
-    <RayPath: 4 words read, hits material 7 at voxel (5, 2, 2)>
+    <RayPath: 5 words read, hits material 7 at voxel (5, 2, 2)>
     >>> path.point(path.readings[-1].time)
     (5.0, 2.5, 2.5)
     """
@@ -150,7 +150,7 @@ def follow_pixel(octree: Octree, camera: Camera, size: tuple[int, int], pixel: t
     (5, 2, 2)
     """
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
-    column, row = whole_array("pixel", pixel, (2,), np.int64, low=0, high=1 << 14).tolist()
+    column, row = whole_array("pixel", pixel, (2,), np.int64, low=-(1 << 31), high=1 << 31).tolist()
     if not (0 <= column < width and 0 <= row < height):
         raise SimulatorError(
             f"pixel {column},{row} lies outside the frame of {width}x{height}; columns go to {width - 1}, rows to "
@@ -192,7 +192,7 @@ def follow_ray(octree: Octree, origin: ArrayLike, direction: ArrayLike) -> RayPa
     >>> from voxrt.octree import from_points
     >>> tree = from_points([[5, 2, 2]], [7], depth=3)
     >>> [(hex(step.word), step.level) for step in follow_ray(tree, (80, 40, 40), (0, 0, 1)).readings]
-    [('0x9', 2), ('0x11', 1), ('0xffffff00', 0), ('0xffffff07', 0)]
+    [('0x9', 2), ('0x11', 1), ('0xffffff07', 0)]
     """
     instance("octree", octree, Octree)
     start = _registers("origin", origin)

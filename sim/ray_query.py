@@ -99,11 +99,12 @@ def cast_rays(octree: Octree, origins: ArrayLike, directions: ArrayLike, *, thre
     distance = np.full(count, np.inf)
     for first in range(0, count, _CHUNK):
         some = slice(first, min(first + _CHUNK, count))
-        places, steps = _places(starts[some], first), _steps(ways[some], first)
+        places, (steps, doublings) = _places(starts[some], first), _steps(ways[some], first)
         traced = memory.trace(places, steps, threads)
         material[some], face[some], voxel[some] = traced.material, traced.face, traced.cell
-        parameter[some] = _parameters(places, ways[some], material[some], face[some], voxel[some])
-        distance[some] = parameter[some] * np.linalg.norm(ways[some], axis=1)
+        in_steps = _parameters(places, steps, material[some], face[some], voxel[some])
+        parameter[some] = np.ldexp(in_steps, doublings)
+        distance[some] = in_steps * np.linalg.norm(steps.astype(np.float64), axis=1)
     return RayHits(material != 0, material, face, voxel, parameter, distance)
 
 
@@ -129,15 +130,15 @@ def _places(origins: NDArray[np.float64], first: int) -> NDArray[np.int32]:
     return scaled.astype(np.int32)
 
 
-def _steps(directions: NDArray[np.float64], first: int) -> NDArray[np.int32]:
-    """Return directions as integers below 2**20: each times the power of two that makes it whole."""
+def _steps(directions: NDArray[np.float64], first: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Return directions as integers below 2**20, and how often each was doubled to become whole (shape (N,))."""
     if not (moving := directions.any(axis=1)).all():
         raise ValueError(f"directions[{first + int(np.argmin(moving))}] must not be zero")
-    steps = directions.copy()
-    # The largest component gets 20 bits; those that leave a fraction then are no multiples of a power of two.
-    _, exponents = np.frexp(np.abs(steps).max(axis=1))
-    whole_already = (np.rint(steps) == steps).all(axis=1) & (exponents <= 20)
-    steps = np.where(whole_already[:, None], steps, np.ldexp(steps, (20 - exponents)[:, None]))
+    # The largest component gets 20 bits. If another still has a fraction then, no power of two makes both whole.
+    _, exponents = np.frexp(np.abs(directions).max(axis=1))
+    whole_already = (np.rint(directions) == directions).all(axis=1) & (exponents <= 20)
+    doublings = np.where(whole_already, 0, 20 - exponents).astype(np.int32)
+    steps = np.ldexp(directions, doublings[:, None])
     wrong = (np.rint(steps) != steps).any(axis=1) | (np.abs(steps).max(axis=1) >= DIRECTION_LIMIT)
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -145,21 +146,21 @@ def _steps(directions: NDArray[np.float64], first: int) -> NDArray[np.int32]:
             f"directions[{first + row}] must be integers below 2**20, or such times a power of two, not "
             f"{directions[row].tolist()}; round it: np.rint(1000 * directions)"
         )
-    return steps.astype(np.int32)
+    return steps.astype(np.int32), doublings
 
 
 def _parameters(
     places: NDArray[np.int32],
-    directions: NDArray[np.float64],
+    steps: NDArray[np.int32],
     material: NDArray[np.uint8],
     face: NDArray[np.uint8],
     voxel: NDArray[np.int32],
 ) -> NDArray[np.float64]:
-    """Return where rays cross into the voxels they hit, in lengths of their directions."""
+    """Return where rays cross into the voxels they hit, in steps from their origins."""
     found = np.where(material != 0, 0.0, np.inf)
     crossed = np.flatnonzero((material != 0) & (face != FACE_NONE))
     axis = face[crossed].astype(np.intp)
-    along = directions[crossed, axis]
+    along = steps[crossed, axis].astype(np.float64)
     # The plane crossed is the near one of the voxel. All numbers but the quotient are exact.
     plane = voxel[crossed, axis].astype(np.float64) + (along < 0)
     found[crossed] = (POSITION_UNITS * plane - places[crossed, axis]) / (POSITION_UNITS * along)

@@ -1,4 +1,4 @@
-"""How alike two pictures are, in the two numbers that people quote."""
+"""The similarity of two pictures: PSNR and SSIM."""
 
 from __future__ import annotations
 
@@ -16,25 +16,67 @@ _SIGMA = 1.5
 
 
 def peak_signal_to_noise(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
-    """Give the peak signal-to-noise ratio of two pictures (H, W, 3), in decibel; infinite where they are equal."""
+    """Compute the peak signal-to-noise ratio of two pictures.
+
+    Parameters
+    ----------
+    picture, other
+        uint8, shape (H, W, 3).
+
+    Returns
+    -------
+    float
+        Decibel; infinite for equal pictures.
+
+    Raises
+    ------
+    ValueError
+        The pictures differ in shape.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> black = np.zeros((8, 8, 3), np.uint8)
+    >>> round(peak_signal_to_noise(black, black + 16), 2)
+    24.05
+    """
+    _refuse_other_shape(picture, other)
     error = float(np.mean((picture.astype(np.float64) - other.astype(np.float64)) ** 2))
     return math.inf if error == 0 else 10 * math.log10(255**2 / error)
 
 
 def structural_similarity(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
-    """Give the mean structural similarity of two pictures' luma, 1 where they are equal.
+    """Compute the mean structural similarity (SSIM) of the luma of two pictures.
 
     Parameters
     ----------
     picture, other
         uint8, shape (H, W, 3), sRGB.
 
+    Returns
+    -------
+    float
+        1 for equal pictures.
+
+    Raises
+    ------
+    ValueError
+        The pictures differ in shape.
+
     Notes
     -----
     Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
     Similarity", IEEE Transactions on Image Processing 13 (4), 2004: a Gaussian window of 11 x 11 pixels with sigma 1.5,
-    K1 = 0.01, K2 = 0.03. Pictures are continued by their mirror image at the border.
+    K1 = 0.01, K2 = 0.03. Beyond the border, pictures are continued by their mirror image.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> ramp = np.arange(16 * 16 * 3).reshape(16, 16, 3).astype(np.uint8)
+    >>> structural_similarity(ramp, ramp)
+    1.0
     """
+    _refuse_other_shape(picture, other)
     x, y = picture @ _LUMA, other @ _LUMA
     mean_x, mean_y = _blurred(x), _blurred(y)
     variance_x = _blurred(x * x) - mean_x**2
@@ -45,6 +87,11 @@ def structural_similarity(picture: NDArray[np.uint8], other: NDArray[np.uint8]) 
         (mean_x**2 + mean_y**2 + c1) * (variance_x + variance_y + c2)
     )
     return float(similarity.mean())
+
+
+def _refuse_other_shape(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> None:
+    if picture.shape != other.shape:
+        raise ValueError(f"pictures of shape {picture.shape} and {other.shape} cannot be compared")
 
 
 def _blurred(values: NDArray[np.float64]) -> NDArray[np.float64]:

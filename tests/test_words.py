@@ -11,7 +11,11 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("voxrt", "voxelize", "octree", "export", "rtl", "sim", "view", "board", "serve", "web", "bench", "docs")
 MORE_FOLDERS = ("examples", "tests", ".github")
 TEXTS = {".py", ".pyi", ".md", ".rst", ".toml", ".yml", ".html", ".js", ".cpp", ".h", ".sv", ".rdl", ".json", ".txt"}
-GENERATED = ("docs/gallery", "docs/study", "rtl/generated", "bench/results")
+GENERATED = (
+    *(f"docs/{folder}" for folder in ("gallery", "study", "measured", "reference", "walk/pictures")),
+    "rtl/generated",
+    "bench/results",
+)
 
 RETIRED = {
     r"(cycles?|clocks?) a (pixel|ray|frame)": "cycles per pixel",

@@ -104,12 +104,26 @@ def octant_cells(
 
 
 def open_sides(grid: pyvista.UnstructuredGrid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Give the sides of octants that are not covered: what can be seen of them.
+    """Return the sides of octants that others do not cover.
+
+    Parameters
+    ----------
+    grid
+        What :func:`octants` returned.
 
     Returns
     -------
-    tuple
-        The sides (shape (S, 4), rows of the grid's points, counter-clockwise from outside), and each one's cell.
+    quads
+        int64, shape (S, 4): rows of the grid's points, counter-clockwise seen from outside.
+    cells
+        int64, shape (S,): the cell of each.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> quads, cells = open_sides(octants(voxrt.build("examples/house.obj", depth=4).rom))
+    >>> quads.shape == (len(cells), 4)
+    True
     """
     corners = np.asarray(grid.cells, np.int64).reshape(-1, 9)[:, 1:]
     cells, sides = np.nonzero(np.asarray(grid.cell_data["open"])[:, None] >> np.arange(6) & 1)
@@ -117,7 +131,7 @@ def open_sides(grid: pyvista.UnstructuredGrid) -> tuple[NDArray[np.int64], NDArr
 
 
 def import_pyvista() -> ModuleType:
-    """Import PyVista, or say how to install it.
+    """Import PyVista.
 
     Raises
     ------

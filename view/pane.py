@@ -1,4 +1,4 @@
-"""What a picture shows: memories side by side, and a ray's way through one of them."""
+"""What a picture shows: memories side by side, and the path of a ray through one of them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 Aspect: TypeAlias = Literal["material", "level", "owner"]
 Plane: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]
-"""A normal and a point; what lies on the normal's side is cut away."""
+"""A normal and a point; octants on the side of the normal are cut away."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,15 +38,22 @@ class Pane:
     rom
         The memory and its materials.
     high
-        Only octants that overlap the voxels below this are shown; None for all.
+        Show only octants that overlap the voxels below this (x, y, z); None shows all.
     cut
-        Octants are cut at `high` and not shown whole.
+        Cut the octants at `high`; else they are shown whole.
     by
-        What the colours tell; ``"owner"`` needs `owners`.
+        What the colours show: ``"material"``, ``"level"`` or ``"owner"``, which needs `owners`.
     owners
-        Whose the voxels are.
+        The owners of the voxels.
     triangles
         A mesh drawn over the octants: float64, shape (T, 3, 3), voxels, grid frame.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> pane = Pane(voxrt.build("examples/house.obj", depth=4).rom, high=(8, 16, 16), cut=True)
+    >>> int(pane.mesh().points[:, 0].max())
+    8
     """
 
     rom: Rom
@@ -57,11 +64,11 @@ class Pane:
     triangles: NDArray[np.float64] | None = None
 
     def solid(self) -> Leaves:
-        """Take the octants, hidden ones included."""
+        """Return the solid octants, hidden ones included."""
         return solid_leaves(self.rom.octree, (0, 0, 0), self.high)
 
     def coarsened(self, level: int) -> Pane:
-        """Make octants of 2**level voxels a side uniform."""
+        """Return a pane whose octants of 2**level voxels per side are uniform."""
         tree = self.rom.octree
         return replace(self, rom=replace(self.rom, octree=coarsen(tree, min(level, tree.depth)))) if level else self
 
@@ -87,7 +94,7 @@ class Pane:
         return ((0, 0, 0), (self.rom.octree.size,) * 3 if self.high is None else self.high) if self.cut else None
 
     def describe(self, voxel: Corner) -> str:
-        """Say all that the memory knows of the octant that holds a voxel, in lines."""
+        """Return what the memory knows of the octant that holds a voxel, in lines of text."""
         octant = octant_at(self.rom.octree, voxel)
         ranges = ", ".join(
             f"{axis} {first}...{end - 1}" for axis, first, end in zip("xyz", octant.corner, octant.end, strict=True)
@@ -106,19 +113,19 @@ class Pane:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class DrawnRay:
-    """A ray as a picture shows it.
+    """A ray as a picture shows it, as :func:`voxrt.view.scene_overlay.drawn_ray` makes it.
 
     Attributes
     ----------
     start, end
         Voxels, grid frame.
     corners, levels, words
-        Of the octants whose words it read, in order: lowest voxel (int, shape (N, 3)), log2 of the side (shape (N,)),
-        word in the report dialect (uint32, shape (N,)).
+        The octants whose words it read, in order: lowest voxels (int64, shape (N, 3)), log2 of the side (int64, shape
+        (N,)), words in the report dialect (uint32, shape (N,)).
     points
-        Where it stood then: float64, shape (N, 3), voxels.
+        The points of the ray at these readings: float64, shape (N, 3), voxels.
     table
-        What is told of it beside the picture, in lines of one width.
+        The lines of text beside the picture.
     """
 
     start: tuple[float, float, float]
@@ -139,9 +146,9 @@ class Preview:
     colour
         uint8, shape (H, W, 3), sRGB.
     pixel
-        The one chosen: column, row.
+        The chosen pixel: column, row.
     follow
-        Gives a pixel's ray.
+        Returns the ray of a pixel.
     """
 
     colour: NDArray[np.uint8]

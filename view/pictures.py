@@ -1,4 +1,4 @@
-"""Pictures of the octants, and turntables."""
+"""Pictures of octants, and turntables."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ def plot(
     size: tuple[int, int] = (1024, 768),
     screenshot: str | os.PathLike[str] | None = None,
 ) -> None:
-    """Show the octants of memories, side by side, in a window until it is closed, or save a picture of them.
+    """Show the octants of memories, side by side, in a window until it is closed; or save a picture of them.
 
-    A click on an octant shows its word's address, the word, level, bounds and material.
+    A click on an octant shows its address, word, level, bounds and material.
 
     Parameters
     ----------
     *roms
         The memories and their materials.
     high
-        Only octants that overlap the voxels below this (default: the world's end), whole.
+        Show only octants that overlap the voxels below this (x, y, z); None shows all.
     by
-        What the colours tell, ``"material"`` or ``"level"``.
+        What the colours show: ``"material"`` or ``"level"``.
     size
         Width and height, pixels.
     screenshot
@@ -51,6 +51,11 @@ def plot(
         PyVista is not installed, or there is nothing to draw on.
     DoesNotFitError
         Too many octants.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> plot(voxrt.build("examples/house.obj", depth=4).rom, by="level", screenshot="house.png")
     """
     panes = [Pane(rom, high, by=by) for rom in roms]
     if screenshot is None:
@@ -64,7 +69,34 @@ def plot(
 def picture(
     panes: Sequence[Pane], size: tuple[int, int] = (1024, 768), *, preview: Preview | None = None
 ) -> NDArray[np.uint8]:
-    """Draw panes as :func:`voxrt.view.drawing.draw` does (uint8, shape (H, W, 3), sRGB)."""
+    """Draw panes side by side.
+
+    Parameters
+    ----------
+    panes
+        One or more; one if there is a preview.
+    size
+        Width and height of all together, pixels.
+    preview
+        A picture whose chosen pixel's ray is drawn through the octants.
+
+    Returns
+    -------
+    NDArray[np.uint8]
+        Shape (H, W, 3), sRGB.
+
+    Raises
+    ------
+    ViewerError
+        PyVista is not installed, or there is nothing to draw on.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from voxrt.view import Pane
+    >>> picture([Pane(voxrt.build("examples/house.obj", depth=4).rom)], (64, 48)).shape
+    (48, 64, 3)
+    """
     plotter, _ = draw(panes, size, preview=preview, off_screen=True)
     pixels = np.array(plotter.screenshot(None, return_img=True)[..., :3], np.uint8)
     plotter.close()
@@ -72,7 +104,29 @@ def picture(
 
 
 def turntable(panes: Sequence[Pane], size: tuple[int, int], frames: int) -> Iterator[NDArray[np.uint8]]:
-    """Draw panes from all sides, once around the upright axis: each picture as :func:`picture` gives it."""
+    """Draw panes from all sides: one turn around the upright axis.
+
+    Parameters
+    ----------
+    panes
+        One or more.
+    size
+        Width and height of all together, pixels.
+    frames
+        Number of pictures.
+
+    Yields
+    ------
+    NDArray[np.uint8]
+        The next picture, as :func:`picture` returns it.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from voxrt.view import Pane
+    >>> len(list(turntable([Pane(voxrt.build("examples/house.obj", depth=4).rom)], (64, 48), 4)))
+    4
+    """
     plotter, grids = draw(panes, size, off_screen=True)
     corners = np.concatenate([np.asarray(grid.points, np.float64).reshape(-1, 3) for grid in grids])
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2 if len(corners) else np.zeros(3)

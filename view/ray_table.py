@@ -23,7 +23,7 @@ def ray_table(rom: Rom | None, path: RayPath) -> list[tuple[str, ...]]:
     >>> from voxrt.sim import follow_ray
     >>> path = follow_ray(from_points([[5, 2, 2]], [7], depth=3), (80, 40, 40), (0, 0, 1))
     >>> ray_table(None, path)[-1]
-    ('4', '0x15', '0xFFFFFF07', '0', '5', '2', '2', 'the eye', '0', 'leaf: material 7')
+    ('3', '0x12', '0xFFFFFF07', '0', '5', '2', '2', 'the eye', '0', 'leaf: material 7')
     """
     return [
         (

@@ -1,4 +1,4 @@
-"""The window: octants to turn, to pick, to cut and to coarsen; a preview to choose rays in."""
+"""The window: octants to turn, pick, cut and coarsen, and a preview to choose rays in."""
 
 from __future__ import annotations
 
@@ -29,20 +29,28 @@ _HELP = "click: octant   slider: smallest octant   c: cut   w/s: edges   q: quit
 class Window:
     """Panes in a window.
 
-    A click on an octant tells about it; a slider makes octants uniform up to a size; the key ``c`` brings a plane that
-    cuts octants away, and takes it off again; a click in the preview shows that pixel's ray.
+    A click on an octant shows what it is. A slider makes octants uniform up to a size. The key ``c`` adds a plane that
+    cuts octants away, and removes it again. A click in the preview shows the ray of that pixel.
 
     Parameters
     ----------
     panes, size, preview
         As :func:`voxrt.view.drawing.draw` takes them.
     off_screen
-        Without a screen, to be worked by the methods.
+        Draw without a screen; the methods take the place of mouse and keys.
 
     Raises
     ------
     ViewerError
-        PyVista is missing, or there is no screen.
+        PyVista is not installed, or there is no screen.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from voxrt.view import Pane
+    >>> window = Window([Pane(voxrt.build("examples/house.obj", depth=4).rom)], (64, 48), off_screen=True)
+    >>> window.set_level(2)
+    >>> window.plotter.close()
     """
 
     def __init__(
@@ -72,7 +80,7 @@ class Window:
             self.set_level,
             (0, depth),
             value=0,
-            title="smallest octant: 2^n voxels a side",
+            title="smallest octant: 2^n voxels per side",
             pointa=(0.6, 0.12),
             pointb=(0.95, 0.12),
             style="modern",
@@ -91,19 +99,19 @@ class Window:
         self.plotter.show()
 
     def set_level(self, level: float) -> None:
-        """Make octants of 2**level voxels a side uniform."""
+        """Make octants of 2**level voxels per side uniform."""
         shown = [pane.coarsened(round(level)) for pane in self._panes]
         if [pane.rom.octree for pane in shown] != [pane.rom.octree for pane in self._shown]:
             self._shown, self._solids = shown, [pane.solid() for pane in shown]
             self._redraw()
 
     def set_plane(self, normal: tuple[float, float, float], point: tuple[float, float, float]) -> None:
-        """Cut away the octants whose middles lie on the normal's side of a plane through a point."""
+        """Cut away the octants whose centres lie on the normal's side of a plane through a point."""
         self._plane = (normal, point)
         self._redraw()
 
     def toggle_plane(self) -> None:
-        """Bring the plane that cuts, or take it off and show all octants again."""
+        """Add the plane that cuts, or remove it and show all octants again."""
         if self._plane is None:
             grid = self.grids[0]
             self.plotter.add_plane_widget(
@@ -115,7 +123,7 @@ class Window:
             self._redraw()
 
     def click(self, x: int, y: int) -> None:
-        """Tell about the octant, or show the ray of the preview's pixel, at a place (pixels from the lower left)."""
+        """Describe the octant, or show the ray of the preview's pixel, at a place (pixels from the lower left)."""
         if self._preview is not None and self.plotter.renderers[0].IsInViewport(x, y):
             self._choose(self._preview, x, y)
         for number in range(len(self._shown)):
@@ -126,7 +134,7 @@ class Window:
                 self.pick(number, _world_point(renderer, x, y, renderer.GetZ(x, y)) + _BEHIND * look)
 
     def pick(self, number: int, point: NDArray[np.float64]) -> None:
-        """Tell about the octant that holds a point (shape (3,), voxels) of a pane, and mark it."""
+        """Describe and mark the octant that holds a point (float64, shape (3,), voxels) of a pane."""
         pane = self._shown[number]
         if point.min() < 0 or point.max() >= pane.rom.octree.size:
             return
@@ -165,7 +173,7 @@ class Window:
         self.plotter.render()
 
     def _lighten(self) -> None:
-        """Make coarser octants that stand in for many while these are turned, where the machine cannot keep up."""
+        """Make coarser octants that are shown while many octants are turned, if the machine is too slow for all."""
         self._light = []
         for number, (pane, grid) in enumerate(zip(self._shown, self.grids, strict=True)):
             enter(self.plotter, number, self._preview is not None)
@@ -181,7 +189,7 @@ class Window:
                 self._light.append((self.plotter.renderer.actors[f"octants {number}"], actor))
 
     def _begin_picture(self, *_event: object) -> None:
-        """Choose what a picture shows: VTK wants several a second while something is turned, else one in its time."""
+        """Choose what to draw: coarser octants while VTK wants several pictures per second, as when something turns."""
         turned = self._slow and self.plotter.render_window.GetDesiredUpdateRate() > 1
         for full, light in self._light:
             full.SetVisibility(not turned)

@@ -124,7 +124,7 @@ _HOMES = {
         "build",
         "voxelize_mesh",
     ),
-    "voxrt.plain_verilog": ("ToolError",),
+    "voxrt.errors": ("ToolError",),
     "voxrt.sim": (
         "Frame",
         "NoSuchConfigurationError",
@@ -165,6 +165,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt import board, export, octree, serve, sim, view, voxelize
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
+    from voxrt.errors import ToolError
     from voxrt.export import read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.from_arrays import mesh_scene
@@ -174,7 +175,6 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt.outputs import OutputError
     from voxrt.pictures import Picture, render, save_picture
     from voxrt.pipeline import build, voxelize_mesh
-    from voxrt.plain_verilog import ToolError
     from voxrt.sim import (
         Frame,
         NoSuchConfigurationError,

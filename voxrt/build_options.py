@@ -6,13 +6,13 @@ its help from here, so this module imports no heavy library.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence  # type hints are read at run time
 from dataclasses import dataclass, fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
 Fill: TypeAlias = Literal["solid", "surface"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]

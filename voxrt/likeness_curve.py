@@ -1,4 +1,4 @@
-"""How like its meshes a scene is at each depth, and for how many words: what a finer grid buys."""
+"""The similarity of voxels to their meshes at each depth, and the words that it takes."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class LikenessAtDepth:
     depth
         Levels of the octree.
     words
-        What its memory takes.
+        Words of its memory.
     likeness
-        How like its picture is to that of the meshes; depths in voxels of this grid.
+        The similarity of its picture to that of the meshes; distances in voxels of this grid.
     """
 
     depth: int
@@ -42,23 +42,35 @@ class LikenessAtDepth:
 def likeness_curve(
     scene: Scene, depths: Iterable[int], size: tuple[int, int], *, threads: int = 0
 ) -> tuple[LikenessAtDepth, ...]:
-    """Hold a scene's voxels against its meshes at several depths, from one camera.
+    """Compare the voxels of a scene with its meshes at several depths, from one camera.
 
     Parameters
     ----------
     scene
         The source.
     depths
-        Which, ascending, each 1 … 16; the camera frames the scene at the last.
+        The depths, ascending, 1 … 16 each. The camera frames the scene at the last.
     size
         Columns and rows of the pictures.
     threads
-        Threads of the native stages, 0 for one a core.
+        Threads of the native stages; 0 takes one per core.
+
+    Returns
+    -------
+    tuple[LikenessAtDepth, ...]
+        One per depth.
 
     Raises
     ------
     SimulatorError
         Open3D is not installed.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> curve = likeness_curve(voxrt.load("examples/house.obj"), [3, 5], (64, 48))
+    >>> curve[0].words < curve[1].words, curve[0].likeness.depth_mean > 0
+    (True, True)
     """
     roms = [_rom(scene, depth, threads) for depth in depths]
     finest = roms[-1].octree.depth
@@ -72,12 +84,24 @@ def likeness_curve(
 
 
 def draw_likeness_curve(curve: tuple[LikenessAtDepth, ...]) -> NDArray[np.uint8]:
-    """Draw what a curve says, against depth and against words: uint8, shape (H, W, 3).
+    """Plot a curve against depth and against words.
+
+    Returns
+    -------
+    NDArray[np.uint8]
+        Shape (H, W, 3), sRGB.
 
     Raises
     ------
     SimulatorError
         Matplotlib is not installed.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> curve = likeness_curve(voxrt.load("examples/house.obj"), [3, 4], (64, 48))
+    >>> draw_likeness_curve(curve).shape
+    (600, 900, 3)
     """
     try:
         from matplotlib.figure import Figure  # noqa: PLC0415 - slow to load, optional
@@ -90,7 +114,7 @@ def draw_likeness_curve(curve: tuple[LikenessAtDepth, ...]) -> NDArray[np.uint8]
     for column, (across, label) in enumerate((("depth", "depth"), ("words", "words of memory"))):
         at = [getattr(point, across) for point in curve]
         worlds = [point.likeness.depth_mean / (1 << point.depth) for point in curve]
-        places[0, column].plot(at, worlds, "o-", color="tab:red", label="mean depth error, parts of the world's side")
+        places[0, column].plot(at, worlds, "o-", color="tab:red", label="mean depth error / side of the world")
         places[0, column].set_yscale("log")
         for name, what in (("silhouette_iou", "silhouette IoU"), ("ssim", "SSIM"), ("normal_agreement", "normals")):
             places[1, column].plot(at, [getattr(point.likeness, name) for point in curve], "o-", label=what)

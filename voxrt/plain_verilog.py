@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.errors import ToolError
 from voxrt.rtl.configurations import TOP, list_sources
 
 if TYPE_CHECKING:
@@ -67,10 +68,6 @@ _LINT = """\
 /* verilator lint_off WIDTH */
 /* verilator lint_off UNOPTFLAT */
 """
-
-
-class ToolError(Exception):
-    """A tool of others that is missing or has failed, in one line."""
 
 
 def plain_verilog(configuration: Configuration, *, progress: Callable[[str], None] = lambda _stage: None) -> str:

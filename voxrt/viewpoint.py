@@ -1,8 +1,8 @@
-"""Where a camera stands when nobody says, or says only in part.
+"""Cameras from all, some or no registers, and the author's camera and light.
 
 All cameras made here are right-handed, right = look x up, so that text in a scene reads correctly. Registers are small
-integers; the camera is placed by the integers that the hardware will use, not by the real numbers they came from, so
-that the picture is framed as promised.
+integers. The position is computed from these integers, not from the real numbers before rounding, so that the scene
+fits the picture exactly.
 """
 
 from __future__ import annotations
@@ -11,20 +11,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
 from voxrt.sim import frame_scene, outline
+from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.octree import Rom
     from voxrt.octree.camera import Triple
     from voxrt.voxelize import Grid, Scene, Viewpoint
 
     Vector = NDArray[np.float64]
 
 _BOUNCES = 4
-"""How many mirrors a ray may meet where nobody says."""
+"""Default number of reflections in a scene with mirrors."""
 
 _REGISTER = 2**15 - 1
 _UP = np.array((0.0, 1.0, 0.0))
@@ -32,7 +33,7 @@ _BACK = np.array((0.0, 0.0, -1.0))
 
 
 class ViewpointError(ValueError):
-    """Camera registers that no camera can be derived from."""
+    """Registers from which no camera can be derived."""
 
 
 def aim_camera(
@@ -44,7 +45,7 @@ def aim_camera(
     right: Triple | None = None,
     up: Triple | None = None,
 ) -> Camera:
-    """Complete a camera: what is given is kept, the rest frames the whole scene, upright and right-handed.
+    """Complete a camera: given registers are kept, the others show the whole scene, upright and right-handed.
 
     Parameters
     ----------
@@ -53,17 +54,36 @@ def aim_camera(
     size
         Width and height of the picture, pixels.
     position
-        1/16 voxel; without it the camera stands where the scene fills the picture.
+        Integers, 1/16 voxel. None places the camera where the scene fills the picture.
     look, right, up
-        Registers. `look` given alone is a direction, whose scale is chosen so that the angle of view is the default
-        one; given with `right` or `up` it is kept as it is. Without `look` a given position looks at the scene's
-        centre, and no position at all at the scene's front from a three-quarter view.
+        Integers, signed 16 bit. `look` alone is a direction of any length; the angle of view is the default one. With
+        `right` or `up`, `look` is kept as it is. Without `look`, the camera looks at the centre of the scene, or if
+        there is no position either, at its front from the right and above.
+
+    Returns
+    -------
+    Camera
+        All four registers.
 
     Raises
     ------
+    TypeError, ValueError
+        An argument is not of the right type, or not made of integers.
     ViewpointError
         A register is zero where a direction is needed, or the registers lie in a plane and no position is given.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> aim_camera(rom, (64, 48), position=(128, 128, 800), look=(0, 0, -1)).look[:2]
+    (0, 0)
     """
+    instance("rom", rom, Rom)
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
+    size = (width, height)
+    position = _triple("position", position, 1 << 31)
+    look, right, up = _triple("look", look), _triple("right", right), _triple("up", up)
     if position is None and (look, right, up) == (None, None, None):
         return frame_scene(rom, size)
     points = outline(rom.octree)
@@ -83,14 +103,14 @@ def aim_camera(
 
 
 def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> Camera:
-    """Make the camera that stands where the scene's author wants it.
+    """Make the camera of the scene's author.
 
     Parameters
     ----------
     viewpoint
-        In the scene frame.
+        The author's camera, scene frame.
     grid
-        Where the voxels stand in the scene.
+        The place of the voxels in the scene.
     size
         Width and height of the picture, pixels.
 
@@ -112,7 +132,7 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
 
 
 def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
-    """Make the shading that the scene's author wants: a light where it stands, mirrors where materials are some.
+    """Make the lighting of the scene's author: the light if there is one, mirrors if materials are mirrors.
 
     Raises
     ------
@@ -129,8 +149,16 @@ def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
     return Lighting((x, y, z), on=True, bounces=bounces)
 
 
+def _triple(name: str, value: Triple | None, limit: int = _REGISTER + 1) -> Triple | None:
+    """Return three integers of a register; None stays."""
+    if value is None:
+        return None
+    x, y, z = whole_array(name, value, (3,), np.int64, low=-limit, high=limit - 1).tolist()
+    return (x, y, z)
+
+
 def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Triple | None) -> Vector:
-    """Tell the unit direction to look in: the given one, else the preferred one made square to what is given."""
+    """Return the unit look: the given one, else the preferred one made perpendicular to the given registers."""
     if look is not None:
         return _unit(look, "look")
     if right is not None and up is not None:
@@ -143,7 +171,7 @@ def _sight(preferred: Vector, look: Triple | None, right: Triple | None, up: Tri
 def _complete(
     sight: Vector, size: tuple[int, int], look: Triple | None, right: Triple | None, up: Triple | None
 ) -> tuple[Triple, Triple, Triple]:
-    """Give the missing registers the values of an upright right-handed camera that looks along `sight`."""
+    """Return all registers: missing ones as of an upright right-handed camera that looks along `sight`."""
     given = up if right is None else right
     if given is None:  # look alone is a direction
         upright = _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])

@@ -86,7 +86,7 @@ async def fractions(dut, sending, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop what is on its way."""
+    """Drop all pixels under way."""
     await start(dut, valid_i=0, ready_i=0)
     for _ in range(10):
         make = begin(dut)

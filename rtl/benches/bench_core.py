@@ -34,7 +34,7 @@ def shaded(voxels, width, height, **shading):
 
 
 class Core:
-    """The core and what stands around it on a board."""
+    """The core and its surroundings on a board."""
 
     def __init__(self, dut):
         self.dut = dut
@@ -327,7 +327,7 @@ async def reset_at_any_clock(dut):
 @cocotb.test()
 @cocotb.parametrize(reset=["soft", "pin"])
 async def one_clock_of_reset(dut, reset):
-    """Reset for one clock, at each turn of the lanes' rings; three frames after it are whole.
+    """Reset for one clock, at each phase of the lanes' rings; three frames after it are whole.
 
     A frame has more rays per lane than a lane has rows for their weights, so that each row is used again.
     """

@@ -1,4 +1,4 @@
-"""voxrt_light: each lane's hit points become its shadow rays, in order; and where the light stands among the planes."""
+"""voxrt_light: each lane's hit points become its shadow rays, in order; and where the light is among the planes."""
 
 import random
 
@@ -19,13 +19,13 @@ class Lanes:
         self.asks, self.starts = pace(asking), pace(starting)
         self.wanted = [[] for _ in range(LANES)]
         self.waiting = [0] * LANES
-        self.places = [QUEUE] * LANES
+        self.credits = [QUEUE] * LANES
 
     async def run(self, clocks, *, ask=True):
         """Go on for so many clocks."""
         dut, side, light = self.dut, self.side, self.light
         for _ in range(clocks):
-            asks = [ask and self.places[lane] > 0 and next(self.asks) for lane in range(LANES)]
+            asks = [ask and self.credits[lane] > 0 and next(self.asks) for lane in range(LANES)]
             starts = [self.waiting[lane] > 0 and next(self.starts) for lane in range(LANES)]
             drive(dut, hit_point_valid_i=sum(bool(bit) << lane for lane, bit in enumerate(asks)))
             drive(dut, issued_i=sum(bool(bit) << lane for lane, bit in enumerate(starts)))
@@ -39,9 +39,9 @@ class Lanes:
                     self.wanted[lane].append((tag, point, direction))
             await RisingEdge(dut.clk_i)
             ready = dut.hit_point_ready_o.value.to_unsigned()
-            assert ready == sum((places > 0) << lane for lane, places in enumerate(self.places))
+            assert ready == sum((credits > 0) << lane for lane, credits in enumerate(self.credits))
             for lane in range(LANES):
-                self.places[lane] += bool(starts[lane]) - bool(asks[lane])
+                self.credits[lane] += bool(starts[lane]) - bool(asks[lane])
                 self.waiting[lane] -= bool(starts[lane])
             if int(dut.valid_o.value):
                 lane = dut.lane_o.value.to_unsigned().bit_length() - 1
@@ -88,7 +88,7 @@ async def shadow_rays(dut, asking, starting):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop what is on its way; all places are free again."""
+    """Drop what is under way; all credits are back."""
     await start(dut, hit_point_valid_i=0, issued_i=0)
     for _ in range(10):
         lanes = Lanes(dut, "random", "random")

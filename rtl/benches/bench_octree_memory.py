@@ -159,7 +159,7 @@ async def reset_at_any_clock(dut):
 @cocotb.test()
 @cocotb.parametrize(writes=[False, True])
 async def no_lane_starves(dut, writes):
-    """All lanes ask at every clock, and the processor too: each turn of a ring of rays is served now and then."""
+    """All lanes ask at every clock, and the processor too: each slot of a ring of rays is served often enough."""
     memory = Memory(dut)
     await memory.begin()
     ring, laps = 10 + memory.clocks, 40

@@ -66,7 +66,7 @@ async def directions(dut, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Begin anew after it."""
+    """Begin again after it."""
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):
         frame = some_frame()

@@ -11,7 +11,7 @@ DEPTH = 16
 
 
 async def run(dut, clocks, likely):
-    """Compare clock by clock; writers count places, so none comes to a full queue."""
+    """Compare clock by clock; writers hold credits, so none comes to a full queue."""
     queues = deque(), deque()
     for _ in range(clocks):
         shadow, item = randrange(2), randrange(256)

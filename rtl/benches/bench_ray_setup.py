@@ -22,13 +22,13 @@ def some_position(side):
 
 
 def some_shadow(side):
-    """Make a lit point, 1/32 voxel, on a face, and the way from there."""
+    """Make a lit point, 1/32 voxel, on a face, and the direction from there."""
     face = random.randrange(3)
     point = [2 * random.randrange(16 * side) + 1 for _ in range(3)]
-    way = [random.choice([0, random.randint(-(1 << 20) + 1, (1 << 20) - 1)]) for _ in range(3)]
+    direction = [random.choice([0, random.randint(-(1 << 20) + 1, (1 << 20) - 1)]) for _ in range(3)]
     point[face] = 32 * random.randint(0, side)
-    way[face] = random.randint(1, 1 << 19) * (-1 if point[face] == 32 * side else 1)
-    return point, way
+    direction[face] = random.randint(1, 1 << 19) * (-1 if point[face] == 32 * side else 1)
+    return point, direction
 
 
 def world(position, depth):
@@ -38,7 +38,7 @@ def world(position, depth):
 
 
 def seen(dut):
-    """Read what stands at the outputs."""
+    """Read the outputs."""
     values = RAY.unpack(dut.ray_o)
     values["origin"] = tuple(signed(value, DISTANCE) for value in values["origin"])
     values["weights"] = tuple(unpacked_array(dut.weights_o.value.to_unsigned(), 3, WEIGHT))
@@ -126,7 +126,7 @@ async def a_world_of_one_leaf_is_answered(dut):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Drop what is on its way."""
+    """Drop all rays under way."""
     await start(dut, valid_i=0)
     for _ in range(5):
         sender = cocotb.start_soon(frame(dut, 40, "random"))

@@ -25,7 +25,7 @@ class Ring:
         self.dut = dut
         self.table = {}
         self.rays = [None] * SLOTS
-        self.entries = [None] * SLOTS  # That were looked up for the turn that comes.
+        self.entries = [None] * SLOTS  # Looked up for stage 9.
         self.clocks = count()
         self.ended = self.reflected = 0
 

@@ -19,7 +19,7 @@ REFUSALS = {"refuses": ["never", "at_random", "for_long"]}
 
 
 class Memory:
-    """Lane 0's port. What it says to what nobody asked is no answer, and may be anything."""
+    """Lane 0's port. Words that were not asked for may be anything."""
 
     def __init__(self, dut, refuses):
         self.dut = dut
@@ -44,7 +44,7 @@ class Memory:
 
 
 async def ask(dut, memory, address):
-    """Start a search; what stands at the inputs counts at that clock alone. Give word 0 of then."""
+    """Start a search: the inputs count at that clock alone. Give word 0 of that clock."""
     first = random.randrange(1 << 10)
     drive(dut, start_i=1, address_i=address, first_word_i=first)
     await memory.clock()

@@ -39,7 +39,7 @@ async def check(dut):
 
 @cocotb.test()
 async def corners(dut):
-    """Many frames; and a reset on the way now and then."""
+    """Many frames, with resets between and within."""
     await start(dut, start_i=0)
     for _ in range(60):
         await check(dut)

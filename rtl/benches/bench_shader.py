@@ -95,7 +95,7 @@ async def colours(dut, sending, taking):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """Begin anew after it; the material table stays."""
+    """Begin again after it; the material table stays."""
     table = await prepare(dut)
     for _ in range(10):
         frame = some_frame()

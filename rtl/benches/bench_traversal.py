@@ -150,7 +150,7 @@ async def words_that_do_not_come_and_words_that_are_wrong(dut):
         dut.bram_we_i.value = 0
         dut.bram_addr_i.value = 4
         while True:
-            dut.bram_en_i.value = random.randrange(2)  # No rhythm: a ray's turns have one of their own.
+            dut.bram_en_i.value = random.randrange(2)  # Random: a ray comes round at a fixed period.
             await RisingEdge(dut.clk_i)
 
     await core.load(uniform(DEPTH - 3))

@@ -11,6 +11,7 @@ import pytest
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 ENTRY = re.compile(r"^\.\. (?:auto(?:function|class)|py:data):: (\S+)$", re.MULTILINE)
 REFERENCE = re.compile(r"^- ``(\S+)``: :py:\w+:`(\S+)`$", re.MULTILINE)
+PAGE = re.compile(r"^- :doc:`(\S+)`$", re.MULTILINE)
 
 EXPORTING = ("voxrt", "voxrt.voxelize", "voxrt.octree", "voxrt.export", "voxrt.sim", "voxrt.view")
 
@@ -30,9 +31,10 @@ def described(pages):
 @pytest.mark.parametrize("package", EXPORTING)
 def test_every_export_is_in_the_reference(package, pages, described):
     elsewhere = dict(REFERENCE.findall(pages[package]))
+    rooms = set(PAGE.findall(pages[package])) & set(pages)
     for name in import_module(package).__all__:
         full = f"{package}.{name}"
-        assert full in described or elsewhere.get(full) in described, full
+        assert full in described or elsewhere.get(full) in described or full in rooms, full
 
 
 @pytest.mark.parametrize(

@@ -148,17 +148,11 @@ def test_instances_are_the_same_as_copies():
 
 def test_arguments_are_checked():
     scene = one_object(box_mesh([0, 0, 0], [1, 1, 1]))
-    for grid, how in (
-        (Grid(17, (0.0, 0.0, 0.0), 1.0), {}),
-        (Grid(3, (0.0, 0.0, 0.0), 0.0), {}),
-        (GRID, {"fill": "all"}),
-        (GRID, {"geometry": "hull"}),
-        (GRID, {"pow2": "sphere"}),
-        (GRID, {"threads": -1}),
-    ):
+    for how in ({"fill": "all"}, {"geometry": "hull"}, {"pow2": "sphere"}, {"threads": -1}):
         with pytest.raises(ValueError, match="must be"):
-            voxelize(scene, grid, **how)
-    wrong = Mesh(np.zeros((3, 3)), np.array([[0, 1, 3]], np.int32), np.full(1, 1, np.uint8))
+            voxelize(scene, GRID, **how)
+    wrong = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]], np.int32), np.full(1, 1, np.uint8))
+    wrong.triangles[0, 2] = 3  # behind the back of the check at the door: the native voxelizer checks again
     with pytest.raises(ValueError, match="triangles must index positions"):
         voxelize(one_object(wrong), GRID)
 
@@ -169,9 +163,9 @@ def test_fit_grid():
     assert fit_grid(scene, voxel_size=0.5) == Grid(3, (1.0, 2.0, 3.0), 0.5)
     assert fit_grid(scene, voxel_size=0.49).depth == 4
     assert fit_grid(scene, voxel_size=100.0).depth == 1
-    with pytest.raises(DoesNotFitError, match="the least voxel size is"):
+    with pytest.raises(DoesNotFitError, match=r"use a voxel size of .* m or more"):
         fit_grid(scene, voxel_size=1e-5)
-    with pytest.raises(ValueError, match="either depth or voxel_size"):
+    with pytest.raises(ValueError, match="one of depth and voxel_size"):
         fit_grid(scene)
     with pytest.raises(AssetError, match="nothing to voxelize"):
         fit_grid(Scene("empty", (), MATERIALS), depth=3)

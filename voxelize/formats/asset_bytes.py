@@ -1,4 +1,4 @@
-"""The bytes of an asset file."""
+"""Reading the bytes of an asset file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that an asset names: looked for in its folder and below, elsewhere only when that is asked for."""
+"""Files that an asset refers to. They are opened in its folder and below; elsewhere only where the user allows it."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside, allow_outside=True"
-"""The way out where an asset names a file outside its folder."""
+"""How to fix a reference to a file outside the asset's folder."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExternalFiles:
-    """Where the files that an asset names may stand.
+    """The folders in which the files that an asset refers to may be.
 
     Attributes
     ----------
     folder
-        The asset's folder, without links.
+        The asset's folder, with links resolved.
     allow_outside
-        Whether they may stand elsewhere than there and below.
+        Whether files outside that folder may be opened.
     """
 
     folder: Path
@@ -26,15 +26,15 @@ class ExternalFiles:
 
     @classmethod
     def of(cls, asset: Path, *, allow_outside: bool) -> ExternalFiles:
-        """Return those of the file `asset`."""
+        """Return the external files of the file `asset`."""
         return cls(asset.parent.resolve(), allow_outside)
 
     def allows(self, target: Path) -> bool:
-        """Tell whether the file `target`, without links, may be opened."""
+        """Tell whether the file `target`, with links resolved, may be opened."""
         return self.allow_outside or target.is_relative_to(self.folder)
 
     def find(self, *names: str) -> Path | None:
-        """Return the first file there is that one of `names` leads to from the folder, allowed or not; else None."""
+        """Return the first existing file of `names`, relative to the folder, allowed or not; None where none exists."""
         for name in names:
             try:
                 target = (self.folder / name).resolve()
@@ -45,17 +45,17 @@ class ExternalFiles:
         return None
 
     def find_exported(self, name: str) -> Path | None:
-        """As :meth:`find`, for a path as another machine may have written it.
+        """Return the file that another machine's path means; None where there is none.
 
-        Backslashes separate folders too, the path is tried by its last part as well, and the case of letters does not
-        matter: that is how the exporting machine found it. A file that is allowed comes before one that is not.
+        Backslashes separate folders, too. The last part alone is tried as well, and case does not matter. An allowed
+        file is preferred to others.
         """
         parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
-        found = [self._whatever_its_case(tail) for tail in (parts, parts[-1:]) if tail]
+        found = [self._ignoring_case(tail) for tail in (parts, parts[-1:]) if tail]
         there = [target for target in found if target is not None]
         return next((target for target in there if self.allows(target)), next(iter(there), None))
 
-    def _whatever_its_case(self, parts: tuple[str, ...]) -> Path | None:
+    def _ignoring_case(self, parts: tuple[str, ...]) -> Path | None:
         place = self.folder
         try:
             for part in parts:

@@ -1,4 +1,4 @@
-"""Image files as textures hold them, decoded by Pillow."""
+"""Image files, decoded by Pillow."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_PIXELS = 1 << 26
-"""8192 x 8192: a few hundred bytes can promise far more."""
+"""8192 x 8192: a file of a few hundred bytes can claim far more."""
 
 _FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
 
@@ -45,7 +45,7 @@ def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:
     """
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the limit is ours to keep
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the limit below replaces Pillow's
             with Image.open(io.BytesIO(data), formats=_FORMATS) as opened:
                 if opened.width * opened.height > MOST_PIXELS:
                     raise Image.DecompressionBombError  # noqa: TRY301 -- Pillow raises it from twice its own limit

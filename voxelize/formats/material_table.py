@@ -1,4 +1,4 @@
-"""Material ids by order of first use."""
+"""The material table of a file that is being loaded: ids by order of first use."""
 
 from __future__ import annotations
 

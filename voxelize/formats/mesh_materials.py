@@ -155,7 +155,7 @@ def _add_light(
 
 
 def _numbers(usages: dict[_Key, _Usage], table: MaterialTable) -> list[int]:
-    """Append the materials of appearances to `table`; return their ids. Paints that are too many share some."""
+    """Append the materials of appearances to `table` and return their ids; too many appearances share materials."""
     free = MATERIAL_LIMIT - (len(table) - 1)
     if free < 1 and usages:
         raise DoesNotFitError(

@@ -1,4 +1,4 @@
-"""Polygons to triangles: fans where a polygon is convex, ear clipping (manifold3d) where it is not."""
+"""Triangulation of polygons: a fan where a polygon is convex, ear clipping (manifold3d) where it is not."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def triangulate(
     """Cut polygons into triangles with the polygons' own corners and orientation.
 
     A concave quadrilateral is cut at its reflex corner; a concave polygon of more corners is cut in its plane (the
-    Newell normal's dominant axis dropped, so coordinates stay exact). Polygons are taken to be planar; one without
-    area is cut as a fan.
+    Newell normal's dominant axis dropped, so coordinates stay exact). Polygons should be planar; one without area is
+    cut as a fan.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def triangulate(
     triangles
         int32, shape (T, 3): rows of `positions`; polygon after polygon.
     faces
-        int64, shape (T,): the polygon each triangle is of.
+        int64, shape (T,): the polygon of each triangle.
     """
     triangles, faces = triangulate_corners(positions, counts, corners)
     return np.asarray(corners)[triangles].astype(np.int32, copy=False), faces
@@ -42,7 +42,7 @@ def triangulate(
 def triangulate_corners(
     positions: NDArray[np.float64], counts: NDArray[np.integer], corners: NDArray[np.integer]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """As :func:`triangulate`, but the triangles index `corners` (int64, shape (T, 3)), to look up what a corner has."""
+    """As :func:`triangulate`, but the triangles index `corners` (int64, shape (T, 3)), for looking up attributes."""
     if not len(counts) or (counts[0] == 3 and (counts == 3).all()):
         return np.arange(3 * len(counts), dtype=np.int64).reshape(-1, 3), np.arange(len(counts), dtype=np.int64)
     starts = np.cumsum(counts) - counts
@@ -67,7 +67,7 @@ def _fan_anchors(
     starts: NDArray[np.int64],
     corners: NDArray[np.integer],
 ) -> tuple[NDArray[np.int64], list[tuple[int, NDArray[np.float64]]]]:
-    """Where each polygon's fan starts, and the concave polygons that no fan cuts, with their normals."""
+    """Return where each polygon's fan starts, and the concave polygons that no fan cuts, with their normals."""
     anchor = np.zeros(len(counts), dtype=np.int64)
     chosen = np.flatnonzero(counts > 3)
     sizes = counts[chosen]
@@ -81,7 +81,7 @@ def _fan_anchors(
     before = points[local[owner] + (place - 1) % sizes[owner]]
     normals = np.add.reduceat(np.cross(points, after), local, axis=0)
     turn = np.einsum("ij,ij->i", np.cross(points - before, after - points), normals[owner])
-    # A corner that turns back by less than this is straight: float32 files round flat polygons this much.
+    # A corner that turns back by less than this is straight: float32 files round polygons by this much.
     tolerance = 1e-9 * np.einsum("ij,ij->i", normals, normals)
     turns_back = turn < -tolerance[owner]
     concave = np.maximum.reduceat(turns_back, local)
@@ -92,7 +92,7 @@ def _fan_anchors(
 
 
 def _cut_in_plane(points: NDArray[np.float64], normal: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Triangles of one concave polygon, int64, shape (T, 3), as places in `points` (float64, shape (N, 3))."""
+    """Return the triangles of one concave polygon, int64, shape (T, 3), over `points` (float64, shape (N, 3))."""
     import manifold3d  # noqa: PLC0415 -- only concave polygons need it
 
     axis = int(np.argmax(np.abs(normal)))

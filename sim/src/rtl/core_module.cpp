@@ -1,7 +1,7 @@
 // The whole core, voxrt_core, for Python, with a board's surroundings. Every argument is checked here.
 //
 //   CORES: list[str]          names of the configurations that were built so
-//   Core(config)    one instance, out of reset; one call at a time (RuntimeError). Its clock ticks in these
+//   Core(config)              one instance, out of reset; one call at a time (RuntimeError). Its clock ticks in these
 //                             calls alone
 //     .memory_words           how many words its octree memory holds
 //     .read(address)          a register, by AXI4-Lite; byte address, a multiple of 4 below 2048
@@ -58,9 +58,9 @@ constexpr long register_bytes = 2048;
 
 using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-class Core {
+class CheckedCore {
 public:
-    explicit Core(const std::string& name) {
+    explicit CheckedCore(const std::string& name) {
         for (const CoreConfiguration& configuration : cores)
             if (name == configuration.name)
                 core_ = configuration.make();
@@ -159,16 +159,16 @@ void bind_core(nb::module_& m) {
     for (const CoreConfiguration& configuration : cores)
         names.emplace_back(configuration.name);
     m.attr("CORES") = names;
-    nb::class_<Core>(m, "Core")
+    nb::class_<CheckedCore>(m, "Core")
         .def(nb::init<const std::string&>(), "config"_a)
-        .def_prop_ro("memory_words", &Core::memory_words)
-        .def("read", &Core::read, "address"_a)
-        .def("write", &Core::write, "address"_a, "value"_a)
-        .def("read_memory", &Core::read_memory, "address"_a, "count"_a)
-        .def("write_memory", &Core::write_memory, "address"_a, "words"_a)
-        .def("expect", &Core::expect, "width"_a, "height"_a, nb::kw_only(), "stall_seed"_a = 0)
-        .def("run", &Core::run, "clocks"_a)
-        .def("frame", &Core::frame);
+        .def_prop_ro("memory_words", &CheckedCore::memory_words)
+        .def("read", &CheckedCore::read, "address"_a)
+        .def("write", &CheckedCore::write, "address"_a, "value"_a)
+        .def("read_memory", &CheckedCore::read_memory, "address"_a, "count"_a)
+        .def("write_memory", &CheckedCore::write_memory, "address"_a, "words"_a)
+        .def("expect", &CheckedCore::expect, "width"_a, "height"_a, nb::kw_only(), "stall_seed"_a = 0)
+        .def("run", &CheckedCore::run, "clocks"_a)
+        .def("frame", &CheckedCore::frame);
 }
 
 } // namespace voxrt::rtl

@@ -287,7 +287,7 @@ def test_assets_outside_the_folder_are_not_opened(tmp_path):
     (tmp_path / "inner").mkdir()
     path = tmp_path / "inner" / "yard.toml"
     path.write_text('[[objects]]\nasset = { file = "../cube.obj" }\n')
-    with pytest.raises(AssetError, match=r"line 2: asset '../cube.obj' lies outside .*--allow-outside"):
+    with pytest.raises(AssetError, match=r"line 2: asset '../cube.obj' is outside .*--allow-outside"):
         load(path)
     assert len(load(path, allow_outside=True).objects) == 1
 

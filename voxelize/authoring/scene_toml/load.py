@@ -13,7 +13,8 @@ from voxrt.voxelize.authoring import solid as solids
 from voxrt.voxelize.authoring.author import Author
 from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, Asset, Box, Node
 from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_file
-from voxrt.voxelize.authoring.solid import Solid, placement
+from voxrt.voxelize.authoring.solid import Solid
+from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 
@@ -206,7 +207,7 @@ class _Builder:
                 )
             found = self._external_files.find(asset.file)
             if found is not None and not self._external_files.allows(found):
-                problem = f"asset {asset.file[:60]!r} lies outside the scene file's folder"
+                problem = f"asset {asset.file[:60]!r} is outside the scene file's folder"
                 raise self._checked.error((*where, "file"), problem, ALLOW_OUTSIDE)
             try:
                 self._assets[key] = load(

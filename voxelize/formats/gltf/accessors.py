@@ -1,4 +1,4 @@
-"""Accessors to NumPy arrays: every component type, normalized, interleaved and sparse.
+"""Accessors as NumPy arrays: every component type, normalized, interleaved and sparse.
 
 Source: Khronos, glTF 2.0 specification, sections 3.6.2 (accessors) and 3.11 (normalized integers).
 """
@@ -42,7 +42,7 @@ _SHAPES: dict[ElementType, tuple[int, int]] = {
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How one element lies in memory. Columns of matrices start at multiples of 4 bytes.
+    """The memory layout of one element. Columns of matrices start at multiples of 4 bytes.
 
     Attributes
     ----------
@@ -58,23 +58,23 @@ class Layout:
 
     @property
     def column_bytes(self) -> int:
-        """From one column to the next."""
+        """Bytes from one column to the next."""
         packed = self.rows * self.dtype.itemsize
         return packed if self.columns == 1 else -(-packed // 4) * 4
 
     @property
     def element_bytes(self) -> int:
-        """What one element takes."""
+        """Bytes of one element."""
         return self.columns * self.column_bytes
 
     @property
     def components(self) -> int:
-        """How many numbers one element has."""
+        """Numbers of one element."""
         return self.columns * self.rows
 
 
 def layout_of(accessor: Accessor) -> Layout:
-    """Return how the elements of `accessor` lie in memory."""
+    """Return the memory layout of an accessor's elements."""
     return Layout(_DTYPES[accessor.component_type], *_SHAPES[accessor.type])
 
 
@@ -86,11 +86,11 @@ def read_accessor(document: Document, index: int, place: str, types: Container[s
     document
         The open asset.
     index
-        Which accessor.
+        The accessor's index.
     place
         The JSON path that refers to it, for errors.
     types
-        Element types that make sense there.
+        The element types that are allowed there.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def read_accessor(document: Document, index: int, place: str, types: Container[s
     accessor = document.item(document.gltf.accessors, index, place, "accessor")
     here = f"accessors[{index}]"
     if accessor.type not in types:
-        raise document.error(place, f"accessor {index} holds {accessor.type} elements, which make no sense here")
+        raise document.error(place, f"accessor {index} holds {accessor.type} elements, which are not allowed here")
     layout = layout_of(accessor)
     document.charge(accessor.count * layout.element_bytes, here)
     if accessor.buffer_view is None:
@@ -129,9 +129,9 @@ def read_floats(document: Document, index: int, place: str, types: Container[str
 
 
 def as_reals(document: Document, stored: NDArray[Any], index: int) -> NDArray[np.floating]:
-    """Return the elements that accessor `index` describes as finite reals, normalized integers mapped.
+    """Return the elements of accessor `index` as finite reals, normalized integers mapped.
 
-    Those stored as reals stay as they are stored, float32, without a copy.
+    Elements stored as reals stay float32, without a copy.
     """
     if stored.dtype.kind == "f":
         finite = np.isfinite(stored)
@@ -144,13 +144,13 @@ def as_reals(document: Document, stored: NDArray[Any], index: int) -> NDArray[np
 
 
 def as_floats(document: Document, stored: NDArray[Any], index: int) -> NDArray[np.float64]:
-    """Return the elements that accessor `index` describes as finite float64, normalized integers mapped."""
+    """Return the elements of accessor `index` as finite float64, normalized integers mapped."""
     document.charge(stored.size * 8, f"accessors[{index}]")
     return as_reals(document, stored, index).astype(np.float64, copy=False)
 
 
 def as_unit_floats(stored: NDArray[Any]) -> NDArray[np.float64]:
-    """Return `stored` as float64, integers mapped as normalized whether the file says so or not: colours, weights."""
+    """Return `stored` as float64, integers always mapped as normalized: colours, weights."""
     if stored.dtype.kind == "f":
         return stored.astype(np.float64)
     return normalized(stored)
@@ -165,7 +165,7 @@ def normalized(stored: NDArray[Any]) -> NDArray[np.float64]:
 def _strided(
     document: Document, source: Accessor | SparseIndices | SparseValues, count: int, layout: Layout, place: str
 ) -> NDArray[Any]:
-    """Return `count` elements from the buffer view that `source` names, without a copy where they lie packed."""
+    """Return `count` elements of a buffer view; packed elements are not copied."""
     assert source.buffer_view is not None
     view = document.item(document.gltf.buffer_views, source.buffer_view, f"{place}.bufferView", "buffer view")
     stride = view.byte_stride or layout.element_bytes
@@ -183,7 +183,7 @@ def _strided(
 
 
 def _patched(document: Document, sparse: Sparse, base: NDArray[Any], layout: Layout, place: str) -> NDArray[Any]:
-    """Return `base` with the elements replaced that `sparse` lists."""
+    """Return `base` with the elements of `sparse` replaced."""
     if sparse.count > len(base):
         raise document.error(place, f"replaces {sparse.count} of {len(base)} elements")
     scalar = Layout(_DTYPES[sparse.indices.component_type], 1, 1)

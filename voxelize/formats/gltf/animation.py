@@ -1,4 +1,4 @@
-"""Animation: the nodes of a file as they stand at a moment.
+"""Animation: the transforms of a file's nodes at one time.
 
 Source: Khronos, glTF 2.0 specification, section 3.11 and appendix C (interpolation).
 """
@@ -22,27 +22,26 @@ _COMPONENTS = {"translation": 3, "rotation": 4, "scale": 3}
 
 
 def posed(document: Document, time: float | None, animation: str | None = None) -> Gltf:
-    """Return the file's JSON with its nodes as an animation has them at `time` seconds.
+    """Return the file's JSON with its nodes posed by an animation at `time` seconds.
 
-    The animation is the one called `animation`, or of that number counted from 0; else the first.
-
-    Before an animation's first key and after its last, the nodes stand as at that key. Without `time`, nodes stand as
-    the file says, and that there are animations is noted; where an animation is named they stand as at its second 0.
+    `animation` is its name or its index, counted from 0; None for the first. Before the first key and after the last,
+    the nodes have the pose of that key. Without `time`, a named animation is shown at 0 seconds; without either, the
+    nodes keep their own transforms, and animations are counted.
 
     Raises
     ------
     AssetError
-        There is no such animation to sample, or it is broken.
+        The animation does not exist, or is invalid.
     """
     gltf = document.gltf
     if time is None and animation is None:
         if gltf.animations:
-            message = "animations were not played: the nodes stand as the file places them"
+            message = "animations were not played: the nodes keep their own transforms"
             document.log.add("animation", message, len(gltf.animations))
         return gltf
     if not gltf.animations:
-        asked = "a time" if animation is None else "an animation"
-        raise document.error("animations", f"{asked} was asked for and the file has no animation", "leave it out")
+        option = "a time" if animation is None else "an animation"
+        raise document.error("animations", f"{option} was given, and the file has no animation", "leave it out")
     if len(gltf.animations) > 1 and animation is None:
         message = "animations after the first were not played: --animation chooses another"
         document.log.add("animation", message, len(gltf.animations) - 1)
@@ -64,7 +63,7 @@ def _chosen(document: Document, wanted: str | None) -> int:
 
 
 def _play(document: Document, index: int, time: float, nodes: list[Node]) -> None:
-    """Move `nodes` to where animation `index` has them."""
+    """Replace the transforms of `nodes` by those of animation `index`."""
     animation = document.gltf.animations[index]
     for at, channel in enumerate(animation.channels):
         place = f"animations[{index}].channels[{at}]"
@@ -96,7 +95,7 @@ def _play(document: Document, index: int, time: float, nodes: list[Node]) -> Non
 def _sampled(
     keys: NDArray[np.float64], values: NDArray[np.float64], time: float, interpolation: str, turns: bool
 ) -> NDArray[np.float64]:
-    """Return the value at `time`; `values` has shape (keys, 1 or 3, components): in-tangent, value, out-tangent."""
+    """Return the value at `time`; `values` has shape (keys, 1 or 3, components), with tangents around the value."""
     middle = values.shape[1] // 2
     after = int(np.searchsorted(keys, time, side="right"))
     if after in (0, len(keys)):
@@ -133,6 +132,6 @@ def _turned(start: NDArray[np.float64], end: NDArray[np.float64], t: float) -> N
 
 
 def _unit(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return `quaternion` at length 1; one of length 0 is left for the node to refuse."""
+    """Return `quaternion` at length 1; length 0 stays, for the node to refuse."""
     length = float(np.linalg.norm(quaternion))
     return quaternion / length if length > 0 else quaternion

@@ -61,7 +61,7 @@ class SurfaceMaterials:
 
 
 def find_variant(document: Document, wanted: tuple[str, ...]) -> int | None:
-    """Return the index of the material variant that is `wanted`, one name or none; None for none.
+    """Return the index of the material variant that is `wanted`; None where none is.
 
     Raises
     ------
@@ -135,7 +135,7 @@ class _AppearanceBuilder:
         self._spans: list[tuple[Span, int, NDArray[np.float64] | None, NDArray[np.float64] | None]] = []
 
     def add(self, span: Span, key: MaterialKey, properties: MaterialProperties) -> bool:
-        """Take note of the appearance on `span`; False where there is none but the material's own colour."""
+        """Add the appearance of `span`; return False where its material has a uniform colour."""
         colours = self._vertex_colours(span)
         texture = None
         uv = None
@@ -155,7 +155,7 @@ class _AppearanceBuilder:
         return True
 
     def result(self) -> SurfaceAppearance | None:
-        """Return the appearance collected, or None where there is none."""
+        """Return the appearance of the surface; None where there is none."""
         if not self._spans:
             return None
         self._document.charge(self._count * 100, "meshes")
@@ -194,7 +194,7 @@ class _AppearanceBuilder:
             number = moved.tex_coord
         name = f"TEXCOORD_{number}"
         if name not in span.attributes:
-            message = f"primitives without the {name} that their texture asks for took the colour of its factor"
+            message = f"primitives without the {name} that their texture needs took the colour of their factor"
             self._document.log.add("texture", message)
             return None
         uv = span.attributes.floats(name, {"VEC2"})

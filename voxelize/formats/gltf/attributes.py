@@ -1,4 +1,4 @@
-"""What a primitive says about its vertices and corners, plain or compressed.
+"""The vertices and corners of a primitive, plain or compressed.
 
 Source: Khronos, KHR_draco_mesh_compression; the decoding is DracoPy's.
 """
@@ -35,7 +35,7 @@ class Attributes:
     primitive
         The primitive.
     place
-        Its JSON path, kept for errors.
+        Its JSON path, for errors.
     """
 
     def __init__(self, document: Document, primitive: Primitive, place: str) -> None:
@@ -50,7 +50,7 @@ class Attributes:
 
     @property
     def is_compressed(self) -> bool:
-        """Whether the corners come as a list of triangles, whatever the primitive's mode."""
+        """Whether the corners are a list of triangles, whatever the primitive's mode."""
         return self._compressed is not None
 
     def floats(self, name: str, types: Container[str]) -> NDArray[np.float64]:
@@ -59,7 +59,7 @@ class Attributes:
         return as_floats(self._document, self.stored(name, types), accessor)
 
     def reals(self, name: str, types: Container[str]) -> NDArray[np.floating]:
-        """Read attribute `name` as :meth:`floats` does, but float32 where the file has that."""
+        """Read attribute `name` as :meth:`floats` does; float32 stays float32."""
         return as_reals(self._document, self.stored(name, types), self._primitive.attributes[name])
 
     def stored(self, name: str, types: Container[str]) -> NDArray[Any]:
@@ -78,7 +78,7 @@ class Attributes:
     def _declared(
         self, attribute: dict[str, Any], declared: Accessor, place: str, types: Container[str]
     ) -> NDArray[Any]:
-        """Return a decoded attribute as its accessor declares it; DracoPy makes floats of integers."""
+        """Return a decoded attribute in its accessor's type; DracoPy converts integers to floats."""
         layout = layout_of(declared)
         data: NDArray[Any] = np.asarray(attribute["data"]).reshape(-1, attribute["num_components"])
         is_float = attribute["data_type"] in _DRACO_FLOATS
@@ -90,7 +90,7 @@ class Attributes:
         return data.astype(layout.dtype)
 
     def corners(self) -> NDArray[Any] | None:
-        """Return the vertex of each corner, unsigned, shape (N,), or None where the vertices stand in order."""
+        """Return the vertex of each corner, unsigned, shape (N,), or None where the vertices are in order."""
         if self._compressed is not None:
             corners: NDArray[Any] = np.asarray(self._mesh().faces).reshape(-1)
             return corners

@@ -1,4 +1,4 @@
-"""Morph targets and skins: where the vertices of a mesh stand in a pose.
+"""Morph targets and skins: the vertices of a mesh in a pose.
 
 Source: Khronos, glTF 2.0 specification, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
 """
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pose:
-    """What bends a mesh.
+    """The deformation of a mesh.
 
     Attributes
     ----------
     weights
-        How much of each morph target is added.
+        The weight of each morph target.
     joints
-        float64, shape (J, 4, 4): bind pose to scene frame, a joint each; None for a mesh without skin.
+        float64, shape (J, 4, 4): bind pose to scene frame, per joint; None for a mesh without skin.
     """
 
     weights: tuple[float, ...] = ()
@@ -39,7 +39,7 @@ class Pose:
 def morphed(
     document: Document, primitive: Primitive, positions: NDArray[np.floating], pose: Pose, place: str
 ) -> NDArray[np.floating]:
-    """Return `positions`, shape (V, 3), with the displacements of the primitive's targets added as `pose` weighs them.
+    """Return `positions`, shape (V, 3), with the weighted displacements of the morph targets added.
 
     Raises
     ------
@@ -61,12 +61,12 @@ def morphed(
 def skinned(
     document: Document, attributes: Attributes, positions: NDArray[np.floating], pose: Pose, place: str
 ) -> NDArray[np.floating]:
-    """Return `positions`, shape (V, 3), carried by the joints of `pose` to the scene frame.
+    """Return `positions`, shape (V, 3), moved by the joints of `pose` to the scene frame.
 
     Raises
     ------
     AssetError
-        A vertex names a joint that the skin does not have.
+        A vertex refers to a joint that the skin does not have.
     """
     if pose.joints is None:
         return positions
@@ -85,7 +85,7 @@ def skinned(
             number += 1
         bare = total[:, 0] <= 0.0
         if bare.any():
-            document.log.add("skin", "vertices without joints were carried by the first joint", int(bare.sum()))
+            document.log.add("skin", "vertices without joints were attached to the first joint", int(bare.sum()))
             carried[bare] = positions[bare] @ pose.joints[0, :3, :3].T + pose.joints[0, :3, 3]
             total[bare] = 1.0
         carried /= total
@@ -110,7 +110,7 @@ def _influences(
         raise document.error(
             f"{here}.JOINTS_{number}", f"joints of type {joints.dtype.name}, they must be unsigned integers"
         )
-    # Unused influences may say anything.
+    # Unused influences may have any joint.
     used = np.where(share > 0, joints, 0)
     if int(used.max()) >= limit:
         raise document.error(f"{here}.JOINTS_{number}", f"joint {int(used.max())} of a skin that has {limit}")

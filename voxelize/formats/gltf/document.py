@@ -1,4 +1,4 @@
-"""An open glTF asset: its JSON, the bytes it refers to, what it may cost, and what could not be honoured in it."""
+"""An open glTF asset: its JSON, the bytes it refers to, its memory limit, and its warnings."""
 
 from __future__ import annotations
 
@@ -32,9 +32,8 @@ _BYTES_PER_INPUT_BYTE = 128
 class Document:
     """One glTF asset while it is being read.
 
-    Memory is bounded by the asset's own size: whatever is made from it is charged with :meth:`charge`, which refuses a
-    small file that asks for much. An accessor may stand for zeros, and many accessors for the same bytes, so the sizes
-    the JSON states are no measure.
+    The asset's size limits the memory that it may use: :meth:`charge` counts what is made from it and refuses a small
+    file that needs much. The sizes in the JSON are no limit: an accessor may have no bytes, or share them with others.
 
     Attributes
     ----------
@@ -43,7 +42,7 @@ class Document:
     gltf
         Its JSON.
     log
-        What could not be honoured as it stands.
+        What was ignored or replaced.
     """
 
     def __init__(self, path: Path, *, allow_outside: bool = False) -> None:
@@ -58,24 +57,24 @@ class Document:
         self._check_views()
 
     def error(self, place: str, problem: str, fix: str = "export the file again") -> AssetError:
-        """Return the error that refuses this file for what stands at the JSON path `place`."""
+        """Return an error about the JSON path `place`."""
         return AssetError(self.path, problem, place=place, fix=fix)
 
     def charge(self, amount: int, place: str) -> None:
-        """Take `amount` bytes of the memory that an asset of this size may use."""
+        """Count `amount` bytes towards the memory that an asset of this size may use."""
         self._allowed -= amount
         if self._allowed < 0:
-            problem = f"asks for {amount} bytes, more than a file of this size may use in all"
+            problem = f"needs {amount} bytes, more than a file of this size may use"
             raise self.error(place, problem, "check the counts: the file is damaged or hostile")
 
     def item(self, array: Sequence[T], index: int, place: str, kind: str) -> T:
-        """Return `array[index]`, or refuse the reference that stands at `place` to something called `kind`."""
+        """Return `array[index]`; refuse a reference at `place` to a `kind` that does not exist."""
         if index >= len(array):
             raise self.error(place, f"{kind} {index} does not exist, the file has {len(array)}")
         return array[index]
 
     def extension(self, owner: Property, name: str, kind: type[T], place: str) -> T | None:
-        """Return the extension `name` of `owner`, which is at `place`, as a value of `kind`; None where it has none."""
+        """Return the extension `name` of `owner` at `place` as a value of `kind`; None where it has none."""
         if name not in owner.extensions:
             return None
         try:
@@ -114,7 +113,7 @@ class Document:
             raise self.error(here, f"the compressed data is damaged: {error}") from None
 
     def _check_views(self) -> None:
-        """Refuse the file where a buffer view leaves its buffer, in use or not: it is cut short."""
+        """Refuse a file whose buffer views leave their buffers, used or not: the file is cut short."""
         for index, view in enumerate(self.gltf.buffer_views):
             place = f"bufferViews[{index}]"
             buffer = self.item(self.gltf.buffers, view.buffer, f"{place}.buffer", "buffer")
@@ -123,7 +122,7 @@ class Document:
                 raise self.error(place, f"ends at byte {end} of a buffer of {buffer.byte_length}")
 
     def buffer(self, index: int) -> memoryview:
-        """Return the bytes of buffer `index`, as many as it says."""
+        """Return the bytes of buffer `index`, cut to its byteLength."""
         if index in self._buffers:
             return self._buffers[index]
         buffer = self.gltf.buffers[index]
@@ -131,34 +130,34 @@ class Document:
         if buffer.uri is not None:
             found = self.resource(buffer.uri, f"{here}.uri", buffer.byte_length)
             if found is None:
-                problem = f"no file {buffer.uri[:60]!r} beside the asset"
+                problem = f"no file {buffer.uri[:60]!r} in the asset's folder"
                 raise self.error(f"{here}.uri", problem, "put it there, or embed it in a .glb")
             data = memoryview(found)
         elif index == 0 and self._binary is not None:
             data = self._binary
         else:
-            raise self.error(here, "has no uri and the file no binary chunk for it")
+            raise self.error(here, "has no uri, and the file has no binary chunk")
         if len(data) < buffer.byte_length:
-            raise self.error(here, f"says {buffer.byte_length} bytes and has {len(data)}")
+            raise self.error(here, f"its byteLength is {buffer.byte_length}, and it has {len(data)} bytes")
         self._buffers[index] = data[: buffer.byte_length]
         return self._buffers[index]
 
     def resource(self, uri: str, place: str, most: int = -1) -> bytes | None:
-        """Return what `uri` refers to: inline data, or at most `most` bytes of a file that may be opened.
+        """Return inline data, or at most `most` bytes of a file that may be opened; None where there is no such file.
 
-        A file adds to the asset's size, and so to the memory that the asset may use. None where there is no such file.
+        A file adds to the asset's size, and so to the memory that the asset may use.
         """
         if uri.startswith("data:"):
             return self._inline(uri, place)
         scheme = uri.partition(":")[0]
         if ":" in uri and "/" not in scheme:
-            raise self.error(place, f"the address {uri[:60]!r} is not opened", "put the file beside the asset")
-        # Some exporters forget to encode names, or write paths as Windows does.
+            raise self.error(place, f"the address {uri[:60]!r} was not opened", "put the file into the asset's folder")
+        # Some exporters do not encode names, or write backslashes.
         target = self._external_files.find(unquote(uri), uri, unquote(uri).replace("\\", "/"))
         if target is None:
             return None
         if not self._external_files.allows(target):
-            raise self.error(place, f"{uri[:60]!r} lies outside the asset's folder", ALLOW_OUTSIDE)
+            raise self.error(place, f"{uri[:60]!r} is outside the asset's folder", ALLOW_OUTSIDE)
         try:
             with target.open("rb") as file:
                 data = file.read(most)

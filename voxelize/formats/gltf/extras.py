@@ -1,4 +1,4 @@
-"""What authors say to voxrt in the `extras` of nodes and materials (custom properties, in Blender).
+"""Properties for voxrt in the `extras` of nodes and materials (custom properties, in Blender).
 
 `voxrt_material` names the material that a node's faces take, or renames a material; `voxrt_collider` makes a node's
 mesh collide as a box, a sphere, a hull or a mesh; `voxrt_reflect` makes a material, or what a node shows, a mirror.
@@ -19,25 +19,25 @@ if TYPE_CHECKING:
 
 
 class MaterialExtras(msgspec.Struct, frozen=True, kw_only=True):
-    """What a material may say: its name in the palette, and whether it is a mirror."""
+    """The properties of a material: its name in the palette, and whether it is a mirror."""
 
     voxrt_material: str | None = None
     voxrt_reflect: bool | float = False
 
 
 class NodeExtras(MaterialExtras, frozen=True, kw_only=True):
-    """What a node may say: the material of its faces, whether they are mirrors, and what stands in for them."""
+    """The properties of a node: the material of its faces, whether they are mirrors, and its collider."""
 
     voxrt_collider: ColliderKind | None = None
 
 
 def refuse_misplaced(document: Document) -> None:
-    """Refuse properties for voxrt on scenes and meshes, where they would say nothing."""
+    """Refuse properties for voxrt on scenes and meshes, where they have no effect."""
     for array, owners in (("scenes", document.gltf.scenes), ("meshes", document.gltf.meshes)):
         for index, owner in enumerate(owners):
             if _PREFIX in bytes(owner.extras):
                 place = f"{array}[{index}].extras"
-                problem = "voxrt's properties belong on nodes and materials"
+                problem = "properties for voxrt belong on nodes and materials"
                 raise document.error(place, problem, "move them there (in Blender: from the mesh to the object)")
 
 
@@ -46,12 +46,12 @@ _T = TypeVar("_T", MaterialExtras, NodeExtras)
 
 
 def node_extras(document: Document, index: int) -> NodeExtras:
-    """Read what node `index` says."""
+    """Return the properties of node `index`."""
     return _read(document, document.gltf.nodes[index].extras, f"nodes[{index}].extras", NodeExtras)
 
 
 def material_extras(document: Document, index: int) -> MaterialExtras:
-    """Read what material `index` says."""
+    """Return the properties of material `index`."""
     return _read(document, document.gltf.materials[index].extras, f"materials[{index}].extras", MaterialExtras)
 
 
@@ -67,7 +67,7 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
     for key in authored:
         if key.startswith("voxrt_") and key not in kind.__struct_fields__:
             nearest = difflib.get_close_matches(key, kind.__struct_fields__, n=1, cutoff=0.0)[0]
-            raise document.error(f"{place}.{key}", "voxrt knows no such property here", f"did you mean {nearest}?")
+            raise document.error(f"{place}.{key}", "unknown property for voxrt", f"did you mean {nearest}?")
     try:
         return msgspec.convert(authored, kind)
     except msgspec.ValidationError as error:

@@ -1,4 +1,4 @@
-"""EXT_mesh_gpu_instancing: one node that shows its mesh many times."""
+"""EXT_mesh_gpu_instancing: one node that shows its mesh several times."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
         if name in instances.attributes:
             parts[name] = read_floats(document, instances.attributes[name], f"{here}.{name}", {kind})
     if not parts:
-        document.log.add("instancing", "nodes with instances that are not placed are shown once")
+        document.log.add("instancing", "instanced nodes without instance transforms are shown once")
         return None
     count = len(next(iter(parts.values())))
     if any(len(part) != count for part in parts.values()):

@@ -1,4 +1,4 @@
-"""Meshes: the primitives of one glTF mesh as one set of triangles, bent by its morph targets and its skin."""
+"""Meshes: the primitives of one glTF mesh as one set of triangles, deformed by morph targets and skin."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ class Surface:
     Attributes
     ----------
     positions
-        float32 or float64, shape (V, 3), finite. Not every vertex need be used, but not many are unused.
+        float32 or float64, shape (V, 3), finite; few are unused.
     triangles
         int32, shape (T, 3), counter-clockwise seen from outside.
     spans
-        Which primitive they come from.
+        The primitives that they come from.
     """
 
     positions: NDArray[np.floating]
@@ -97,7 +97,7 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
 def compact(
     positions: NDArray[np.floating], triangles: NDArray[np.int32]
 ) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
-    """Leave out the vertices that no triangle uses where there must be many: a mesh may share the file's vertices."""
+    """Drop unused vertices where there must be many: a mesh may share the vertices of the whole file."""
     if len(positions) <= triangles.size:
         return positions, triangles
     rows, corners = np.unique(triangles, return_inverse=True)

@@ -1,7 +1,7 @@
-"""EXT_meshopt_compression: buffer views to the bytes they stand for.
+"""EXT_meshopt_compression: decoding of compressed buffer views.
 
-Written after the extension's own description of its bit streams and filters (Kapoulkine and St. Pierre, appendices A
-and B). Streams say nothing of their length: every read is checked, and what is left over refuses the stream.
+Source: the extension's description of its bit streams and filters (Kapoulkine and St. Pierre, appendices A and B).
+Streams do not hold their length: every read is checked, and a stream with bytes left over is refused.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class CompressedView(Struct, frozen=True, rename="camel"):
 
 
 class BadStreamError(ValueError):
-    """A bit stream that cannot be what its header says; the message says why."""
+    """A bit stream that contradicts its header; the message says why."""
 
 
 def decode(view: CompressedView, data: bytes) -> bytes:
-    """Return the ``count * byte_stride`` bytes that `data` stands for.
+    """Return the ``count * byte_stride`` bytes that `data` encodes.
 
     Raises
     ------

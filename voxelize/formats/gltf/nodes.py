@@ -1,4 +1,4 @@
-"""The node hierarchy: which nodes are shown, in authored order, and where they stand.
+"""The node hierarchy: visible nodes in authored order, and the transforms of all nodes.
 
 Source: Khronos, glTF 2.0 specification, section 3.5.
 """
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Hierarchy:
-    """Where the nodes of a file stand.
+    """The transforms and the visible nodes of a file.
 
     Attributes
     ----------
     shown
-        The nodes that the scene shows, parents before children, siblings in authored order.
+        The visible nodes of the scene, parents before children, siblings in authored order.
     transforms
         float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
     """
@@ -38,9 +38,9 @@ class Hierarchy:
 
 
 def place_nodes(document: Document) -> Hierarchy:
-    """Place all nodes, and find those of the file's scene.
+    """Return the transforms of all nodes, and the visible nodes of the file's scene.
 
-    The scene is the one the file names, else its first; where the file has none, every root node is shown.
+    The scene is the file's default scene, else its first. A file without scenes shows every root node.
 
     Raises
     ------
@@ -64,9 +64,9 @@ def place_nodes(document: Document) -> Hierarchy:
 
 
 def _descendants(document: Document, roots: list[int], hidden: Container[int] = ()) -> Iterator[int]:
-    """Go through `roots` and what hangs below them, parents before children, in authored order.
+    """Yield `roots` and their descendants, parents before children, in authored order.
 
-    Nodes that are `hidden` are left out with what hangs below them.
+    Nodes that are `hidden` are left out with their descendants.
     """
     pending = roots[::-1]
     while pending:
@@ -83,7 +83,7 @@ def _is_hidden(document: Document, index: int) -> bool:
 
 
 def _parents(document: Document) -> dict[int, int]:
-    """Map each node that has a parent to it."""
+    """Return the parent of each node that has one."""
     parents: dict[int, int] = {}
     for index, node in enumerate(document.gltf.nodes):
         for at, child in enumerate(node.children):
@@ -130,7 +130,7 @@ def _roots(document: Document, parents: dict[int, int]) -> list[int]:
     inner = sum(root in parents for root in listed)
     if not inner:
         return list(listed)
-    message = "nodes that the scene lists although they have a parent are shown where it puts them"
+    message = "nodes that the scene lists although they have a parent are shown"
     document.log.add("not-a-root", message, inner)
     below: set[int] = set()
     for index in _descendants(document, [index for index in range(len(gltf.nodes)) if index not in parents]):
@@ -178,7 +178,7 @@ def compose(
         raise document.error(place.format(wrong[0]), problem)
     uneven = np.abs(length - 1.0) > 1e-3
     if uneven.any():
-        document.log.add("rotation-length", "quaternions whose length is not 1 were brought to it", int(uneven.sum()))
+        document.log.add("rotation-length", "quaternions whose length is not 1 were normalized", int(uneven.sum()))
     x, y, z, w = (rotation / length[:, None]).T
     transforms = np.tile(np.eye(4), (len(length), 1, 1))
     turn = [

@@ -1,7 +1,7 @@
 """Colliders of KHR_physics_rigid_bodies, with the shapes of KHR_implicit_shapes.
 
-Shapes with round sides other than balls become the hulls of points on them. Motions, joints and materials have no
-bearing on where things are; triggers are not solid.
+Cylinders and capsules become convex hulls of points on their surface. Motions, joints and physics materials are
+ignored; triggers are not solid.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _AROUND = 128
 _FROM_POLE = 32
+_LARGEST = 1e150  # squares of larger sizes overflow
 
 
 class Box(Struct, frozen=True):
@@ -49,7 +50,7 @@ class Round(Struct, frozen=True, rename="camel"):
 
 
 class Plane(Struct, frozen=True, rename="camel"):
-    """Its normal along y; without end where it has no size."""
+    """Its normal is along y; it is infinite where it has no size."""
 
     size_x: float | None = None
     size_z: float | None = None
@@ -85,7 +86,7 @@ class Geometry(Struct, frozen=True, rename="camel"):
 
 
 class AuthoredCollider(Struct, frozen=True):
-    """What a node collides as."""
+    """The collider of a node."""
 
     geometry: Geometry = Geometry()
 
@@ -104,18 +105,18 @@ def read_shapes(document: Document) -> list[Shape]:
 def physics_collider(
     document: Document, index: int, shapes: list[Shape], read_mesh: Callable[[int, str], Surface]
 ) -> Collider | None:
-    """Return what node `index` collides as, in its frame, or None.
+    """Return the collider of node `index`, in its frame; None for none.
 
     Parameters
     ----------
     document
         The open asset.
     index
-        Which node.
+        The node's index.
     shapes
         The file's shapes.
     read_mesh
-        Reads a mesh by its index, to which a JSON path refers.
+        Returns a mesh by its index; the string is the JSON path that refers to it.
     """
     place = f"nodes[{index}]"
     body = document.extension(document.gltf.nodes[index], PHYSICS, Body, place)
@@ -161,13 +162,13 @@ def _shaped(document: Document, shape: Shape, index: int) -> Collider | None:
 
 
 def _check_sizes(document: Document, place: str, *sizes: float) -> None:
-    if not min(sizes) > 0:
-        raise document.error(place, "a size is not positive")
+    if not (min(sizes) > 0 and max(sizes) < _LARGEST):
+        raise document.error(place, "a size is not positive, or too large")
 
 
 def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
     if plane.size_x is None or plane.size_z is None:
-        document.log.add("endless-plane", "colliders that are planes without end were left out")
+        document.log.add("endless-plane", "infinite collision planes were left out")
         return None
     _check_sizes(document, place, plane.size_x, plane.size_z)
     x, z = plane.size_x / 2, plane.size_z / 2
@@ -176,13 +177,13 @@ def _plane(document: Document, plane: Plane, place: str) -> Collider | None:
 
 
 def _ring(radius: float, height: float) -> NDArray[np.float64]:
-    """Points on a circle about y, shape (128, 3)."""
+    """Return points on a circle about y, shape (128, 3)."""
     angles = np.arange(_AROUND) * (2 * np.pi / _AROUND)
     return np.column_stack([radius * np.cos(angles), np.full(_AROUND, height), radius * np.sin(angles)])
 
 
 def _half_ball(capsule: Round, side: float) -> NDArray[np.float64]:
-    """Points on the upper (`side` 1) or lower (-1) ball of a capsule; their hull takes what it needs."""
+    """Return points on the upper (`side` 1) or lower (-1) half ball of a capsule."""
     radius = capsule.radius_top if side > 0 else capsule.radius_bottom
     rings = []
     for angle in np.arange(_FROM_POLE + 1) * (np.pi / 2 / _FROM_POLE):

@@ -22,7 +22,7 @@ _WITHOUT_AREA = ("points", "lines", "line loops", "line strips")
 
 
 def has_area(document: Document, primitive: Primitive) -> bool:
-    """Tell whether `primitive` is made of triangles; note that it is left out where it is not."""
+    """Tell whether `primitive` is made of triangles; count it in the log where it is not."""
     if primitive.mode >= TRIANGLES:
         return True
     document.log.add("no-area", f"{_WITHOUT_AREA[primitive.mode]} were left out: they have no area to voxelize")
@@ -32,7 +32,7 @@ def has_area(document: Document, primitive: Primitive) -> bool:
 def read_triangles(
     document: Document, attributes: Attributes, mode: int, vertices: int, place: str
 ) -> NDArray[np.int32]:
-    """Read the triangles of a primitive of `mode` that has `vertices` vertices and stands at `place`.
+    """Read the triangles of a primitive of `mode` that has `vertices` vertices and is at `place`.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def read_triangles(
     Raises
     ------
     AssetError
-        An index is out of range or restarts the primitive, which glTF does not allow.
+        An index is out of range, or restarts the primitive, which glTF forbids.
     """
     stored = attributes.corners()
     document.charge((vertices if stored is None else len(stored)) * 4, place)
@@ -80,6 +80,6 @@ def _assembled(document: Document, corners: NDArray[np.int32], mode: int) -> NDA
     else:
         assert mode == TRIANGLE_FAN
         triangles = np.stack([corners[1:-1], corners[2:], np.full(len(corners) - 2, corners[0])], axis=1)
-    # Triangles that use a corner twice only join one strip to the next.
+    # Triangles that use a corner twice only connect one strip to the next.
     a, b, c = triangles.T
     return np.ascontiguousarray(triangles[(a != b) & (b != c) & (a != c)])

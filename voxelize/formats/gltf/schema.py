@@ -1,7 +1,7 @@
-"""The parts of the glTF 2.0 JSON that say where surfaces are and what colour they have, as validated values.
+"""The parts of the glTF 2.0 JSON that define geometry and colour, as validated values.
 
-Field names are the format's own in snake case. Members that do not bear on geometry or colour (cameras, roughness …)
-are skipped; `extensions` and `extras` are kept raw and read by whoever understands them. Source: Khronos, glTF 2.0
+Field names are the format's own in snake case. Other members (cameras, roughness …) are skipped. `extensions` and
+`extras` stay raw until they are needed. Source: Khronos, glTF 2.0
 specification, section 5 (properties reference).
 """
 
@@ -25,7 +25,7 @@ POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN = 
 
 
 class Property(Struct, frozen=True, kw_only=True, rename="camel"):
-    """What every glTF object may carry."""
+    """Members of every glTF object."""
 
     extensions: dict[str, Raw] = {}
     extras: Raw = Raw(b"null")
@@ -45,7 +45,7 @@ class Asset(Property, frozen=True, kw_only=True):
 
 
 class Buffer(Named, frozen=True, kw_only=True):
-    """Bytes, in the file, beside it, or in the binary chunk of a GLB."""
+    """Bytes: inline, in another file, or in the binary chunk of a GLB."""
 
     byte_length: Count
     uri: str | None = None
@@ -138,13 +138,13 @@ class DracoPrimitive(Struct, frozen=True, kw_only=True, rename="camel"):
 
 
 class Instances(Struct, frozen=True, kw_only=True):
-    """EXT_mesh_gpu_instancing: accessors with one element an instance."""
+    """EXT_mesh_gpu_instancing: accessors with one element per instance."""
 
     attributes: dict[str, Index]
 
 
 class Visibility(Struct, frozen=True, kw_only=True):
-    """KHR_node_visibility: whether a node and what hangs below it are shown."""
+    """KHR_node_visibility: whether a node and its descendants are shown."""
 
     visible: bool = True
 
@@ -157,7 +157,7 @@ class Mesh(Named, frozen=True, kw_only=True):
 
 
 class Node(Named, frozen=True, kw_only=True):
-    """A place in the hierarchy."""
+    """A node of the hierarchy."""
 
     children: list[Index] = []
     mesh: Index | None = None
@@ -183,13 +183,13 @@ class TextureInfo(Property, frozen=True, kw_only=True):
 
 
 class NormalTextureInfo(TextureInfo, frozen=True, kw_only=True):
-    """A texture that bends normals; read to be validated alone."""
+    """A normal texture; it is only validated."""
 
     scale: float = 1.0
 
 
 class Roughness(Property, frozen=True, kw_only=True):
-    """The part of the metallic-roughness model that has colour."""
+    """The base colour of the metallic-roughness model."""
 
     base_color_factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
     base_color_texture: TextureInfo | None = None
@@ -205,14 +205,14 @@ class TextureTransform(Struct, frozen=True, kw_only=True, rename="camel"):
 
 
 class SpecularGlossiness(Struct, frozen=True, kw_only=True, rename="camel"):
-    """The part of KHR_materials_pbrSpecularGlossiness that has base colour."""
+    """The base colour of KHR_materials_pbrSpecularGlossiness."""
 
     diffuse_factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
     diffuse_texture: TextureInfo | None = None
 
 
 class Material(Named, frozen=True, kw_only=True):
-    """What a surface looks like."""
+    """A material."""
 
     pbr_metallic_roughness: Roughness = Roughness()
     normal_texture: NormalTextureInfo | None = None
@@ -242,7 +242,7 @@ class Sampler(Named, frozen=True, kw_only=True):
 
 
 class Image(Named, frozen=True, kw_only=True):
-    """A picture, in the file or beside it."""
+    """An image, in the file or in another."""
 
     uri: str | None = None
     mime_type: str = ""
@@ -250,14 +250,14 @@ class Image(Named, frozen=True, kw_only=True):
 
 
 class Skin(Named, frozen=True, kw_only=True):
-    """Joints that carry vertices."""
+    """Joints that move vertices."""
 
     joints: Annotated[list[Index], Meta(min_length=1)]
     inverse_bind_matrices: Index | None = None
 
 
 class AnimationTarget(Property, frozen=True, kw_only=True):
-    """What a channel moves."""
+    """The property that a channel animates."""
 
     path: str
     node: Index | None = None

@@ -1,4 +1,4 @@
-"""What msgspec says of JSON that breaks the schema, in our words."""
+"""Error messages about JSON that does not match the schema."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def explain(error: msgspec.ValidationError, place: str = "") -> tuple[str, str]:
-    """Return what is wrong, and the JSON path where: that of `error` below `place`."""
+    """Return what is wrong, and the JSON path of it: that of `error` below `place`."""
     problem, _, where = str(error).partition(" - at ")
     path = place + where.strip("`").removeprefix("$")
     return problem[:1].lower() + problem[1:], path.removeprefix(".")

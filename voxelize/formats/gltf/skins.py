@@ -1,4 +1,4 @@
-"""Skins: where the joints carry the vertices that are bound to them.
+"""Skins: the transforms of joints.
 
 Source: Khronos, glTF 2.0 specification, section 3.7.3.
 """
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 
 def joint_matrices(document: Document, index: int, transforms: NDArray[np.float64], place: str) -> NDArray[np.float64]:
-    """Return, a joint each, the transform from the bind pose to the scene frame: float64, shape (J, 4, 4).
+    """Return the transform of each joint from the bind pose to the scene frame: float64, shape (J, 4, 4).
 
     Parameters
     ----------
     document
         The open asset.
     index
-        Which skin.
+        The skin's index.
     transforms
-        Where the nodes of the file stand, float64, shape (N, 4, 4).
+        float64, shape (N, 4, 4): the transforms of the file's nodes.
     place
         The JSON path that refers to the skin.
     """

@@ -25,7 +25,7 @@ _UNREADABLE = {"KHR_texture_basisu": "KTX2", "MSFT_texture_dds": "DDS", "EXT_tex
 
 
 class Textures:
-    """The textures of one file; each image is decoded once, when it is first asked for."""
+    """The textures of one file; each image is decoded once, when it is first needed."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
@@ -33,7 +33,7 @@ class Textures:
         self._textures: dict[int, Texture | None] = {}
 
     def read(self, index: int, place: str) -> Texture | None:
-        """Return texture `index`, to which `place` refers; None, noted, where its image is missing or unreadable.
+        """Return texture `index`, to which `place` refers; None, with a warning, where its image cannot be read.
 
         Raises
         ------
@@ -55,9 +55,9 @@ class Textures:
         source = webp.source if webp else texture.source
         if source is None:
             kinds = [kind for name, kind in _UNREADABLE.items() if name in texture.extensions]
-            what = f"is a {kinds[0]} image alone" if kinds else "has no image"
-            way_out = f"; {CONVERT_IMAGES}" if kinds else ""
-            document.log.add("texture", f"{here} {what}: its materials took the colour of their factor{way_out}")
+            what = f"has only a {kinds[0]} image" if kinds else "has no image"
+            fix = f"; {CONVERT_IMAGES}" if kinds else ""
+            document.log.add("texture", f"{here} {what}: its materials took the colour of their factor{fix}")
             return None
         document.item(document.gltf.images, source, f"{here}.source", "image")
         if source not in self._images:
@@ -74,8 +74,8 @@ class Textures:
         if image.uri is not None:
             data = document.resource(image.uri, f"{here}.uri")
             if data is None:
-                problem = f"no image {image.uri[:60]!r} beside the asset"
-                document.log.add("texture", f"{here}: {problem}: its materials took the colour of their factor")
+                problem = f"no image {image.uri[:60]!r} in the asset's folder"
+                document.log.add("texture", f"{here}: {problem}; its materials took the colour of their factor")
                 return None
         elif image.buffer_view is not None:
             data = document.view(image.buffer_view, f"{here}.bufferView").tobytes()

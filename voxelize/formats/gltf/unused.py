@@ -1,4 +1,4 @@
-"""What a file that shows nothing holds all the same: where that is broken, it says why nothing is shown."""
+"""Validation of the parts that a file without visible triangles does not use: they may tell why nothing is visible."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def refuse_broken_parts(document: Document) -> None:
     Raises
     ------
     AssetError
-        One refers to what is not there, leaves what it refers to, or contradicts itself.
+        An accessor or buffer refers to something that does not exist, exceeds it, or contradicts itself.
     """
     for index, accessor in enumerate(document.gltf.accessors):
         place = f"accessors[{index}]"

@@ -40,7 +40,7 @@ _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 class _Property:
     name: str
     kind: str
-    count_kind: str | None  # None for a plain value, the type of the length for a list
+    count_kind: str | None  # the type of a list's length; None for a plain value
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def read_tables(path: Path, data: bytes) -> dict[str, Table]:
     Raises
     ------
     AssetError
-        The header is none, or the rows are not what it says.
+        The header is invalid, or the rows do not match it.
     """
     order, elements, body = _header(path, data)
     if order:
@@ -180,8 +180,8 @@ def _ascii(path: Path, body: bytes, elements: list[_Element]) -> dict[str, Table
 
 def _numbers(path: Path, element: _Element, words: list[bytes]) -> NDArray[np.float64]:
     try:
-        if max(map(len, words), default=0) > _LONGEST_NUMBER:  # each word of the array gets the longest one's room
-            raise ValueError(f"a word of more than {_LONGEST_NUMBER} characters is no number")  # noqa: TRY301
+        if max(map(len, words), default=0) > _LONGEST_NUMBER:  # each word of the array takes the longest one's space
+            raise ValueError(f"a word of more than {_LONGEST_NUMBER} characters is not a number")  # noqa: TRY301
         return np.array(words, dtype=np.bytes_).astype(np.float64) if words else np.zeros(0)
     except ValueError as error:
         raise AssetError(path, f"{element.name}: {error}", fix="export it again") from None
@@ -217,7 +217,7 @@ def _binary_element(file: _Binary, at: int, element: _Element) -> tuple[Table, i
 
 
 def _first_lengths(file: _Binary, at: int, element: _Element) -> dict[str, int]:
-    """How long each list of the first row is: nearly always all rows are alike."""
+    """Return the lengths of the first row's lists: nearly always all rows are alike."""
     lengths: dict[str, int] = {}
     for one in element.properties:
         if one.count_kind:

@@ -23,20 +23,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OPAQUE_FROM = 0.5
-"""Faces of a lower opacity are fully transparent."""
+"""Faces of lower opacity are left out."""
 
 
 def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
-    """Read a PLY file: vertices and polygons, with the colours of either, taken as sRGB.
+    """Read a PLY file: vertices and polygons, with the colours of either, read as sRGB.
 
     Parameters
     ----------
     path
         The file.
     up
-        The file's up axis; None means y.
+        The file's up axis; None for y.
     unit
-        Metres per unit of the file; None means 1.
+        Metres per unit of the file; None for 1.
 
     Raises
     ------
@@ -50,23 +50,23 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
     positions, counts, corners, kept = _geometry(path, tables, log)
     triangles, faces = triangulate(positions, counts, corners)
     table = MaterialTable()
-    surface_appearance = _surface_appearance(tables, triangles, kept[faces])
+    appearance = _appearance(tables, triangles, kept[faces])
     materials = np.zeros(len(triangles), dtype=np.uint8)
-    if surface_appearance is None:
+    if appearance is None:
         materials[:] = table.default(log, len(counts))
-    (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, surface_appearance)], table, log)
+    (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
     if not len(mesh.triangles):
-        raise AssetError(path, "has no faces that can be seen", fix="give its colours an opacity of a half or more")
+        raise AssetError(path, "has no visible faces", fix="give its colours an opacity of 0.5 or more")
     one = SceneObject(path.stem, mesh, scene_transform(up, unit))
     return Scene(path.stem, (one,), table.materials(), log.warnings())
 
 
-def _surface_appearance(
+def _appearance(
     tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]
 ) -> SurfaceAppearance | None:
-    """Give triangles their faces' colours, else with their vertices'; None where there are none."""
+    """Return the faces' colours of triangles, else their vertices'; None where the file has neither."""
     by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
-    if "tristrips" in tables:  # they have no colours of faces
+    if "tristrips" in tables:  # strips have no colours of faces
         by_face = None
     if by_face is not None:
         colours = np.repeat(by_face[faces][:, None], 3, axis=1)
@@ -95,7 +95,7 @@ def _colours(table: Table) -> NDArray[np.float64] | None:
 
 
 def _unit(column: Column) -> NDArray[np.float64]:
-    """Return values of 0 … 1 from integers or reals; the numbers of ASCII files are told apart by their range."""
+    """Return values of 0 … 1 from integers or reals; in ASCII files the range tells which."""
     full = {"u1": 255.0, "i1": 127.0, "u2": 65535.0, "i2": 32767.0}.get(column.dtype.str[1:], 1.0)
     values = np.nan_to_num(column.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0)
     if full == 1.0 and len(values) and values.max() > 1.0:
@@ -135,7 +135,7 @@ def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
     triangles = np.where(even, np.stack([first, second, third], axis=1), np.stack([second, first, third], axis=1))
     a, b, c = triangles.T
     real: NDArray[np.bool_] = (a != b) & (b != c) & (a != c)
-    return triangles[real]  # those that only join one strip to the next are none
+    return triangles[real]  # without those that only connect one strip to the next
 
 
 def _geometry(
@@ -155,11 +155,11 @@ def _geometry(
     wrong = np.flatnonzero(~((polygons.values >= 0) & (polygons.values < len(positions))))
     if len(wrong):
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
-        problem = f"vertex {polygons.values[wrong[0]]} is none of the file's {len(positions)}"
+        problem = f"vertex {polygons.values[wrong[0]]} does not exist: the file has {len(positions)}"
         raise AssetError(path, problem, place=f"face {face}", fix="export it again")
     corners = polygons.values.astype(np.int64)
     if not np.isfinite(positions[corners]).all():
-        raise AssetError(path, "a face has a vertex whose coordinates are no numbers", fix="export it again")
+        raise AssetError(path, "a face has a vertex whose coordinates are not numbers", fix="export it again")
     keep = counts >= 3
     log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
     corners, counts = corners[np.repeat(keep, counts)], counts[keep]

@@ -29,16 +29,16 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
     """Read an STL file.
 
-    Corners at exactly one place become one vertex. Normals are not used: the order of corners says what is outside.
+    Equal corners become one vertex. Normals are ignored: the order of corners defines the outside.
 
     Parameters
     ----------
     path
         The file: binary, or ASCII with any number of solids, each of which becomes an object.
     up
-        The file's up axis; None means y.
+        The file's up axis; None for y.
     unit
-        Metres per unit of the file; None means 1.
+        Metres per unit of the file; None for 1.
 
     Raises
     ------
@@ -48,9 +48,9 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
     path = Path(path)
     data = read_asset(path)
     log = WarningLog()
-    tints = None
+    facet_colours = None
     if _is_binary(data):
-        corners, tints = _binary(path, data, log)
+        corners, facet_colours = _binary(path, data, log)
         solids = [(path.stem, corners)]
     else:
         solids = ascii_solids(path, data)
@@ -62,14 +62,16 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
             log.add("empty-mesh", "solids without triangles were left out")
             continue
         if not np.isfinite(corners).all():
-            raise AssetError(path, "has a coordinate that is no number", place=f"solid {name!r}", fix="export it again")
+            raise AssetError(
+                path, "has a coordinate that is not a number", place=f"solid {name!r}", fix="export it again"
+            )
         positions, triangles = weld(corners)
-        surface_appearance = None if tints is None else _surface_appearance(tints)
-        bare = np.ones(len(triangles), dtype=np.bool_) if surface_appearance is None else surface_appearance.rows < 0
+        appearance = None if facet_colours is None else _appearance(facet_colours)
+        bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
         materials = np.zeros(len(triangles), dtype=np.uint8)
         if bare.any():
             materials[bare] = table.default(log, int(bare.sum()))
-        (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, surface_appearance)], table, log)
+        (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
         objects.append(SceneObject(name, mesh, transform))
     if not objects:
         raise AssetError(path, "has no triangles", fix="export it with its surface")
@@ -77,9 +79,9 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
 
 
 def _is_binary(data: bytes) -> bool:
-    """Binary when the length is what the header's count says, or when it does not begin as ASCII files do.
+    """Tell whether a file is binary: its length matches its count, or it does not begin as ASCII files do.
 
-    The word ``solid`` alone proves nothing: many exporters begin binary files with it.
+    The word ``solid`` alone is no sign of an ASCII file: many exporters begin binary files with it.
     """
     if len(data) >= _HEADER and len(data) == _HEADER + 50 * int.from_bytes(data[80:84], "little"):
         return True
@@ -90,7 +92,7 @@ def _is_binary(data: bytes) -> bool:
 def _binary(
     path: Path, data: bytes, log: WarningLog
 ) -> tuple[NDArray[np.float64], tuple[NDArray[np.uint8], NDArray[np.bool_]] | None]:
-    """Corners, float64, shape (3 * T, 3), and the colours of facets, where some have one."""
+    """Return the corners, float64, shape (3 * T, 3), and the facets' colours; None where there are none."""
     if len(data) < _HEADER:
         problem = "is empty" if not data else "is too short for an STL file"
         raise AssetError(path, problem, fix="export it again")
@@ -107,7 +109,7 @@ def _binary(
 def _facet_colours(
     header: bytes, attributes: NDArray[np.uint16], log: WarningLog
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]] | None:
-    """Read colours of 15 bits: uint8 (T, 3), sRGB, and which facets have one; None where no facet has.
+    """Return 15-bit colours as uint8 (T, 3), sRGB, and which facets have one; None where no facet has.
 
     Materialise Magics writes COLOR= and the colour of the object into the header, and red in the lowest bits of those
     facets that have a colour of their own, whose highest bit is clear. VisCAM and SolidView write blue in the lowest
@@ -122,7 +124,7 @@ def _facet_colours(
         return colours.astype(np.uint8), np.ones(len(flagged), dtype=np.bool_)
     log.add(
         "stl-attribute",
-        "triangle attributes that are no colours were ignored",
+        "triangle attributes that are not colours were ignored",
         int(((attributes != 0) & ~flagged).sum()),
     )
     if not flagged.any():
@@ -130,9 +132,9 @@ def _facet_colours(
     return (np.stack([high, middle, low], axis=1) * 255 // 31).astype(np.uint8), flagged
 
 
-def _surface_appearance(tints: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> SurfaceAppearance:
-    """Return the appearance of facets that have colours."""
-    colours, coloured = tints
+def _appearance(facet_colours: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> SurfaceAppearance:
+    """Return the appearance of facets with colours."""
+    colours, coloured = facet_colours
     linear = np.ones((len(colours), 3, 4), dtype=np.float32)
     linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]
     rows = np.where(coloured, 0, -1).astype(np.int32)

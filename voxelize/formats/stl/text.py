@@ -1,4 +1,4 @@
-"""The ASCII form of STL: by its lines where they are laid out as all exporters do, else word by word."""
+"""ASCII STL: read by lines where the file has the usual layout, else word by word."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 # A solid's first line; its name may be empty and its end may lack the name.
 _SOLID = re.compile(rb"^[ \t]*solid\b[ \t]*(?P<name>[^\r\n]*)", re.IGNORECASE | re.MULTILINE)
-# Longer words are no numbers, and would each get the longest one's room in the array.
+# Longer words are not numbers, and each would take the longest one's space in the array.
 _VERTEX = re.compile(rb"vertex\s+(\S{1,64})\s+(\S{1,64})\s+(\S{1,64})(?!\S)", re.IGNORECASE)
 
 _FACET = np.frombuffer(b"fovvvee", dtype=np.uint8)  # facet, outer loop, three vertices, endloop, endfacet
@@ -25,12 +25,12 @@ _LOWER = 0x20
 
 
 def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]]]:
-    """Return each solid's name, once, and corners (float64, shape (3 * T, 3)).
+    """Return each solid's unique name and its corners (float64, shape (3 * T, 3)).
 
     Raises
     ------
     AssetError
-        A facet is no triangle, or a coordinate no number.
+        A facet is not a triangle, or a coordinate is not a number.
     """
     found = _by_lines(as_text(path, data))
     solids = _by_words(path, data) if found is None else found
@@ -47,7 +47,7 @@ def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]
 
 
 def _by_lines(text: Text) -> list[tuple[bytes, NDArray[np.float64]]] | None:
-    """Read a file of one statement a line; None where it is laid out otherwise, or something is wrong."""
+    """Read a file with one statement per line; None where it has another layout or an error."""
 
     def at(place: int) -> NDArray[np.uint8]:
         return text.buffer[np.minimum(text.starts + place, text.ends)] | np.uint8(_LOWER)
@@ -75,7 +75,7 @@ def _by_lines(text: Text) -> list[tuple[bytes, NDArray[np.float64]]] | None:
 
 
 def _by_words(path: Path, data: bytes) -> list[tuple[bytes, NDArray[np.float64]]]:
-    # `endsolid` begins no solid: the pattern wants the word at the line's beginning.
+    # The pattern matches the word at the beginning of a line only, so `endsolid` starts no solid.
     heads = list(_SOLID.finditer(data))
     solids = []
     for head, end in zip(heads, [*(head.start() for head in heads), len(data)][1:], strict=True):
@@ -83,10 +83,10 @@ def _by_words(path: Path, data: bytes) -> list[tuple[bytes, NDArray[np.float64]]
         place = f"solid {name.decode('utf-8', errors='replace').strip()!r}"
         words = _VERTEX.findall(body)
         if len(words) % 3 or len(words) // 3 != len(re.findall(rb"\bendfacet\b", body, re.IGNORECASE)):
-            raise AssetError(path, "has a facet that is no triangle", place=place, fix="export it again")
+            raise AssetError(path, "has a facet that is not a triangle", place=place, fix="export it again")
         try:
             corners = np.array(words, dtype=np.bytes_).astype(np.float64).reshape(-1, 3)
         except ValueError as error:
-            raise AssetError(path, f"has a vertex that is no number: {error}", place=place) from None
+            raise AssetError(path, f"has a vertex that is not a number: {error}", place=place) from None
         solids.append((name, corners))
     return solids

@@ -1,4 +1,4 @@
-"""Triangle soup to shared vertices."""
+"""Welding: equal corners of triangles become one vertex."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def weld(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Make one vertex of all corners at exactly one place.
+    """Return the distinct corners as vertices, and the triangles over them.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def weld(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.
     """
     exact = np.ascontiguousarray(corners + 0.0)  # -0 becomes 0, which it equals
     _, first, inverse = np.unique(_hashes(exact), return_index=True, return_inverse=True)
-    if not np.array_equal(exact[first][inverse], exact):  # two places share a hash: compare all bytes, which is slow
+    if not np.array_equal(exact[first][inverse], exact):  # two positions share a hash: compare all bytes, which is slow
         keys = exact.view(np.dtype((np.void, 24))).ravel()
         _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first)

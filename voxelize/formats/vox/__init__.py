@@ -1,4 +1,4 @@
-"""MagicaVoxel ``.vox`` files: voxels as their author placed and coloured them."""
+"""MagicaVoxel ``.vox`` files."""
 
 from voxrt.voxelize.formats.vox.load import VoxScene, load_vox
 

@@ -1,7 +1,7 @@
 """MagicaVoxel ``.vox`` files, chunk by chunk.
 
 Layout: https://github.com/ephtracy/voxel-model (``MagicaVoxel-file-format-vox.txt`` and its extension), versions 150
-and 200. Chunks that say nothing about which voxel has which colour (cameras, log, render settings) are passed over.
+and 200. Chunks that do not affect the voxels' colours (cameras, notes, render settings) are skipped.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A node that shows models, one a frame."""
+    """A node that shows models, one per frame of its animation."""
 
     models: tuple[int, ...]
 
@@ -73,7 +73,7 @@ def default_palette() -> NDArray[np.uint8]:
 
 @dataclass(slots=True)
 class VoxFile:
-    """What a file says.
+    """The content of a file.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class VoxFile:
     nodes
         The scene graph by node id; empty in files without one.
     hidden_layers
-        Layers that the author switched off.
+        Layers that the author hid.
     material_types
         By colour index: ``_metal``, ``_glass``, ``_emit`` and so on, where it is not ``_diffuse``.
     """
@@ -131,7 +131,7 @@ def read_chunks(path: Path) -> VoxFile:
 
 
 class _Reader:
-    """A part of the file, read from its start, never behind its end."""
+    """A part of the file, read from its start to its end."""
 
     def __init__(self, path: Path, data: bytes, start: int, end: int, name: str) -> None:
         self._path, self._data, self._position, self._end = path, data, start, end
@@ -142,7 +142,7 @@ class _Reader:
 
     def take(self, count: int) -> bytes:
         if not 0 <= count <= self._end - self._position:
-            raise self.fault(f"{count} bytes are said to follow and {self._end - self._position} do")
+            raise self.fault(f"{count} bytes should follow, and {self._end - self._position} do")
         self._position += count
         return self._data[self._position - count : self._position]
 
@@ -150,10 +150,10 @@ class _Reader:
         return int(struct.unpack("<i", self.take(4))[0])
 
     def count(self, size: int) -> int:
-        """Read how many things of `size` bytes or more follow."""
+        """Read the number of entries of `size` bytes or more that follow."""
         count = self.integer()
         if not 0 <= count <= (self._end - self._position) // size:
-            raise self.fault(f"{count} entries are said to follow and there is no room for them")
+            raise self.fault(f"{count} entries should follow, and the chunk is too short for them")
         return count
 
     def dictionary(self) -> dict[str, str]:
@@ -172,7 +172,7 @@ class _Reader:
             if content < 0 or children < 0 or content + children > self._end - start:
                 raise AssetError(
                     self._path,
-                    f"says it has {content} + {children} bytes and {self._end - start} follow",
+                    f"should have {content} + {children} bytes, and {self._end - start} follow",
                     place=f"chunk {name} at byte {start - 12}",
                     fix="the file is cut short or damaged; save it again",
                 )
@@ -217,11 +217,11 @@ def _transform(content: _Reader, file: VoxFile) -> None:
 
 
 def _rotation(content: _Reader, text: str) -> tuple[Vector, Vector, Vector]:
-    """Two bits a row say which column is set in the first two rows, a bit a row whether it is negative."""
+    """Return a rotation: two bits per row give the column of the first two rows, one bit per row gives its sign."""
     bits = int(text) if text.isdecimal() and len(text) <= 3 else 3
     first, second = bits & 3, bits >> 2 & 3
     if first == 3 or second in (3, first) or bits >> 7:
-        raise content.fault(f"{text[:20]!r} is no rotation")
+        raise content.fault(f"{text[:20]!r} is not a rotation")
     columns = (first, second, 3 - first - second)
     rows = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]
     for row, column in enumerate(columns):
@@ -233,9 +233,9 @@ def _offset(content: _Reader, text: str) -> Vector:
     try:
         x, y, z = (int(number) for number in text[:64].split())
     except ValueError:
-        raise content.fault(f"{text[:20]!r} is no translation") from None
+        raise content.fault(f"{text[:20]!r} is not a translation") from None
     if max(abs(x), abs(y), abs(z)) >= 1 << 31:
-        raise content.fault(f"{text[:20]!r} is no translation")
+        raise content.fault(f"{text[:20]!r} is not a translation")
     return x, y, z
 
 

@@ -1,4 +1,4 @@
-"""MagicaVoxel scenes to coloured voxels: every instance of every model, where the author put it.
+"""Loading MagicaVoxel scenes as coloured voxels, with every instance of every model.
 
 MagicaVoxel's z is up; ours is y. Voxel (x, y, z) of the file goes to (x, z, -y), a rotation, so nothing is mirrored.
 """
@@ -48,7 +48,7 @@ class VoxScene:
     materials
         Empty space, then the colours in use, in the order of the file's palette.
     warnings
-        What the file said and was not honoured as it stands.
+        What was ignored or replaced.
     """
 
     coordinates: NDArray[np.int64]
@@ -78,7 +78,7 @@ def load_vox(path: Path | str) -> VoxScene:
 
 
 def _instances(path: Path, file: VoxFile) -> tuple[list[_Instance], list[SceneWarning]]:
-    """Walk the scene graph, or show every model at its place of its own where there is none."""
+    """Return the instances of the scene graph; without one, every model is shown at the origin."""
     origin = np.zeros(3, dtype=np.int64)
     if not file.nodes:
         return [_Instance(i, _IDENTITY, origin) for i in range(len(file.models))], []
@@ -112,7 +112,7 @@ def _instances(path: Path, file: VoxFile) -> tuple[list[_Instance], list[SceneWa
             found.append(_Instance(_first_model(path, number, node, len(file.models)), rows, offset))
     messages = {
         "hidden": "nodes that the author hid are left out",
-        "animation": "only the first frame of animated nodes is built",
+        "animation": "only the first frame of animated nodes is shown",
     }
     return found, [SceneWarning(f"vox-{kind}", messages[kind], skipped[kind]) for kind in messages if skipped[kind]]
 
@@ -125,7 +125,7 @@ def _first_model(path: Path, number: int, node: Shape, models: int) -> int:
 
 
 def _place(path: Path, file: VoxFile, instances: list[_Instance]) -> tuple[NDArray[np.int64], NDArray[np.uint8]]:
-    """Voxels of all instances: coordinates (int64, shape (N, 3), y up) and colour indices (uint8, shape (N,))."""
+    """Return all voxels: coordinates (int64, shape (N, 3), y up) and colour indices (uint8, shape (N,))."""
     total = sum(len(file.models[instance.model].voxels) for instance in instances)
     if total == 0:
         raise AssetError(path, "holds no visible voxel", fix="show at least one model")
@@ -142,7 +142,7 @@ def _place(path: Path, file: VoxFile, instances: list[_Instance]) -> tuple[NDArr
 
 
 def _pivot(size: Vector) -> NDArray[np.int64]:
-    """Find the point of a model that its transform places."""
+    """Return the point of a model that its transform moves to the origin of the instance."""
     return np.array(size, dtype=np.int64) // 2
 
 
@@ -156,4 +156,4 @@ def _plain_materials(file: VoxFile, used: NDArray[np.uint8]) -> list[SceneWarnin
     if not kinds:
         return []
     named = ", ".join(sorted(kind.strip("_") for kind in kinds))
-    return [SceneWarning("vox-material", f"{named} materials are built as plain colours", kinds.total())]
+    return [SceneWarning("vox-material", f"{named} materials became plain colours", kinds.total())]

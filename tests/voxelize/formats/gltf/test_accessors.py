@@ -85,9 +85,9 @@ def broken(change, tmp_path, message, read=read_accessor):
     [
         ({"count": 3}, r"accessors\[0\]: 3 elements end at byte 36 of a buffer view of 24"),
         ({"byteOffset": 4}, r"accessors\[0\]: 2 elements end at byte 28"),
-        ({"count": 10**15}, r"accessors\[0\]: asks for 12000000000000000 bytes"),
+        ({"count": 10**15}, r"accessors\[0\]: needs 12000000000000000 bytes"),
         ({"bufferView": 9}, r"accessors\[0\]\.bufferView: buffer view 9 does not exist, the file has 3"),
-        ({"type": "VEC2"}, r"here: accessor 0 holds VEC2 elements, which make no sense here"),
+        ({"type": "VEC2"}, r"here: accessor 0 holds VEC2 elements, which are not allowed here"),
         ({"type": "VEC5"}, r"accessors\[0\]\.type: invalid enum value 'VEC5'"),
         ({"componentType": 5124}, r"accessors\[0\]\.componentType: invalid enum value 5124"),
         ({"count": 0}, r"accessors\[0\]\.count: expected `int` >= 1"),

@@ -156,11 +156,11 @@ def test_missing_coordinates_and_images_leave_the_factor_and_are_counted(tmp_pat
     writer.json["images"][0] = {"uri": "gone.png"}
     scene = load(writer.save(tmp_path / "a.glb"))
     assert (scene.materials[1].name, kinds(scene)) == ("cloth", {"texture": 1})
-    assert "no image 'gone.png' beside the asset" in scene.warnings[0].message
+    assert "no image 'gone.png' in the asset's folder" in scene.warnings[0].message
     writer = textured()
     writer.json["textures"][0] = {"extensions": {"KHR_texture_basisu": {"source": 0}}}
     scene = load(writer.save(tmp_path / "a.glb"))
-    assert "textures[0] is a KTX2 image alone" in scene.warnings[0].message
+    assert "textures[0] has only a KTX2 image" in scene.warnings[0].message
 
 
 @pytest.mark.parametrize(

@@ -101,11 +101,11 @@ def test_by_lines_and_by_words_the_same(stl, end):
         (binary([]), "has no triangles"),
         (binary(ONE)[:-1], "is cut short: 0 of 1 triangles"),
         (b"\0" * 80 + b"\xff\xff\xff\xff", "is cut short: 0 of 4294967295 triangles"),
-        (binary([[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]]), "no number"),
+        (binary([[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]]), "not a number"),
         (b"solid empty\nendsolid empty", "has no triangles"),
-        (f"solid a\n{FACET}".replace("vertex 0 1 0\n", ""), "facet that is no triangle"),
-        (f"solid a\n{FACET}".replace("vertex 0 1 0", "vertex 0 one 0"), "no number"),
-        (f"solid a\n{FACET}".replace("vertex 0 1 0", f"vertex 0 {'1' * 10000} 0"), "facet that is no triangle"),
+        (f"solid a\n{FACET}".replace("vertex 0 1 0\n", ""), "facet that is not a triangle"),
+        (f"solid a\n{FACET}".replace("vertex 0 1 0", "vertex 0 one 0"), "not a number"),
+        (f"solid a\n{FACET}".replace("vertex 0 1 0", f"vertex 0 {'1' * 10000} 0"), "facet that is not a triangle"),
     ],
 )
 def test_refused(stl, data, message):
