@@ -27,7 +27,7 @@ NEEDS = {
 
 RETURNED = {
     "voxrt.export.Manifest", "voxrt.export.RomFiles", "voxrt.export.RomInfo", "voxrt.export.WordFile",
-    "voxrt.fitting.BudgetFit", "voxrt.fitting.InteriorFit", "voxrt.likeness_curve.LikenessAtDepth",
+    "voxrt.fitting.BudgetFit", "voxrt.fitting.InteriorFit", "voxrt.depth_likeness.LikenessAtDepth",
     "voxrt.octree.Census", "voxrt.octree.Difference", "voxrt.octree.Fit", "voxrt.octree.Leaves", "voxrt.octree.Octant",
     "voxrt.octree.Region", "voxrt.octree.SurfaceChange", "voxrt.sim.Comparison", "voxrt.sim.EngineCheck",
     "voxrt.sim.Frame", "voxrt.sim.Likeness", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",

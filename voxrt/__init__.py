@@ -96,7 +96,7 @@ _HOMES = {
         "InteriorFit",
     ),
     "voxrt.from_arrays": ("mesh_scene",),
-    "voxrt.likeness_curve": (
+    "voxrt.depth_likeness": (
         "LikenessAtDepth",
         "draw_likeness_curve",
         "likeness_curve",
@@ -169,7 +169,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt.export import read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.from_arrays import mesh_scene
-    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
+    from voxrt.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError
