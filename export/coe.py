@@ -1,6 +1,6 @@
 """``.coe`` files: memory words for the AMD (Xilinx) block memory generator.
 
-Written: radix 16, one word a line. Read: radix 2, 10 or 16; words parted by commas or white space; lines that begin
+Written: radix 16, one word per line. Read: radix 2, 10 or 16; words parted by commas or white space; lines that begin
 with ``;`` are comments (AMD PG058, "Specifying initial memory contents").
 """
 

@@ -74,7 +74,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     words, blocks
         Sizes of the memory.
     depth
-        Levels: the world is 2**depth voxels a side.
+        Levels: the world is 2**depth voxels per side.
     dialect
         How the ``.mem`` marks its leaves.
     crc32

@@ -1,6 +1,6 @@
 """``.mem`` files: memory words as text for ``$readmemh``.
 
-Written: one word a line, eight upper-case hex digits, a newline after every word, the last included. Read: all that
+Written: one word per line, eight upper-case hex digits, a newline after every word, the last included. Read: all that
 ``$readmemh`` takes (IEEE 1800-2017, 21.4) and an octree memory can mean: any white space between words, ``//`` and
 ``/* */`` comments, underscores, ``@`` addresses where they name the next word; the last word with or without newline.
 """

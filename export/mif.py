@@ -1,8 +1,8 @@
 """``.mif`` files: memory words for Intel (Altera) tools, and AMD (Xilinx) ones under the same suffix.
 
-Written: the Intel form, hexadecimal, one word a line. Read: the Intel form (Quartus Prime, "Memory Initialization File
-definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) as long as
-every word has a value, and the AMD form (a word of 32 binary digits a line).
+Written: the Intel form, hexadecimal, one word per line. Read: the Intel form (Quartus Prime, "Memory Initialization
+File definition": any radix, ``--`` and ``% %`` comments, ``[a..b]`` ranges, several words behind one address) if every
+word has a value, and the AMD form (32 binary digits per line).
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def read_mif(path: Path) -> WordFile:
     text = _COMMENT.sub(lambda comment: b"\n" * comment[0].count(b"\n"), data)
     content = _CONTENT.search(text)
     if content is None:
-        raise RomError(f"{path}: has no CONTENT BEGIN ... END; name a .mif file, or one of 32 binary digits a line")
+        raise RomError(f"{path}: has no CONTENT BEGIN ... END; name a .mif file, or one of 32 binary digits per line")
     settings = {name.upper(): value.upper() for name, value in _SETTING.findall(text[: content.start()])}
     if settings.get(b"WIDTH") != b"32":
         raise RomError(f"{path}: WIDTH is not 32; write the memory as words of 32 bits")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize import SceneWarning
 
-_MODEL = 256  # the most voxels a side of a model
+_MODEL = 256  # the most voxels per side of a model
 _WORLD = 2048  # and of a scene
 _VERSION = 150
 

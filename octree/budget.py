@@ -1,15 +1,15 @@
-"""Fit an octree to the memory that a board has, giving up what is seen least.
+"""Fit an octree to the memory of a board, giving up the least visible detail.
 
-How it works: equal blocks are shared first, which costs nothing. If that is not enough, bricks of 8 x 8 x 8 cells let
-others stand for them (the idea is that of van der Laan, Scandolo and Eisemann, "Lossy Geometry Compression for High
-Resolution Voxel Scenes", 2020): other bricks of the scene, and coarser or fuller versions of all. What that costs is
-how the brick looks along the eight diagonals of its cube: faces that turn or change colour, and what is covered. Which
-bricks to keep is a facility location problem, solved by adding and dropping (Kuehn and Hamburger, "A Heuristic Program
-for Locating Warehouses", 1963) at a falling price of a block until the memory is full. A stand-in holds every solid
-voxel of what it stands for, so a wall never gets a hole; what it holds beyond that is what silhouettes grow by. Octants
-that no ray from outside reaches change for nothing. Memories far too large start from a world made coarser by one level
-or more; every candidate that fits is measured against the original, the plain coarser world among them; the closest is
-taken.
+How it works: equal blocks are shared first, without loss. If that is not enough, bricks of 8 x 8 x 8 cells are replaced
+by representatives: other bricks of the scene, and coarser or fuller versions of all (the idea is that of van der Laan,
+Scandolo and Eisemann, "Lossy Geometry Compression for High Resolution Voxel Scenes", 2020). The cost of a
+representative is the change of the brick's appearance along the eight diagonals of its cube: faces that turn or change
+colour, and what is covered. The choice of bricks to keep is a facility location problem. It is solved by adding and
+dropping (Kuehn and Hamburger, "A Heuristic Program for Locating Warehouses", 1963) at a falling price per block, until
+the memory is full. A representative holds every solid voxel of the brick that it replaces, so walls get no holes;
+silhouettes grow by its other voxels. Octants that no ray from outside reaches change at no cost. Memories far too large
+start from a world that is coarser by one level or more. Every candidate that fits is compared with the original, the
+plain coarser world included, and the most similar one is taken.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def octant_at(octree: Octree, voxel: Corner) -> Octant:
     instance("octree", octree, Octree)
     x, y, z = as_corner("voxel", voxel)
     if min(x, y, z) < 0 or max(x, y, z) >= octree.size:
-        raise ValueError(f"voxel {x},{y},{z} lies outside the world of {octree.size} voxels a side")
+        raise ValueError(f"voxel {x},{y},{z} lies outside the world of {octree.size} voxels per side")
     address, level = 0, octree.depth
     word = int(octree.words[0])
     while not word >> 31:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Corner: TypeAlias = tuple[int, int, int]
 
-_FARTHEST = 1 << 30
+_FARTHEST = 1 << 20
 """Corners of boxes lie within this on each side of zero."""
 
 

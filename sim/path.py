@@ -150,7 +150,7 @@ def follow_pixel(octree: Octree, camera: Camera, size: tuple[int, int], pixel: t
     (5, 2, 2)
     """
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
-    column, row = whole_array("pixel", pixel, (2,), np.int64, low=0, high=1 << 14).tolist()
+    column, row = whole_array("pixel", pixel, (2,), np.int64, low=-(1 << 31), high=1 << 31).tolist()
     if not (0 <= column < width and 0 <= row < height):
         raise SimulatorError(
             f"pixel {column},{row} lies outside the frame of {width}x{height}; columns go to {width - 1}, rows to "

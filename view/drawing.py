@@ -275,7 +275,7 @@ def _colour_levels(
         n_colors=high - low + 1,
         annotations={float(level): f"{1 << level}" for level in range(low, high + 1)},
         scalar_bar_args={
-            "title": "voxels a side",
+            "title": "voxels per side",
             "n_labels": 0,
             "color": TEXT,
             "vertical": True,

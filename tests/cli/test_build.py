@@ -31,7 +31,7 @@ def test_writes_memory_and_manifest_and_tells_people(voxrt, folder):
     assert finished.code == 0, finished.err
     assert finished.out == ""
     assert sorted(files(folder / "out")) == ["house.json", "house.mem"]
-    assert "32 voxels a side (depth 5)" in finished.err
+    assert "32 voxels per side (depth 5)" in finished.err
     assert "out/house.mem" in finished.err
 
 

@@ -35,6 +35,25 @@ def test_around_all_formats(voxrt, built):
     assert voxrt("render", "out/turned.blob", "-o", "a.png", "--engine", "model", "--size", "16x12").code == 0
 
 
+@pytest.mark.parametrize("suffix", [".vox", ".npz", ".ply", ".glb", ".vtu", ".html"])
+def test_files_for_other_programs(voxrt, built, suffix):
+    if suffix == ".vtu":
+        pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
+    finished = voxrt("convert", "house.mem", f"new/house{suffix}", "--json")
+    assert finished.code == 0, finished.err
+    assert json.loads(finished.out)["outputs"] == [f"new/house{suffix}"]
+    first = (built / f"new/house{suffix}").read_bytes()
+    assert len(first) > 1000
+    assert voxrt("convert", "house.mem", f"again{suffix}").code == 0
+    assert (built / f"again{suffix}").read_bytes() == first
+
+
+def test_every_form_has_a_writer():
+    assert library.WRITABLE_SUFFIXES == (
+        ".mem", ".coe", ".mif", ".bin", ".blob", ".vox", ".npz", ".ply", ".glb", ".vtu", ".html"
+    )  # fmt: skip
+
+
 def test_another_dialect(voxrt, built):
     assert voxrt("convert", "house.mem", "old.mem", "--dialect", "seed-rtl").code == 0
     assert "FFFFFFF0" in (built / "old.mem").read_text().split()

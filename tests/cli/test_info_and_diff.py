@@ -17,7 +17,7 @@ from voxrt.voxelize import EMPTY, Grid
 
 @pytest.fixture
 def worlds(folder):
-    """Two memories of 8 voxels a side: an octant and a voxel; the same with the voxel elsewhere, another material."""
+    """Two memories of 8 voxels per side: an octant and a voxel; the same with the voxel elsewhere, another material."""
     names = (EMPTY, Material("stone", (200, 100, 50)), Material("glass", (1, 2, 3)))
     for name, place in (("before", (7, 0, 0)), ("after", (7, 7, 0))):
         world = np.zeros((8, 8, 8), np.uint8)

@@ -110,7 +110,7 @@ def test_pyvista_reads_memories(built, pyvista):
     [
         (("nothing.mem",), 3, "nothing.mem"),
         (("house.obj", "--screenshot", "o.jpg"), 2, "ends in .png"),
-        (("house.obj", "-o", "o.stl"), 2, "end in .vtu, .glb, .vox, .html"),
+        (("house.obj", "-o", "o.stl"), 2, "end in .vox, .npz, .ply, .glb, .vtu, .html"),
         (("house.obj", "-o", "house.mtl/o.vtu"), 2, "is a file, not a folder"),
         (("house.obj", "--turntable", "o.avi"), 2, "end in .gif or .mp4"),
         (("house.obj", "--level-limit", "17"), 2, "17 is not 0 to 16"),
@@ -143,7 +143,15 @@ def test_no_screen(voxrt, monkeypatch, pyvista):
     assert "voxrt: error: there is no screen" in finished.err
 
 
-@pytest.mark.parametrize("wanted", [("--screenshot", "o.png"), ("-o", "o.glb"), ("--turntable", "o.gif")])
+@pytest.mark.parametrize("suffix", ["vox", "npz", "ply", "glb", "html"])
+def test_files_that_need_no_pyvista(voxrt, built, monkeypatch, suffix):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    finished = voxrt("view", "house.mem", "-o", f"o.{suffix}", "--slice", "x=8")
+    assert finished.code == 0, finished.err
+    assert (built / f"o.{suffix}").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("wanted", [("--screenshot", "o.png"), ("-o", "o.vtu"), ("--turntable", "o.gif")])
 def test_without_pyvista(voxrt, monkeypatch, wanted):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     finished = voxrt("view", "house.obj", "--depth", "4", *wanted)

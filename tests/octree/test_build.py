@@ -170,11 +170,11 @@ def test_voxels_beyond_a_small_grid_are_refused():
 @pytest.mark.parametrize(
     ("array", "message"),
     [
-        (np.zeros((2, 2)), "integers of shape"),
-        (np.zeros((2, 2, 2)), "integers of shape"),
+        (np.zeros((2, 2)), r"must have shape \(X, Y, Z\)"),
+        (np.full((2, 2, 2), 0.5), r"materials\[0, 0, 0\] must be an integer 0 … 255, not 0.5"),
         (np.zeros((2, 0, 2), int), "must hold a voxel"),
-        (np.full((2, 2, 2), -1), "must be 0 ... 255, and the array holds -1 ... -1"),
-        (np.full((2, 2, 2), 256), "must be 0 ... 255, and the array holds 256 ... 256"),
+        (np.full((2, 2, 2), -1), r"materials\[0, 0, 0\] must be an integer 0 … 255, not -1"),
+        (np.full((2, 2, 2), 256), r"materials\[0, 0, 0\] must be an integer 0 … 255, not 256"),
     ],
 )
 def test_arrays_that_are_no_materials_are_refused(array, message):
@@ -183,7 +183,7 @@ def test_arrays_that_are_no_materials_are_refused(array, message):
 
 
 def test_an_array_beyond_the_largest_depth_is_refused():
-    with pytest.raises(DoesNotFitError, match="65537 voxels a side do not fit depth 16"):
+    with pytest.raises(DoesNotFitError, match="65537 voxels per side do not fit depth 16"):
         octree.from_dense(np.zeros((65537, 1, 1), np.uint8))
 
 
@@ -201,12 +201,12 @@ def test_from_points_is_the_reference_recursion_in_any_order(cube, rng):
 @pytest.mark.parametrize(
     ("points", "materials", "message"),
     [
-        ([[0, 0]], [1], r"must be \(N, 3\) and \(N,\)"),
+        ([[0, 0]], [1], r"points must have shape \(N, 3\)"),
         ([[0, 0, 0]], [1, 2], r"must be \(N, 3\) and \(N,\)"),
-        ([[0, 0, 8]], [1], r"points must lie in 0 \.\.\. 7, not 0 \.\.\. 8"),
-        ([[0, -1, 0]], [1], r"points must lie in 0 \.\.\. 7, not -1 \.\.\. 0"),
-        ([[0, 0, 0]], [0], r"materials must be 1 \.\.\. 255, not 0 \.\.\. 0"),
-        ([[0, 0, 0]], [256], r"materials must be 1 \.\.\. 255, not 256"),
+        ([[0, 0, 8]], [1], r"points\[0, 2\] must be an integer 0 … 7, not 8"),
+        ([[0, -1, 0]], [1], r"points\[0, 1\] must be an integer 0 … 7, not -1"),
+        ([[0, 0, 0]], [0], r"materials\[0\] must be an integer 1 … 255, not 0"),
+        ([[0, 0, 0]], [256], r"materials\[0\] must be an integer 1 … 255, not 256"),
     ],
 )
 def test_points_that_are_none_are_refused(points, materials, message):

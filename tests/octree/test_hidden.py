@@ -125,7 +125,7 @@ def test_a_world_far_larger_than_memory():
 def test_refusals():
     tree = octree.from_dense(np.ones((2, 2, 2), int))
     for material in (0, 256):
-        with pytest.raises(ValueError, match="material must be 1"):
+        with pytest.raises(ValueError, match="material must be an integer 1 … 255"):
             octree.fill_hidden(tree, tree, material)
     other = octree.from_dense(np.ones((4, 4, 4), int))
     broken = octree.Octree(1, np.array([1], np.uint32))

@@ -176,17 +176,17 @@ def test_a_world_far_larger_than_memory():
 
 def test_refusals():
     tree = octree.from_dense(np.ones((2, 2, 2), int))
-    with pytest.raises(ValueError, match="integers of shape"):
+    with pytest.raises(ValueError, match=r"points\[0, 0\] must be an integer"):
         octree.material_at(tree, [[0.5, 0, 0]])
-    with pytest.raises(ValueError, match="integers of shape"):
+    with pytest.raises(ValueError, match=r"points must have shape \(\.\.\., 3\)"):
         octree.material_at(tree, [[0, 0]])
     with pytest.raises(ValueError, match="below its start"):
         octree.to_dense(tree, (1, 1, 1), (0, 2, 2))
-    with pytest.raises(DoesNotFitError, match="281474976710656 voxels"):
+    with pytest.raises(DoesNotFitError, match="281,474,976,710,656 bytes"):
         octree.to_dense(doubled(16))
-    with pytest.raises(ValueError, match="beyond 2\\*\\*20"):
+    with pytest.raises(ValueError, match=r"high\[0\] must be an integer -1048576 … 1048576, not 2097152"):
         octree.count_in_box(tree, (0, 0, 0), (2**21, 1, 1))
-    with pytest.raises(ValueError, match="at least 1 leaf"):
+    with pytest.raises(ValueError, match="chunk must be an integer 1"):
         next(octree.leaves(tree, chunk=0))
     with pytest.raises(ValueError, match="depth 1 and 2"):
         octree.diff(tree, octree.from_dense(np.ones((4, 4, 4), int)))

@@ -75,7 +75,7 @@ def trace(voxels, position, direction):
 
 
 def readings(words, depth, position, direction):
-    """Tell which words a ray reads, cell by cell: from a leaf to the next, those below the octants that hold both.
+    """Tell which words are read by a ray, cell by cell: from leaf to leaf, those below the octants that hold both.
 
     Returns
     -------

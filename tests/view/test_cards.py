@@ -6,6 +6,7 @@ import base64
 import io
 import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from voxrt.sim import Frame, RenderCost
 from voxrt.view import cards  # noqa: F401 - it registers the cards
 from voxrt.voxelize import EMPTY, Material
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 RED, BLUE = (220, 40, 40), (40, 60, 220)
 
 
@@ -46,7 +48,7 @@ def test_memories_and_octrees():
     assert np.argwhere(red > 0.99)[:, 0].mean() < np.argwhere(blue > 0.99)[:, 0].mean()
     for value in (rom, rom.octree):
         html = value._repr_html_()
-        assert "16 voxels a side" in html
+        assert "16 voxels per side" in html
         assert f"{np.count_nonzero(cube):,} voxels" in html
         embedded = base64.b64decode(re.search(r"base64,([^\"]+)", html).group(1))
         assert pixels(embedded).shape == pixels(value._repr_png_()).shape
@@ -57,6 +59,27 @@ def test_memories_and_octrees():
 def test_the_deepest_world_is_drawn_in_its_coarse_octants():
     tree = octree.from_points(np.array([[0, 0, 0], [65535, 65535, 65535]]), np.ones(2, int), 16)
     assert pixels(tree._repr_png_()).ndim == 3
+
+
+def test_builds_scenes_and_rays():
+    import voxrt
+    import voxrt.cards
+    from voxrt.sim import follow_ray
+
+    built = voxrt.build(EXAMPLES / "house.obj", depth=4)
+    html = built._repr_html_()
+    assert len(repr(built)) < 200
+    for told in ("house", "16 voxels per side", f"{built.solid_voxels:,} voxels", "timber, glass, brick"):
+        assert told in html
+    assert pixels(built._repr_png_()).ndim == 3
+    html = built.scene._repr_html_()
+    triangles = sum(len(item.mesh.triangles) for item in built.scene.objects)
+    assert f"<td>{triangles:,}</td>" in html
+    assert pixels(base64.b64decode(re.search(r"base64,([^\"]+)", html).group(1))).ndim == 3
+    path = follow_ray(built.octree, (-16, 130, 130), (1, 0, 0))
+    html = path._repr_html_()
+    assert html.count("<tr>") == 4 + 1 + len(path.readings)
+    assert f"0x{path.readings[0].address:X}" in html
 
 
 def test_frames():

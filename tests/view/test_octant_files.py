@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import zipfile
 import zlib
 
 import numpy as np
@@ -18,7 +19,7 @@ from PIL import Image
 from voxrt import export, octree, view, voxelize
 from voxrt.export.vox import write_vox
 from voxrt.view.animation import write_animation
-from voxrt.view.octant_files import write_glb
+from voxrt.view.octant_files import write_glb, write_ply
 from voxrt.view.octant_page import write_page
 from voxrt.voxelize import EMPTY, DoesNotFitError, Grid, Material
 
@@ -27,6 +28,10 @@ MATERIALS = (EMPTY, *(Material(f"m{n}", (n, 255 - n, n * 7 % 256)) for n in rang
 
 def rom_of(cube, grid=None):
     return octree.Rom("world", octree.from_dense(cube), MATERIALS, grid)
+
+
+def mesh_of(rom):
+    return view.Pane(rom).mesh()
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +89,7 @@ def test_gltf_files_hold_the_sides_that_can_be_seen(file, cube):
     if not cube.any():
         return
     cells = view.octants(rom)
-    write_glb(file / "o.glb", rom, cells)
+    write_glb(file / "o.glb", rom, mesh_of(rom))
     scene = trimesh.load_scene(file / "o.glb")
     sides = view.open_sides(cells)[0]
     assert sum(len(mesh.faces) for mesh in scene.geometry.values()) == 2 * len(sides)
@@ -112,7 +117,7 @@ def test_gltf_files_hold_the_sides_that_can_be_seen(file, cube):
 def test_pages_need_nothing_else_and_hold_the_octants(file, cube):
     rom = rom_of(cube)
     cells = view.octants(rom)
-    write_page(file / "o.html", rom, cells)
+    write_page(file / "o.html", rom, mesh_of(rom))
     page = (file / "o.html").read_text()
     assert not re.search(r"https?:|src=|href=|@import|{{", page)
     scene = json.loads(re.search(r"const scene = (\{.*\});", page).group(1))
@@ -127,10 +132,55 @@ def test_pages_need_nothing_else_and_hold_the_octants(file, cube):
         assert (found.address, found.end) == (where, tuple((end.astype(int) + 1).tolist()))
 
 
+@given(cube=dense_cubes(max_depth=4))
+@settings(max_examples=20)
+def test_ply_files_hold_the_sides_and_their_colours(file, cube):
+    """Read by trimesh: each visible side of a voxel lies in a face of its material's colour, and no other does."""
+    rom = rom_of(cube, Grid(len(cube).bit_length() - 1, (-3.0, 1.0, 0.5), 0.25))
+    write_ply(file / "o.ply", rom, mesh_of(rom))
+    assert (file / "o.ply").read_bytes().startswith(b"ply\nformat binary_little_endian 1.0\n")
+    if not cube.any():
+        return
+    mesh = trimesh.load(file / "o.ply", process=False)
+    points = (mesh.vertices - (-3.0, 1.0, 0.5)) / 0.25
+    corners = points[mesh.faces]
+    colours = np.array([material.colour for material in MATERIALS])
+    visible = np.zeros(3)
+    around = np.pad(cube, 1)
+    for axis in range(3):
+        steps = np.diff((around != 0).astype(int), axis=axis)
+        visible[axis] = np.count_nonzero(steps)
+    # Sides of octants of different size may lie on each other in part: at least what is visible is there.
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert (np.abs(across).sum(axis=0) / 2 >= visible - 1e-9).all()
+    behind = np.floor(corners.mean(axis=1) - 0.01 * np.sign(across)).astype(int)
+    np.testing.assert_array_equal(mesh.visual.face_colors[:, :3], colours[cube[tuple(behind.T)]])
+
+
+@given(cube=dense_cubes(max_depth=4), data=st.data())
+@settings(max_examples=20)
+def test_numpy_archives_hold_the_voxels(file, cube, data):
+    high = data.draw(st.none() | st.tuples(*[st.integers(1, len(cube))] * 3))
+    rom = rom_of(cube, Grid(len(cube).bit_length() - 1, (-3.0, 1.0, 0.5), 0.25))
+    export.write_npz(file / "o.npz", rom, high)
+    kept = cube.copy()
+    for axis, end in enumerate(high or ()):
+        kept[(slice(None),) * axis + (slice(end, None),)] = 0
+    with np.load(file / "o.npz") as read:
+        again = np.zeros_like(cube)
+        again[tuple(read["coordinates"].T)] = read["material_ids"]
+        np.testing.assert_array_equal(again, kept)
+        assert [tuple(colour) for colour in read["colours"].tolist()] == [m.colour for m in MATERIALS]
+        assert read["names"][1] == "m1"
+        assert (read["depth"], read["voxel_size"]) == (rom.octree.depth, 0.25)
+        assert read["origin"].tolist() == [-3.0, 1.0, 0.5]
+    with zipfile.ZipFile(file / "o.npz") as archive:  # no time of day: equal memories give equal bytes
+        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
 def test_names_in_pages_are_text(file):
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
     rom = octree.Rom("</script><b>", octree.from_dense(np.ones((2, 2, 2), np.uint8)), MATERIALS)
-    write_page(file / "o.html", rom, view.octants(rom))
+    write_page(file / "o.html", rom, mesh_of(rom))
     assert "</script><b>" not in (file / "o.html").read_text()
 
 

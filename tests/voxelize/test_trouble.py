@@ -163,7 +163,7 @@ def test_fit_grid():
     assert fit_grid(scene, voxel_size=0.5) == Grid(3, (1.0, 2.0, 3.0), 0.5)
     assert fit_grid(scene, voxel_size=0.49).depth == 4
     assert fit_grid(scene, voxel_size=100.0).depth == 1
-    with pytest.raises(DoesNotFitError, match="use a voxel size of .* m or more"):
+    with pytest.raises(DoesNotFitError, match=r"use a voxel size of .* m or more"):
         fit_grid(scene, voxel_size=1e-5)
     with pytest.raises(ValueError, match="one of depth and voxel_size"):
         fit_grid(scene)

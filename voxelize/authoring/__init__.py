@@ -18,7 +18,6 @@ from voxrt.voxelize.authoring.declared_materials import AuthoringError, Colour, 
 from voxrt.voxelize.authoring.solid import (
     Axis,
     Solid,
-    SolidError,
     box,
     box_between,
     closed,
@@ -26,9 +25,9 @@ from voxrt.voxelize.authoring.solid import (
     cylinder,
     extrude,
     hull,
-    placement,
     sphere,
 )
+from voxrt.voxelize.authoring.transforms import SolidError, placement
 from voxrt.voxelize.collider_shapes import ColliderKind, collider_around
 
 __all__ = [

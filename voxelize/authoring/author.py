@@ -9,7 +9,8 @@ import numpy as np
 from voxrt.voxelize import arguments
 from voxrt.voxelize.authoring.asset_materials import AssetMaterials
 from voxrt.voxelize.authoring.declared_materials import AuthoringError, DeclaredMaterials
-from voxrt.voxelize.authoring.solid import Solid, placement
+from voxrt.voxelize.authoring.solid import Solid
+from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.collider_shapes import COLLIDER_KINDS, collider_around
 from voxrt.voxelize.materials import EMPTY
 from voxrt.voxelize.mesh import Mesh

@@ -179,7 +179,7 @@ def visible_triangles(surface: SurfaceAppearance) -> NDArray[np.bool_]:
     solid = np.zeros(len(surface.rows), np.bool_)
     for row, appearance in enumerate(surface.entries):
         members = np.flatnonzero(surface.rows == row)
-        # Nearest pixels tell well enough whether any surface is left.
+        # Nearest pixels suffice to find whether any surface is left.
         texture = replace(appearance.texture, nearest=True) if appearance.texture is not None else None
         least = float(texture.pixels[:, :, 3].min()) / 255 if texture is not None and appearance.cutoff > 0 else 1.0
         own = surface.colours[members, :, 3].min(axis=1) * appearance.factor[3]

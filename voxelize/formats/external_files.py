@@ -51,11 +51,11 @@ class ExternalFiles:
         file is preferred to others.
         """
         parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
-        found = [self._whatever_its_case(tail) for tail in (parts, parts[-1:]) if tail]
+        found = [self._ignoring_case(tail) for tail in (parts, parts[-1:]) if tail]
         there = [target for target in found if target is not None]
         return next((target for target in there if self.allows(target)), next(iter(there), None))
 
-    def _whatever_its_case(self, parts: tuple[str, ...]) -> Path | None:
+    def _ignoring_case(self, parts: tuple[str, ...]) -> Path | None:
         place = self.folder
         try:
             for part in parts:

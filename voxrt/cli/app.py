@@ -67,7 +67,7 @@ _add_command(
 )
 _add_command(
     "render",
-    "Render a picture of a memory, pixel by pixel what the hardware shows.",
+    "Render a picture of a memory, with the same pixels as the hardware.",
     "voxrt render courtyard.mem -o courtyard.png --position -20,40,180 --look 1,-1,-4",
 )
 _add_command(
@@ -77,12 +77,12 @@ _add_command(
 )
 _add_command(
     "view",
-    "Show the octants of a memory, or of an asset, in a window, as a picture, or in a file for other programs.",
+    "Show the octants of a memory or of an asset: in a window, as a picture, or as a file for other programs.",
     "voxrt view courtyard.mem --ray 320,240 --screenshot ray.png",
 )
 _add_command(
     "trace",
-    "Tell the way of one pixel's ray through the octree, word by word.",
+    "Print the path of one pixel's ray through the octree, word by word.",
     "voxrt trace courtyard.mem --pixel 320,240",
 )
 _add_command(
@@ -96,7 +96,7 @@ _add_command(
     "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
 )
 _add_command("convert", "Write a memory in another format.", "voxrt convert courtyard.mem courtyard.blob")
-_add_command("info", "Tell what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
+_add_command("info", "Print what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
 _add_command(
     "core",
     "Show the configurations of the hardware, or give its sources to a design of your own.",
@@ -104,7 +104,7 @@ _add_command(
 )
 _add_command(
     "completion",
-    "Print a script that completes command lines, for a shell to read at its start.",
+    "Print a script for command-line completion, to be read by a shell at its start.",
     'echo "source <(voxrt completion bash)" >> ~/.bashrc',
 )
 _add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")

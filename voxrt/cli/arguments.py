@@ -1,4 +1,4 @@
-"""What stands on the command line, from text to values."""
+"""Values from the text of the command line."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 
 
 class UsageError(Exception):
-    """A command line that makes no sense, in one line."""
+    """A command line that cannot be understood, in one line."""
 
 
 @dataclass(frozen=True)
 class Reporting:
-    """How a command tells what it did."""
+    """How a command prints its results."""
 
     json: bool = False
     """Print the result as JSON on standard output."""
@@ -36,9 +36,9 @@ class Reporting:
 
 
 def bind_preview(arguments: Sequence[str]) -> list[str]:
-    """Join ``--preview`` to its file, or to none: its value is optional, and an asset may stand behind it.
+    """Join ``--preview`` to its file, if it has one: the value is optional, and an asset may follow it.
 
-    The argument behind it is its file unless it is an option or has the suffix of an asset.
+    The next argument is its file unless it is an option or has the suffix of an asset.
     """
     bound = list(arguments)
     for place, argument in enumerate(bound):
@@ -76,7 +76,7 @@ def levels(kind: type, tokens: Sequence[Token]) -> int:
 
 
 def shades(kind: type, tokens: Sequence[Token]) -> int:
-    """Read a number of colours beside the one that a painted surface has inside."""
+    """Read a number of colours; a textured surface has one more inside."""
     number = whole(kind, tokens)
     if not 1 <= number <= 254:
         raise ValueError(f"{number} is not 1 to 254")
@@ -183,21 +183,21 @@ _Register = Annotated[
 
 @dataclass(frozen=True)
 class Sight:
-    """Where the camera stands and looks; what is not given frames the whole scene."""
+    """The camera. What is not given is chosen to show the whole scene."""
 
     position: Annotated[
         tuple[int, int, int] | None,
         Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True),
     ] = None
-    """Where the camera stands, voxels, in steps of 1/16; may be outside the scene. Not given, it stands where the
-    whole scene is in the picture."""
+    """Position of the camera in voxels, in steps of 1/16. It may lie outside the scene. The default shows the whole
+    scene."""
 
     look: _Register = None
-    """Register: the direction of the picture's middle. Given without --right and --up it is a direction of any length;
-    not given, the camera looks at the scene."""
+    """Register: direction of the centre of the picture. Without --right and --up, its length does not matter. The
+    default looks at the scene."""
 
     right: _Register = None
-    """Register: the step of direction from a pixel to the one on its right. Not given: right = look x up."""
+    """Register: step of the direction from a pixel to its right neighbour. The default is look x up."""
 
     up: _Register = None
-    """Register: the step of direction from a pixel to the one above it. Not given: upright."""
+    """Register: step of the direction from a pixel to the one above it. The default is upright."""

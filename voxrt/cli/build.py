@@ -117,7 +117,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     names = ", ".join(material.name for material in shown) + (", ..." if len(rom.materials) > 5 else "")
     stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
     return [
-        ("grid", f"{1 << rom.octree.depth} voxels a side (depth {rom.octree.depth}){voxel}"),
+        ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
         *([("interior", _interior(result.interior, rom))] if result.interior else []),

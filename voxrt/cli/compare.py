@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.sim import Camera, EngineCheck
 
 _COARSEST = 3
-"""Depth at which the curve begins."""
+"""The first depth of the curve."""
 
 
 def compare(
@@ -43,16 +43,16 @@ def compare(
     asset
         What it was built from.
     output
-        A .png: the meshes, the memory as the simulated hardware and as the exact model show it, and the difference,
-        side by side.
+        A .png of four pictures side by side: the meshes, the memory by the simulated hardware and by the exact model,
+        and the difference.
     curve
-        A .png of likeness against depth and against words: the asset is built at each depth up to the memory's.
+        A .png that plots the similarity against depth and words. The asset is built at each depth up to the memory's.
     size
-        Width and height, pixels. [default: 640x480]
+        Width and height in pixels. [default: 640x480]
     allow_outside
-        Open files that the asset names outside its folder and the folders in it, too.
+        Also open files that the asset names outside of its own folder.
     reporting
-        How to tell it.
+        How results are printed.
     """
     for picture in (output, curve):
         if picture is not None:

@@ -26,25 +26,26 @@ def convert(
     material: Annotated[tuple[str, ...], Parameter(metavar="NAME=RRGGBB", show_default=False)] = (),
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Write a memory in another format; the suffixes say which.
+    """Write a memory in another format. The suffixes of the files say which.
 
     Parameters
     ----------
     source
-        .mem, .coe, .mif or .bin (with a manifest beside it or without), .blob, a node listing .txt of the original's
-        authoring script, or MagicaVoxel's .vox.
+        A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .vox (MagicaVoxel), or .txt
+        (a node listing of the original's authoring script).
     target
-        .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob.
+        The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. For
+        other programs: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu (ParaView, PyVista) or .html.
     depth
-        Levels of the octree, where FROM does not say.
+        Levels of the octree, if FROM does not state them.
     from_dialect
-        How FROM spells a material, where it does not say.
+        How FROM encodes materials, if it does not state that.
     dialect
-        How TO spells a material.
+        How TO encodes materials.
     material
-        A material of a node listing and its colour, in the order of their ids, any number of times.
+        Name and colour of a material of a node listing. Give the option once per material, in the order of their ids.
     reporting
-        How to tell it.
+        How results are printed.
     """
     if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
         raise UsageError(f"{target}: is no format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")

@@ -14,7 +14,7 @@ from voxrt.cli.messages import summarize, warn
 from voxrt.cli.results import print_json
 
 SHOWN = 5
-"""The most regions that people are told of."""
+"""The most regions that are printed."""
 
 
 def diff(
@@ -24,7 +24,7 @@ def diff(
     *,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Compare the voxels of two memories, however their words are arranged, and say where they differ.
+    """Compare the voxels of two memories and print where they differ. The order of their words does not matter.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def diff(
     second
         Another, of the same depth.
     reporting
-        How to tell it.
+        How results are printed.
     """
     roms = []
     for path in (first, second):

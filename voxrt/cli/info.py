@@ -22,18 +22,18 @@ def info(
     dialect: Literal["report", "seed-rtl", "msb"] | None = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Tell what a memory holds.
+    """Print what a memory holds: its size, levels and materials.
 
     Parameters
     ----------
     rom
         A .mem, .coe, .mif or .bin file, with its manifest beside it or without, or a .blob.
     depth
-        Levels of the octree, where no manifest says.
+        Levels of the octree, for a memory without a manifest.
     dialect
-        How the memory spells a material, where no manifest says.
+        How the memory encodes materials, for a memory without a manifest.
     reporting
-        How to tell it.
+        How results are printed.
     """
     blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
     warn(warnings)
@@ -45,7 +45,7 @@ def info(
     size = f", {world.voxel_size:.4g} m each" if world else ""
     unshared = 1 + 8 * told.unshared_blocks
     rows = [
-        ("grid", f"{side} voxels a side (depth {told.depth}){size}"),
+        ("grid", f"{side} voxels per side (depth {told.depth}){size}"),
         ("solid", f"{told.voxels:,} voxels, {100 * told.voxels / side**3:.2f} %"),
         ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB; {unshared:,} words without sharing"),
     ]

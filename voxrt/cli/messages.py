@@ -62,11 +62,11 @@ def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
 
 
 def picture_cost(frame: Frame, engine: str) -> str:
-    """Say what a picture cost."""
+    """Return the cost of a picture in one line."""
     height, width = frame.material.shape
     cost = frame.cost
-    cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles a pixel, "
-    words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words a ray, "
+    cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles per pixel, "
+    words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words per ray, "
     return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
 
 

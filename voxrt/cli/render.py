@@ -40,42 +40,42 @@ def render(
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Render a picture of a memory, as the hardware does.
+    """Render a picture of a memory, with the same pixels as the hardware.
 
     Parameters
     ----------
     rom
-        A .mem file or a memory in another format. Its manifest, the .json beside it, gives materials, depth and
-        dialect.
+        A memory: .mem or another format. Its manifest, the .json beside it, states materials, depth and dialect.
     output
-        The picture, a .png; NAME.png in this folder when not given.
+        The picture, a .png. The default is NAME.png in this folder.
     engine
-        The verilated hardware, or the exact model of it. Both give the same pixels.
+        rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ model, which is faster. Both
+        give the same pixels.
     config
-        The configuration of the hardware: how many lanes, which memory, which features of the shader. Not given: tiny,
-        or lit where light, mirrors or flat colours are wanted.
+        The configuration of the hardware: its lanes, its memory, the features of its shader. The default is tiny, or
+        lit if light, mirrors or flat colours are asked for.
     size
-        Width and height, pixels. [default: 640x480]
+        Width and height in pixels. [default: 640x480]
     sight
-        Where the camera stands.
+        The camera.
     depth
-        Levels of the octree, where no manifest says.
+        Levels of the octree, for a memory without a manifest.
     dialect
-        How the memory spells a material, where no manifest says.
+        How the memory encodes materials, for a memory without a manifest.
     light
-        Where a light stands that casts shadows, voxels, in steps of 1/16. Not given: the memory's, or none: then the
-        camera is the light.
+        Position of a light that casts shadows, in voxels, in steps of 1/16. The default is the light of the memory. If
+        it has none, the light is in the camera.
     ambient
-        The brightness of that light's shadows, 0 to 255. [default: 32]
+        The brightness of shadows, 0 to 255. [default: 32]
     bounces
-        How often mirrors reflect a ray, 0 to 15; with 0 they are like all other materials. Not given: as the memory
-        says, or 0.
+        The most reflections of a ray by mirrors, 0 to 15. With 0, mirrors are like other materials. The default is
+        that of the memory, or 0.
     flat
         Show materials in their own colour, whatever the angle.
     check
-        Render with both engines, count the pixels on which they differ, fail if there are any.
+        Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
-        How to tell what was done.
+        How results are printed.
     """
     file = png(Path(f"{rom.stem}.png") if output is None else output)
     blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)

@@ -1,6 +1,6 @@
 """What ``--json`` prints: the shape of each command's result.
 
-The field names are a promise to programs: they may gain company, never change.
+Programs rely on the names of the fields: new ones may come, none changes.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class MaterialEntry(msgspec.Struct, frozen=True):
     id: int
     name: str
     colour: tuple[int, int, int]
-    """sRGB, 8 bits a channel."""
+    """sRGB, 8 bits per channel."""
     authored: bool
-    """False for the default material that stands in where the asset gave none."""
+    """False for the default material of objects without a material."""
 
 
 class WarningEntry(msgspec.Struct, frozen=True):
-    """Something that the asset said and that was not honoured as it stands."""
+    """Something that the asset said and the build did not honour as it stands."""
 
     kind: str
     """A stable name for programs."""
@@ -116,7 +116,7 @@ class BuildReport(msgspec.Struct, frozen=True):
     materials: list[MaterialEntry]
     warnings: list[WarningEntry]
     seconds: dict[str, float]
-    """Wall seconds a stage, in order."""
+    """Wall seconds per stage, in order."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
     budget: BudgetEntry | None = None
@@ -126,7 +126,7 @@ class BuildReport(msgspec.Struct, frozen=True):
 
 
 def build_report(result: BuildResult) -> BuildReport:
-    """Tell programs what a build made."""
+    """Return what a build made, for programs."""
     rom = result.rom
     return BuildReport(
         outputs={kind: name_file(path) for kind, path in result.outputs.items()},
@@ -164,12 +164,12 @@ def _budget_entry(budget: BudgetFit) -> BudgetEntry:
 
 
 def warning_entries(warnings: Iterable[SceneWarning]) -> list[WarningEntry]:
-    """Tell programs what was not honoured as it stands."""
+    """Return warnings, for programs."""
     return [WarningEntry(warning.kind, warning.message, warning.count) for warning in warnings]
 
 
 def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int | None = None) -> RenderResult:
-    """Tell programs what a picture shows and cost."""
+    """Return what a picture shows and cost, for programs."""
     cost, camera = picture.frame.cost, picture.camera
     height, width = picture.frame.material.shape
     return RenderResult(
@@ -188,7 +188,7 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
 
 
 def camera_entry(camera: Camera) -> CameraEntry:
-    """Tell programs where a camera stands."""
+    """Return a camera, for programs."""
     x, y, z = camera.position
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 

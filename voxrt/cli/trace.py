@@ -27,22 +27,22 @@ def trace(
     depth: Depth = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Tell the way of one pixel's ray through the octree: each word that it reads, in order, and why.
+    """Print the path of one pixel's ray through the octree: each word that it reads, in order.
 
     Parameters
     ----------
     scene
-        A .mem file or a memory in another format, or an asset, which is built on the way.
+        A memory (.mem or another format), or an asset, which is built first.
     pixel
-        Column and row in the picture that `voxrt render` or `--preview` makes, from its upper left.
+        Column and row of the pixel in the picture of `voxrt render`, from the upper left.
     size
-        Width and height of that picture, pixels. [default: 640x480]
+        Width and height of that picture in pixels. [default: 640x480]
     sight
-        Where the camera stands.
+        The camera.
     depth
-        Levels of the octree, for an asset and where no manifest says.
+        Levels of the octree, for an asset or for a memory without a manifest.
     reporting
-        How to tell it.
+        How results are printed.
     """
     check_pixel(pixel, size)
     source = read_source(scene, depth)

@@ -69,42 +69,41 @@ def view(
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
     debug: Annotated[bool, Parameter(show_default=False)] = False,  # noqa: ARG001 - read where errors are explained
 ) -> None:
-    """Show the octants of a memory, or of an asset, in a window or as a picture.
+    """Show the octants of a memory or of an asset, in a window or as a picture.
 
-    Octants that others cover on all six sides are left out. In the window a click on an octant shows its address, word,
-    level, bounds and material; a slider makes small octants uniform; the key c brings a plane that cuts.
+    Octants that others cover on all six sides are left out. In the window, a click on an octant shows its address,
+    word, level, bounds and material. A slider makes small octants uniform. The key c adds a plane that cuts.
 
     Parameters
     ----------
     scene
-        A .mem file or a memory in another format, or an asset, which is built on the way.
+        A memory (.mem or another format), or an asset, which is built first.
     other
-        Another, shown beside it and turned with it.
+        A second memory or asset, shown beside the first and turned with it.
     by
-        What the colours tell. Owners, the objects that voxels belong to, are known of assets alone.
+        What the colours show. The owners of voxels, which are the objects of the scene, are known only for assets.
     clip
-        Leave out the octants of the half of the scene that is nearer to the eye along this axis.
+        Leave out the half of the scene that is nearer to the camera along this axis. Octants stay whole.
     slice
-        Cut through the octants at a plane, such as x=40, and leave out what is nearer to the eye. May be given for
-        each axis.
+        Cut the octants at a plane, such as x=40, and leave out what is nearer to the camera. One plane per axis.
     level_limit
-        Make octants of 2**N voxels a side uniform first, for fewer octants.
+        Make octants of 2**N voxels per side uniform first, so that there are fewer octants.
     overlay
-        Draw the asset's triangles over its octants.
+        Draw the triangles of the asset over its octants.
     ray
-        Show the picture that the camera sees, and the way of this pixel's ray through the octants: column and row of
-        640x480. In the window a click chooses another pixel.
+        Show the picture of the camera, and the path of this pixel's ray through the octants: column and row of
+        640x480. In the window, a click chooses another pixel.
     depth
-        Levels of the octree, for an asset and where no manifest says.
+        Levels of the octree, for an asset or for a memory without a manifest.
     size
-        Width and height, pixels. [default: 1024x768, 1280x720 where something is beside it]
+        Width and height in pixels. [default: 1024x768; 1280x720 with --ray or a second scene]
     screenshot
-        A .png to write instead of opening a window.
+        Write this .png instead of opening a window.
     turntable
-        A .gif or .mp4 to write instead of opening a window: the octants from all sides.
+        Write this .gif or .mp4 instead of opening a window. It shows the octants from all sides.
     output
-        A file to write instead of opening a window: .vtu for ParaView and PyVista, .glb (glTF), .vox (MagicaVoxel), or
-        .html, a page that needs nothing else.
+        Write this file instead of opening a window: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu
+        (ParaView, PyVista), or .html (a page that needs no other file).
     debug
         Show the traceback of an error.
     """

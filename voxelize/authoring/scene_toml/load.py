@@ -13,7 +13,8 @@ from voxrt.voxelize.authoring import solid as solids
 from voxrt.voxelize.authoring.author import Author
 from voxrt.voxelize.authoring.scene_toml.schema import SHAPES, Asset, Box, Node
 from voxrt.voxelize.authoring.scene_toml.validation import CheckedFile, check_file
-from voxrt.voxelize.authoring.solid import Solid, placement
+from voxrt.voxelize.authoring.solid import Solid
+from voxrt.voxelize.authoring.transforms import placement
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 

@@ -6,7 +6,8 @@ from typing import Annotated, TypeAlias
 
 from msgspec import Meta, Struct
 
-from voxrt.voxelize.authoring.solid import FARTHEST, Axis
+from voxrt.voxelize.authoring.solid import Axis  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.authoring.transforms import FARTHEST
 from voxrt.voxelize.collider_shapes import ColliderKind  # noqa: TC001 -- msgspec reads the annotations
 
 Number: TypeAlias = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]

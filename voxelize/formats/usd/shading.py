@@ -207,7 +207,7 @@ def _coordinates(
     if source and str(source.GetIdAttr().Get()).startswith("UsdPrimvarReader_float2"):
         return str(_value(source, "varname", time) or "st"), turn, scale, offset
     if source:
-        log.add("shader", f"shader nodes {source.GetIdAttr().Get()} are not honoured; coordinates 'st' stand in")
+        log.add("shader", f"shader nodes {source.GetIdAttr().Get()} are not supported; coordinates 'st' were used")
     return "st", turn, scale, offset
 
 

@@ -87,7 +87,7 @@ def broken(change, tmp_path, message, read=read_accessor):
         ({"byteOffset": 4}, r"accessors\[0\]: 2 elements end at byte 28"),
         ({"count": 10**15}, r"accessors\[0\]: needs 12000000000000000 bytes"),
         ({"bufferView": 9}, r"accessors\[0\]\.bufferView: buffer view 9 does not exist, the file has 3"),
-        ({"type": "VEC2"}, r"here: accessor 0 holds VEC2 elements, which make no sense here"),
+        ({"type": "VEC2"}, r"here: accessor 0 holds VEC2 elements, which are not allowed here"),
         ({"type": "VEC5"}, r"accessors\[0\]\.type: invalid enum value 'VEC5'"),
         ({"componentType": 5124}, r"accessors\[0\]\.componentType: invalid enum value 5124"),
         ({"count": 0}, r"accessors\[0\]\.count: expected `int` >= 1"),

@@ -11,7 +11,7 @@ from voxrt.voxelize import AssetError, load
     [
         ("buffer/wrong_bytelength.glb", r"buffers\[0\]: its byteLength is 17, and it has 16 bytes"),
         ("buffer/invalid_uri_data.gltf", r"buffers\[0\]\.uri: a data URI with an empty parameter"),
-        ("buffer/invalid_uri_scheme.gltf", r"buffers\[0\]\.uri: the address ':' is not opened"),
+        ("buffer/invalid_uri_scheme.gltf", r"buffers\[0\]\.uri: the address ':' was not opened"),
         ("buffer/not_found.gltf", r"buffers\[0\]\.uri: no file 'not_found\.bin' in the asset's folder"),
         ("buffer/zero_bytelength.gltf", r"buffers\[0\]\.byteLength: expected .int. >= 1"),
         ("accessor/unresolved_bufferviews.gltf", r"accessors\[0\]\.bufferView: buffer view 0 does not exist"),

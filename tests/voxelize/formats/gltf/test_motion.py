@@ -218,7 +218,7 @@ def test_broken_animations_are_refused(keys, values, path, message, tmp_path):
 def test_a_time_without_animation_is_refused(tmp_path):
     writer = GltfWriter()
     writer.show(mesh=writer.mesh(TRIANGLE))
-    with pytest.raises(AssetError, match=r"a time was asked for and the file has no animation; leave it out"):
+    with pytest.raises(AssetError, match=r"a time was given, and the file has no animation; leave it out"):
         load(writer.save(tmp_path / "a.glb"), time=0.0)
 
 
