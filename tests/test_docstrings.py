@@ -19,7 +19,7 @@ NEEDS = {
     "voxrt.view.cells": "pyvista",
     "voxrt.view.pictures": "pyvista",
     "voxrt.view.window": "pyvista",
-    "voxrt.likeness_curve": "open3d",
+    "voxrt.depth_likeness": "open3d",
     "voxrt.sim.rendering.check": "voxrt.sim._rtl",
     "voxrt.sim.rendering.shader_features": "voxrt.sim._rtl",
 }
