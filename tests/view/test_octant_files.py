@@ -174,10 +174,6 @@ def test_numpy_archives_hold_the_voxels(file, cube, data):
         assert read["names"][1] == "m1"
         assert (read["depth"], read["voxel_size"]) == (rom.octree.depth, 0.25)
         assert read["origin"].tolist() == [-3.0, 1.0, 0.5]
-            rom.octree.depth,
-            0.25,
-            [-3.0, 1.0, 0.5],
-        )
     with zipfile.ZipFile(file / "o.npz") as archive:  # no time of day: equal memories give equal bytes
         assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
