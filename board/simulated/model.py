@@ -35,22 +35,16 @@ class _Memory:
         self.colours = np.zeros((256, 3), dtype=np.uint8)
         self.mirrors = np.zeros(256, dtype=np.uint8)
         self.root, self.depth = 0, 1
-        self._words = np.full(1, EMPTY_LEAF, dtype=np.uint32)
+        self._words = np.zeros(capacity, dtype=np.uint32)
+        self._words[0] = EMPTY_LEAF
 
     def write(self, address: int, words: NDArray[np.uint32]) -> None:
         end = self._check(address, len(words))
-        if end > len(self._words):
-            grown = np.zeros(min(max(end, 2 * len(self._words)), self.capacity), dtype=np.uint32)
-            grown[: len(self._words)] = self._words
-            self._words = grown
         self._words[address:end] = words
 
     def read(self, address: int, count: int) -> NDArray[np.uint32]:
         end = self._check(address, count)
-        found = np.zeros(count, dtype=np.uint32)
-        kept = self._words[address:end]
-        found[: len(kept)] = kept
-        return found
+        return self._words[address:end].copy()
 
     def octree(self) -> NDArray[np.uint32]:
         """Return the selected octree, moved so that its root is word 0."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -14,11 +15,10 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = tomllib.loads((ROOT / "board" / "pyproject.toml").read_text(encoding="utf-8"))
-SOURCES = [
-    path
-    for folder in SETTINGS["tool"]["setuptools"]["package-dir"].values()
-    for path in (ROOT / "board" / folder).glob("*.py")
-]
+PACKAGES = {
+    name: (ROOT / "board" / folder).resolve() for name, folder in SETTINGS["tool"]["setuptools"]["package-dir"].items()
+}
+SOURCES = [path for folder in PACKAGES.values() for path in sorted(folder.glob("*.py"))]
 
 NEWER_THAN_3_10 = {
     "asyncio": {"TaskGroup", "Runner", "timeout", "timeout_at", "Barrier"},
@@ -99,8 +99,8 @@ main()
 
 
 def test_version():
-    main = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert SETTINGS["project"]["version"] == main["project"]["version"]
+    main = (ROOT / "voxrt" / "__init__.py").read_text(encoding="utf-8")
+    assert SETTINGS["project"]["version"] == re.search(r'^__version__ = "(.+)"$', main, re.MULTILINE)[1]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}/{path.name}")
