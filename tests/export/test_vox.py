@@ -129,7 +129,7 @@ def test_what_is_left_out_is_said(tmp_path):
     assert warnings == (
         SceneWarning("vox-hidden", "nodes that the author hid are left out", 2),
         SceneWarning("vox-animation", "only the first frame of animated nodes is shown", 2),
-        SceneWarning("vox-material", "glass materials are built as plain colours", 1),
+        SceneWarning("vox-material", "glass materials became plain colours", 1),
     )
 
 
