@@ -35,6 +35,7 @@ extensions = [
 ]
 source_suffix = [".rst", ".md"]
 exclude_patterns = ["assets.md", "walk/pictures/*.md"]  # the first is a table for tests, the others are included
+highlight_language = "none"  # blocks that name no language are drawings and commands
 html_theme = "furo"
 html_show_copyright = False
 html_title = f"voxrt {release}"
