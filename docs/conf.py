@@ -35,6 +35,7 @@ extensions = [
 ]
 source_suffix = [".rst", ".md"]
 exclude_patterns = ["assets.md", "walk/pictures/*.md"]  # the first is a table for tests, the others are included
+highlight_language = "none"  # blocks that name no language are drawings and commands
 html_theme = "furo"
 html_show_copyright = False
 html_title = f"voxrt {release}"
@@ -67,7 +68,7 @@ PAGES = {"rtl/README.md": "rtl", "rtl/generated/registers.md": "registers"}
 PAGES |= {f"bench/results/{name}.md": f"measured/{name}" for name in measured}
 """Files of the repository outside ``docs`` that are pages of the manual, and their names there."""
 
-INCLUDED_FROM = {"rtl": "rtl"}
+INCLUDED_FROM = {"rtl": "rtl", "contributing": ".", "changes": "."}
 """Pages that consist of such a file: the folder from which the file's own links start."""
 
 
@@ -85,6 +86,8 @@ def link_pages(app: Sphinx, doctree: nodes.document) -> None:
             path = (folder / target).resolve()
             file = str(path.relative_to(REPOSITORY)) if path.is_relative_to(REPOSITORY) else ""
             page = PAGES.get(file) or PAGES.get(f"{file}.md")  # MyST takes the suffix off files that could be pages
+            if folder != (HERE / name).parent and path.parent == HERE and path.suffix == ".md":
+                page = path.stem
             if page:
                 wanted = {"refdomain": "std", "reftype": "doc", "reftarget": f"/{page}", "refexplicit": True}
                 node.replace_self(addnodes.pending_xref("", *node.children, refdoc=name, **wanted))

@@ -96,7 +96,7 @@ _HOMES = {
         "InteriorFit",
     ),
     "voxrt.from_arrays": ("mesh_scene",),
-    "voxrt.likeness_curve": (
+    "voxrt.depth_likeness": (
         "LikenessAtDepth",
         "draw_likeness_curve",
         "likeness_curve",
@@ -165,11 +165,11 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt import board, export, octree, serve, sim, view, voxelize
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
+    from voxrt.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.errors import ToolError
     from voxrt.export import read_any, read_rom, rom_info
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.from_arrays import mesh_scene
-    from voxrt.likeness_curve import LikenessAtDepth, draw_likeness_curve, likeness_curve
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError

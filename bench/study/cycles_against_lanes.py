@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[1]))
 from rtl_scenes import scenes
 
 from rtl import LANES
-from voxrt import octree, sim
+from voxrt import export, octree, sim
 
 size = (192, 192)
 configurations = ["tiny", "duo", "quad", "octo", "z1"]
@@ -25,7 +25,7 @@ lanes = np.array([LANES[name] for name in configurations])
 plt.figure(figsize=(7, 4.5))
 print(f"{'cycles per pixel':24s}" + "".join(f"{count:>8d}" for count in lanes) + "  lanes")
 for scene in scenes(Path(), size):
-    rom = octree.Rom(scene.name, octree.Octree(scene.depth, scene.words), ())
+    rom = octree.Rom(scene.name, octree.Octree(scene.depth, scene.words), export.default_materials(255))
     camera = sim.Camera(*(tuple(map(int, row)) for row in scene.camera))
     costs = [sim.render(rom, camera, size, engine="rtl", config=name).cost for name in configurations]
     cycles = np.array([cost.cycles / cost.rays for cost in costs])

@@ -15,7 +15,7 @@ from voxrt.cli.messages import complain, summarize, tabulate, warn
 from voxrt.cli.results import print_json
 
 if TYPE_CHECKING:
-    from voxrt.likeness_curve import LikenessAtDepth
+    from voxrt.depth_likeness import LikenessAtDepth
     from voxrt.octree import Rom
     from voxrt.sim import Camera, EngineCheck
 

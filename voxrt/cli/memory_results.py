@@ -20,7 +20,7 @@ from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.likeness_curve import LikenessAtDepth
+    from voxrt.depth_likeness import LikenessAtDepth
     from voxrt.octree import Rom
     from voxrt.sim import Camera, Likeness, RayPath
 

@@ -37,8 +37,9 @@ def caught(path: Path, log: WarningLog) -> Iterator[None]:
     except UnicodeDecodeError as error:  # a message or a value of the file, on its way to Python
         raise AssetError(path, f"holds text that is not UTF-8 ({error.reason})", fix="export it again") from None
     finally:
-        for diagnostic in delegate.TakeUncoalescedDiagnostics():
-            log.add(*_note(_commentary(diagnostic), path))
+        diagnostics = [_warning(_commentary(one), path) for one in delegate.TakeUncoalescedDiagnostics()]
+        for kind, message in sorted(diagnostics):  # USD composes in threads, which report in any order
+            log.add(kind, message)
         del delegate
 
 
@@ -50,7 +51,7 @@ def _commentary(diagnostic: object) -> str:
         return "the file holds text that is not UTF-8"
 
 
-def _note(commentary: str, path: Path) -> tuple[str, str]:
+def _warning(commentary: str, path: Path) -> tuple[str, str]:
     line = " ".join(commentary.split())
     if "deprecated version" in line:
         return "deprecated-format", "a layer has a version of the crate format that USD will drop"
