@@ -13,6 +13,7 @@ from streams import PACES, drive, exchange, reset_on_the_way, start
 from structs import MATERIAL_WRITE, SHADED_PIXEL
 
 SQUARE, SUM = 40, 12
+OUTPUT = {"valid": "pixel_valid_o", "ready": "pixel_ready_i"}
 
 
 def packed(*fields):
@@ -90,7 +91,7 @@ async def colours(dut, sending, taking):
         drive(dut, flat_i=flat)
         items, wanted = some_pixels(frame, table, flat)
         await begin(dut, frame)
-        assert await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking), 1, "ms") == wanted
+        assert await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking, **OUTPUT), 1, "ms") == wanted
 
 
 @cocotb.test()
@@ -101,7 +102,7 @@ async def reset_at_any_clock(dut):
         frame = some_frame()
         items, wanted = some_pixels(frame, table, flat=False)
         await begin(dut, frame)
-        await reset_on_the_way(dut, items, lambda: seen(dut))
+        await reset_on_the_way(dut, items, lambda: seen(dut), **OUTPUT)
         await ClockCycles(dut.clk_i, 2)
         await begin(dut, frame)
-        assert await exchange(dut, items, lambda: seen(dut), "random", "random") == wanted
+        assert await exchange(dut, items, lambda: seen(dut), "random", "random", **OUTPUT) == wanted

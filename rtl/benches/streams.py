@@ -71,20 +71,21 @@ async def take(dut, count, kind, get, *, valid="valid_o", ready="ready_i"):
     return taken
 
 
-async def exchange(dut, items, get, sending, taking, *, count=None):
-    """Send all items while as many are taken; give those."""
+async def exchange(dut, items, get, sending, taking, *, count=None, **ports):
+    """Send all items while as many are taken; give those. `ports` name the output's valid and ready."""
     sender = cocotb.start_soon(send(dut, items, sending))
-    taken = await with_timeout(take(dut, count or len(items), taking, get), 10, "ms")
+    taken = await with_timeout(take(dut, count or len(items), taking, get, **ports), 10, "ms")
     await with_timeout(sender, 10, "ms")
     return taken
 
 
-async def reset_on_the_way(dut, items, get):
-    """Reset after a random number of clocks, with both sides at work."""
-    tasks = [cocotb.start_soon(send(dut, items, "random")), cocotb.start_soon(take(dut, len(items), "random", get))]
+async def reset_on_the_way(dut, items, get, **ports):
+    """Reset after a random number of clocks, with both sides at work. `ports` name the output's valid and ready."""
+    taker = take(dut, len(items), "random", get, **ports)
+    tasks = [cocotb.start_soon(send(dut, items, "random")), cocotb.start_soon(taker)]
     await ClockCycles(dut.clk_i, random.randrange(1, 2 * len(items)))
     for task in tasks:
         if not task.done():
             task.cancel()
-    drive(dut, valid_i=0, ready_i=0)
+    drive(dut, valid_i=0, **{ports.get("ready", "ready_i"): 0})
     await reset(dut)
