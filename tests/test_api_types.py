@@ -104,9 +104,9 @@ def test_keywords_are_the_options():
 
 
 def test_the_choices_are_those_of_the_rooms():
-    from voxrt.voxelize.colliders import Geometry, Pow2
-
     from voxrt.voxelize.assets import UpAxis
+    from voxrt.voxelize.box_rounding import Pow2
+    from voxrt.voxelize.object_proxies import Geometry
 
     assert get_args(build_options.Dialect) == octree.DIALECTS
     assert get_args(build_options.Engine) == get_args(sim.Engine)

@@ -23,7 +23,7 @@ MAY_IMPORT = {
 """Room: the rooms that it may import, besides itself. The front door, voxrt's own modules, may import all."""
 
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
-"""Folders whose scripts import the rooms and each other. No room imports them."""
+"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
 
 
 def module_of(path: Path) -> str:
@@ -51,7 +51,7 @@ def sources() -> dict[str, Path]:
 def imports_of(name: str, path: Path, known: dict[str, Path]) -> set[str]:
     """The modules of ours that a file imports anywhere, also in functions and for types alone."""
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    found = set()
+    found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
@@ -61,7 +61,9 @@ def imports_of(name: str, path: Path, known: dict[str, Path]) -> set[str]:
                 above = package.split(".")[: len(package.split(".")) - node.level + 1]
                 base = ".".join([*above, base] if base else above)
             for alias in node.names:
-                found.add(f"{base}.{alias.name}" if f"{base}.{alias.name}" in known else base)
+                module = f"{base}.{alias.name}"
+                found.add(module if module in known or module.removeprefix("voxrt.") in known else base)
+    found = {module.removeprefix("voxrt.") if module.startswith("voxrt.rtl") else module for module in found}
     beside = path.parent.relative_to(ROOT).parts
     if beside and beside[0] in OUTSIDE:  # scripts import what stands beside them, or in the folder above
         paths = [".".join((*beside[:depth], module)) for depth in range(1, len(beside) + 1) for module in found]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Rom
     from voxrt.view.octant_mesh import OctantMesh
 
-_PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 4), ("colour", "u1", 3)])
+_PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3), ("colour", "u1", 3)])
 _PLY_HEADER = """ply
 format binary_little_endian 1.0
 element vertex {points}
@@ -106,14 +106,16 @@ def write_glb(path: Path, rom: Rom, mesh: OctantMesh) -> None:
     colours = {material.name: [*_linear(material.colour), 1.0] for material in rom.materials}
 
     def paint(tree: dict[str, Any]) -> None:
-        for entry in tree.get("materials", ()):  # trimesh keeps 8 bits a channel, too few for dark linear colours
+        for entry in tree.get("materials", ()):  # trimesh keeps 8 bits per channel, too few for dark linear colours
             entry["pbrMetallicRoughness"]["baseColorFactor"] = colours[entry["name"]]
 
     write_atomically(path, scene.export(file_type="glb", tree_postprocessor=paint))
 
 
 def write_ply(path: Path, rom: Rom, mesh: OctantMesh) -> None:
-    """Write octants as a binary PLY file: the sides that can be seen, each with the colour of its material.
+    """Write octants as a binary PLY file: the visible sides, each with the colour of its material.
+
+    A side is two triangles: some readers split quads and keep the colours of the first halves alone.
 
     Parameters
     ----------
@@ -130,9 +132,10 @@ def write_ply(path: Path, rom: Rom, mesh: OctantMesh) -> None:
         The file cannot be written.
     """
     quads, cells = mesh.sides()
-    faces = np.zeros(len(quads), _PLY_FACE)
-    faces["count"], faces["corners"] = 4, quads
-    faces["colour"] = np.array([material.colour for material in rom.materials], np.uint8)[mesh.materials[cells]]
+    faces = np.zeros(2 * len(quads), _PLY_FACE)
+    faces["count"], faces["corners"] = 3, quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    colours = np.array([material.colour for material in rom.materials], np.uint8)[mesh.materials[cells]]
+    faces["colour"] = colours.repeat(2, axis=0)
     points = _placed(rom, mesh).astype("<f8")
     write_atomically(
         path, _PLY_HEADER.format(points=len(points), faces=len(faces)).encode() + points.tobytes() + faces.tobytes()

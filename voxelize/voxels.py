@@ -63,7 +63,13 @@ class Voxels:
 
 
 class ObjectMode(StrEnum):
-    """How the inside of an object was told from its outside. ``src/object_mode.h`` decides it."""
+    """How the inside of an object was told from its outside. ``src/object_mode.h`` decides it.
+
+    Examples
+    --------
+    >>> str(ObjectMode.WINDING)
+    'winding'
+    """
 
     SURFACE = "surface"
     """It was not filled."""

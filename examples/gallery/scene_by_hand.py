@@ -24,7 +24,8 @@ print(f"{len(built.objects)} objects, {built.solid_voxels:,} voxels, {len(built.
 size = (480, 360)
 camera = sim.look_at((130, 80, 160), (58, 20, 64), size=size)
 plain = sim.render(built.rom, camera, size, engine="rtl")
-print(f"{plain.cost.cycles / plain.cost.rays:.2f} cycles per pixel, {plain.cost.words_read / plain.cost.rays:.2f} words")
+cost = plain.cost
+print(f"{cost.cycles / cost.rays:.2f} cycles per pixel, {cost.words_read / cost.rays:.2f} words per pixel")
 
 # %%
 # With a light that casts shadows. The ball is a mirror. ``docs/shading.md`` defines every colour exactly.

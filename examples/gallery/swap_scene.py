@@ -40,7 +40,7 @@ for name in ("house.obj", "dog.usda"):
     view = View(voxrt.aim_camera(rom, size), size, background=rom.materials[0].colour)
     frames.append(device.frame(view))
     cost = frames[-1].counters
-    print(f"{rom.name}: {cost.cycles / cost.rays:.2f} clocks a pixel, {cost.words_read / cost.rays:.2f} words")
+    print(f"{rom.name}: {cost.cycles / cost.rays:.2f} clocks per pixel, {cost.words_read / cost.rays:.2f} words")
 
 # %%
 # The registers after the last frame.

@@ -18,8 +18,8 @@ from voxrt import export, octree
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]
 art, warnings = export.read_vox(EXAMPLES / "toadstool.vox")
 names = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in (material.colour for material in art.materials[1:])]
-print(f"{art.octree.size} voxels per side, {octree.census(art.octree).solid_voxels:,} solid")
-print(f"colours: {', '.join(names)}")
+solid = octree.census(art.octree).solid_voxels
+print(f"{art.octree.size} voxels per side, {solid:,} solid; colours {', '.join(names)}")
 
 # %%
 # The memory as an array of numbers, and sixteen copies of it in one world. Equal blocks are stored once.

@@ -21,7 +21,7 @@ CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.i
 
 
 def scene(seed):
-    """Make a world of 8 voxels a side."""
+    """Make a world of 8 voxels per side."""
     return np.random.default_rng(seed).choice([0, 0, 0, 0, 1, 2, 255], (8, 8, 8)).astype(np.uint8)
 
 

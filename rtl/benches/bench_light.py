@@ -39,7 +39,7 @@ class Lanes:
                     self.wanted[lane].append((tag, point, direction))
             await RisingEdge(dut.clk_i)
             ready = dut.hit_point_ready_o.value.to_unsigned()
-            assert ready == sum((credits > 0) << lane for lane, credits in enumerate(self.credits))
+            assert ready == sum((count > 0) << lane for lane, count in enumerate(self.credits))
             for lane in range(LANES):
                 self.credits[lane] += bool(starts[lane]) - bool(asks[lane])
                 self.waiting[lane] -= bool(starts[lane])

@@ -110,7 +110,7 @@ def test_colours():
         ({"colours": np.zeros((7, 3), int)}, "colours has 7 rows, and there are 8 vertices"),
         ({"face_colours": np.zeros((7, 3), int)}, "face_colours has 7 rows, and there are 12 faces"),
         ({"colours": RED, "face_colours": [RED] * 12}, "exclude each other"),
-        ({"up": "w"}, "up axis 'w' is none of x, y, z"),
+        ({"up": "w"}, "up must be 'x', 'y' or 'z', not 'w'"),
     ],
 )
 def test_refusals(arguments, said):

@@ -109,4 +109,4 @@ def test_the_authors_camera(size):
 def test_an_authors_camera_that_cannot_be():
     grid = Grid(7, (0.0, 0.0, 0.0), 1.0)
     with pytest.raises(ViewpointError, match="the scene's camera: "):
-        authored_camera(Viewpoint((1, 1, 1), (1, 1, 1)), grid, (64, 48))
+        authored_camera(Viewpoint((1, 9, 1), (1, 1, 1)), grid, (64, 48))

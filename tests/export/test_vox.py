@@ -128,20 +128,20 @@ def test_what_is_left_out_is_said(tmp_path):
     assert octree.census(rom.octree).solid_voxels == 1
     assert warnings == (
         SceneWarning("vox-hidden", "nodes that the author hid are left out", 2),
-        SceneWarning("vox-animation", "only the first frame of animated nodes is built", 2),
-        SceneWarning("vox-material", "glass materials are built as plain colours", 1),
+        SceneWarning("vox-animation", "only the first frame of animated nodes is shown", 2),
+        SceneWarning("vox-material", "glass materials became plain colours", 1),
     )
 
 
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"", "4 bytes are said to follow and 0 do"),
+        (b"", "4 bytes should follow, and 0 do"),
         (b"DOOM....", "does not start with 'VOX '"),
         (vox(ONE, version=99), r"version 99 is none of \(150, 200\)"),
-        (vox(ONE)[:-1], r"chunk MAIN at byte 8: says it has 0 \+ 44 bytes and 43 follow"),
+        (vox(ONE)[:-1], r"chunk MAIN at byte 8: should have 0 \+ 44 bytes, and 43 follow"),
         (vox(chunk(b"XYZI", b"\0" * 4)), "chunk XYZI at byte 32: has no SIZE before it"),
-        (vox(chunk(b"SIZE", b"\1\0\0\0")), "chunk SIZE at byte 32: 4 bytes are said to follow and 0 do"),
+        (vox(chunk(b"SIZE", b"\1\0\0\0")), "chunk SIZE at byte 32: 4 bytes should follow, and 0 do"),
         (vox(model((0, 1, 1), [])), r"a model of \(0, 1, 1\) voxels is outside 1 \.\.\. 256"),
         (vox(model((1, 1, 1), [(0, 0, 1, 1)])), r"voxel \(0, 0, 1\) of colour 1 does not belong in a model of \(1, 1"),
         (vox(model((1, 1, 1), [(0, 0, 0, 0)])), "of colour 0 does not belong"),
@@ -150,11 +150,11 @@ def test_what_is_left_out_is_said(tmp_path):
         (vox(ONE, transform(0, 1)), "scene node 1: is not there"),
         (vox(ONE, transform(0, 1), group(1, 0)), "scene node 0: holds itself"),
         (vox(ONE, transform(0, 1), shape(1, 1)), r"scene node 1: shows no model of 0 \.\.\. 0"),
-        (vox(ONE, transform(0, 1, "1 2"), shape(1, 0)), "'1 2' is no translation"),
-        (vox(ONE, transform(0, 1, "1 2 9999999999"), shape(1, 0)), "is no translation"),
-        (vox(ONE, transform(0, 1, rotation="0"), shape(1, 0)), "'0' is no rotation"),
-        (vox(ONE, transform(0, 1, rotation="-4"), shape(1, 0)), "'-4' is no rotation"),
-        (vox(ONE, chunk(b"nGRP", struct.pack("<iii", 0, 0, 2**31 - 1))), "2147483647 entries are said to follow"),
+        (vox(ONE, transform(0, 1, "1 2"), shape(1, 0)), "'1 2' is not a translation"),
+        (vox(ONE, transform(0, 1, "1 2 9999999999"), shape(1, 0)), "is not a translation"),
+        (vox(ONE, transform(0, 1, rotation="0"), shape(1, 0)), "'0' is not a rotation"),
+        (vox(ONE, transform(0, 1, rotation="-4"), shape(1, 0)), "'-4' is not a rotation"),
+        (vox(ONE, chunk(b"nGRP", struct.pack("<iii", 0, 0, 2**31 - 1))), "2147483647 entries should follow"),
     ],
 )  # fmt: skip
 def test_malformed_files_are_refused(tmp_path, data, message):

@@ -12,7 +12,7 @@ import voxrt
 ROOT = Path(__file__).resolve().parents[2]
 LIBRARIES = ("libvoxrt_voxelize.a", "libvoxrt_octree.a")
 CONSUMER = """
-cmake_minimum_required(voxrt.__version__ 3.25)
+cmake_minimum_required(VERSION 3.25)
 project(consumer LANGUAGES CXX)
 find_package(voxrt {version} REQUIRED)
 add_executable(consumer {program})

@@ -1,4 +1,4 @@
-"""OpenVDB grids: stand-ins with the iterators of its Python module, and the module itself where it is installed."""
+"""OpenVDB grids: fakes with the iterators of its Python module, and the module itself where it is installed."""
 
 from dataclasses import dataclass, field
 from itertools import product

@@ -1,7 +1,7 @@
 """Voxelization by brute force: every triangle against every voxel, exactly, and winding numbers by solid angles.
 
 Knows nothing of columns, tiles or bricks. Vertices are snapped to 1/4096 voxel in exact rationals; overlap with a
-voxel's open interior is thirteen separating axes in int64, which is exact for grids up to 32 voxels a side.
+voxel's open interior is thirteen separating axes in int64, which is exact for grids up to 32 voxels per side.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
         asked = {"light": np.array(light, np.int32), "ambient": 40, "bounces": 2, "mirrors": mirrors}
         shading = bits("shading", light=1, ambient=40, bounces=2)
     model = _model.Memory(words, DEPTH).render(colours, camera, *SIZE, **asked)
-    assert len(np.unique(model["material"])) > 3
+    assert len(np.unique(model.material)) > 3
     table = [
         int(mirror) << 24 | red << 16 | green << 8 | blue
         for mirror, (red, green, blue) in zip(mirrors, colours.tolist(), strict=True)
@@ -114,7 +114,7 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
         tmp_path,
         memory_clocks=2,
     )
-    np.testing.assert_array_equal(picture(transfers), model["colour"])
+    np.testing.assert_array_equal(picture(transfers), model.colour)
     assert reads[register("identity")] == int.from_bytes(b"VXRT", "big")
     assert reads[register("status")] == bits("status", frame_done=1)
     assert reads[register("rays")] >= SIZE[0] * SIZE[1]
@@ -194,8 +194,8 @@ def test_lanes_are_instances_of_one_module(plain):
     text = plain("quad")
     modules = re.findall(r"^module (\w+)", text, re.MULTILINE)
     assert len(modules) == len(set(modules))
-    assert {"voxrt_core", "voxrt_lane", "voxrt_track"} <= set(modules)
-    assert len(re.findall(r"^  voxrt_track \w+ \(", text, re.MULTILINE)) == 4
+    assert {"voxrt_core", "voxrt_lane", "voxrt_buffered_lane"} <= set(modules)
+    assert len(re.findall(r"^  voxrt_buffered_lane \w+ \(", text, re.MULTILINE)) == 4
     assert len(text) < 2 * len(plain("tiny"))
 
 
