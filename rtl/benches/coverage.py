@@ -64,6 +64,11 @@ def goes_last(bin_: Bin) -> str:
     return "of planes crossed at the same time the first axis goes first" if axis in last else ""
 
 
+def not_delivered(bin_: Bin) -> str:
+    """Say why, of what can be wrong with a word. The bench of the lane has words that are not delivered."""
+    return "port B serves the one lane while the processor has port A" if bin_ == (0,) else ""
+
+
 # Name of a group: what its numbers are, their ranges, and which are impossible.
 GROUPS = {
     "leaf": (
@@ -81,7 +86,7 @@ GROUPS = {
     "dead": ("empty leaf left: dead axes, exit axis", (OCTANTS, AXES), exits_on_a_dead_axis),
     "tie": ("empty leaf left: planes crossed at the same time, exit axis", (OCTANTS, AXES), goes_last),
     "depth": ("out of a world of this depth", (range(1, DEPTH + 1),), possible),
-    "word": ("word not delivered, bad pointer, step limit", (range(3),), possible),
+    "word": ("word not delivered, bad pointer, step limit", (range(3),), not_delivered),
 }
 
 
