@@ -124,7 +124,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
         write_blob(target, blob)
         return (target,)
     if suffix not in WORD_SUFFIXES:
-        raise RomError(f"{target}: is no format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
+        raise RomError(f"{target}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     rom = replace(blob.rom, name=target.stem)
     files = write_rom(target.parent, rom, suffix=target.suffix, dialect=dialect, view=blob.view, lighting=blob.lighting)
     return files.mem, files.manifest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
@@ -88,6 +88,9 @@ def build(
     True
     """
     options = instance("options", BuildOptions() if options is None else options, BuildOptions)
+    names = [field.name for field in fields(BuildOptions)]
+    if unknown := sorted(set(keywords) - set(names)):
+        raise TypeError(f"build() has no option {unknown[0]!r}; it has {', '.join(names)}")
     if keywords:
         options = replace(options, **keywords)
     name = asset_name(asset)

@@ -110,7 +110,7 @@ def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str 
     path = Path(target)
     suffix = path.suffix.lower()
     if suffix not in WRITERS:
-        raise RomError(f"{path}: is no format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
+        raise RomError(f"{path}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     check_folder(path.parent)
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)

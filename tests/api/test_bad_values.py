@@ -135,3 +135,8 @@ def test_large_arrays_are_made_only_if_asked_for():
     with pytest.raises(DoesNotFitError, match="limit=64"):
         octree.to_dense(TREE, limit=63)
     assert octree.to_dense(TREE, limit=64).shape == (4, 4, 4)
+
+
+def test_an_option_that_is_not_there_is_named():
+    with pytest.raises(TypeError, match=r"build\(\) has no option 'fil'; it has .*fill"):
+        voxrt.build("any.obj", fil="solid")

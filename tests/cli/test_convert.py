@@ -77,7 +77,7 @@ def test_a_listing_with_its_materials(voxrt, folder):
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["house.mem", "house.png"], 2, "no format to write"),
+        (["house.mem", "house.png"], 2, "not a format to write"),
         (["house.mem", "house.blob", "--material", "Roof"], 2, "NAME=RRGGBB"),
         (["house.mem", "house.blob", "--material", "Roof=red"], 2, "NAME=RRGGBB"),
         (["house.mem", "house.obj/deeper.blob"], 2, "is a file, not a folder"),

@@ -67,7 +67,7 @@ def test_files_of_no_kind(tmp_path):
     with pytest.raises(RomError, match=r"a\.png: is no file that holds an octree memory; name one of \.mem, \.coe"):
         export.read_any(tmp_path / "a.png")
     with pytest.raises(
-        RomError, match=r"a\.vox: is no format to write; name one of \.mem, \.coe, \.mif, \.bin, \.blob"
+        RomError, match=r"a\.vox: is not a format to write; name one of \.mem, \.coe, \.mif, \.bin, \.blob"
     ):
         export.convert(blob(), tmp_path / "a.vox")
     with pytest.raises(RomError, match=r"a\.blob: is no file of octree words"):

@@ -48,7 +48,7 @@ def convert(
         How results are printed.
     """
     if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
-        raise UsageError(f"{target}: is no format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
+        raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
     check_folder(target.parent)
     blob, warnings = voxrt.read_any(source, depth=depth, dialect=from_dialect, colours=_colours(material))
     with uninterrupted():
