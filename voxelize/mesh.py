@@ -134,6 +134,10 @@ class Mesh:
         return f"Mesh({', '.join(parts)})"
 
 
+NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
+"""The mesh of an object that consists of colliders alone."""
+
+
 def checked_surface(owner: str, positions: object, triangles: object) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
     """Return the vertices and triangles of a surface, checked as :class:`Mesh` says.
 

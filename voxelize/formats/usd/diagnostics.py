@@ -66,6 +66,8 @@ def _warning(commentary: str, path: Path) -> tuple[str, str]:
 
 def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
     messages = [" ".join(_commentary(one).split()) for one in error.args]
+    if any("bad_alloc" in message for message in messages):
+        raise MemoryError from None
     for message in messages:
         if match := _AT_LINE.match(message):
             problem = match["problem"]

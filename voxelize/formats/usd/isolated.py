@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.scene_message import Failure
 
 _CHILD = "voxrt.voxelize.formats.usd.child"
-_THREADS = 4  # each takes memory of its own, whatever it does
+# Each thread takes memory of its own, whatever it does.
+_ENVIRONMENT = {"PXR_WORK_THREAD_LIMIT": "4", "MALLOC_ARENA_MAX": "2", "OPENBLAS_NUM_THREADS": "1"}
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
 
@@ -103,7 +104,7 @@ def read_isolated(
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=printed,
-            env=os.environ | {"TMPDIR": folder, "PXR_WORK_THREAD_LIMIT": str(_THREADS), "MALLOC_ARENA_MAX": "2"},
+            env=os.environ | {"TMPDIR": folder, **_ENVIRONMENT},
         )
         assert child.stdout is not None
         try:
