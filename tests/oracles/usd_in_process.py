@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-from voxrt.voxelize import Scene
 from voxrt.voxelize.formats.usd.stage_scene import read_stage
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from voxrt.voxelize import Scene
 
 
 class Unlimited:

@@ -192,9 +192,7 @@ def test_ellipsoid_is_exact(linear, centre):
         high = [value + UNIT for value in low]
         assert filled[cell] == (least_over_box(inverse, low, high) < 1), cell
         corners = itertools.product(*zip(low, high, strict=True))
-        within = all(
-            sum(inverse[i][j] * d[i] * d[j] for i in range(3) for j in range(3)) <= 1 for d in corners
-        )
+        within = all(sum(inverse[i][j] * d[i] * d[j] for i in range(3) for j in range(3)) <= 1 for d in corners)
         assert shell[cell] == (filled[cell] and not within), cell
 
 

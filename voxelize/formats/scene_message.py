@@ -261,9 +261,7 @@ def _scene(message: SceneMessage, arrays: NDArray[np.uint8]) -> Scene:
 
     textures = [Texture(array(one.pixels), one.wrap, one.nearest) for one in message.textures]  # type: ignore[arg-type]
     appearances = [
-        Appearance(
-            one.name, one.factor, None if one.texture is None else textures[one.texture], one.cutoff, one.mirror
-        )
+        Appearance(one.name, one.factor, None if one.texture is None else textures[one.texture], one.cutoff, one.mirror)
         for one in message.appearances
     ]
     meshes = [
@@ -343,9 +341,9 @@ class _Arrays:
         if id(array) in self._known:  # the array is kept, for an id is unique only while its array lives
             return self._known[id(array)][1]
         little = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-        message = ArrayMessage(little.dtype.str, little.shape, self.length)  # type: ignore[arg-type]
+        message = ArrayMessage(little.dtype.str, little.shape, self.length)
         if little.size:
-            self.parts.append(memoryview(little.reshape(-1)).cast("B"))
+            self.parts.append(little.reshape(-1).view(np.uint8).data)
         padding = -little.nbytes % _ALIGNMENT
         self.parts.append(bytes(padding))
         self.length += little.nbytes + padding

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
+from voxrt.cli.arguments import Pixels, Reporting, UsageError, corners, levels, metres, png, seconds, shades, words
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.results import build_report, print_json
@@ -45,6 +45,12 @@ def build(
     time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
+    ignore: Annotated[tuple[str, ...], _option("ignore", metavar="NAME", show_default=False)] = (),
+    bounds: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        _option("bounds", converter=corners, n_tokens=1, metavar="X,Y,Z,X,Y,Z", allow_leading_hyphen=True),
+    ] = BuildOptions.bounds,
+    allow_empty: Annotated[bool, _option("allow_empty", show_default=False)] = BuildOptions.allow_empty,
     allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
     colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
     budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
@@ -82,6 +88,9 @@ def build(
         time=time,
         animation=animation,
         variants=variants,
+        ignore=ignore,
+        bounds=bounds,
+        allow_empty=allow_empty,
         allow_outside=allow_outside,
         colours=colours,
         budget=board or budget,

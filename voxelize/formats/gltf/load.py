@@ -97,9 +97,7 @@ def load_gltf(
         raise document.error("", problem, "check that the scene shows a mesh")
     cameras = read_cameras(document, hierarchy)
     viewpoint = cameras[0] if cameras else None
-    return Scene(
-        path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras
-    )
+    return Scene(path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras)
 
 
 def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialKey, int]) -> LoadedMesh:

@@ -98,7 +98,7 @@ def read_isolated(
     )
     # usd-core leaves notes about its crashes in the temporary folder: it gets one that is removed.
     with tempfile.TemporaryDirectory(prefix="voxrt-usd-") as folder, tempfile.TemporaryFile() as printed:
-        child = subprocess.Popen(
+        child = subprocess.Popen(  # noqa: S603 - our own module; the file's name is one argument
             # -P: the folder that the user works in may hold a hostile numpy.py.
             [sys.executable, "-P", "-m", _CHILD, path, msgspec.json.encode(request)],
             stdin=subprocess.DEVNULL,
@@ -136,7 +136,7 @@ def _receive(pipe: IO[bytes], most: int) -> tuple[bytes, NDArray[np.uint8]] | No
         return None
     text = pipe.read(of_text)
     arrays = np.empty(of_arrays, np.uint8)
-    view, filled = memoryview(arrays), 0
+    view, filled = arrays.data, 0
     while filled < of_arrays:
         count = pipe.readinto(view[filled:])  # type: ignore[attr-defined]
         if not count:

@@ -105,9 +105,7 @@ class StageTraversal:
                 nearest.setdefault(above, material)
             represented = not one.colliders and one.body in bodies
             objects.append(
-                SceneObject(
-                    one.name, meshes[one.mesh], transform, one.colliders, material, represented=represented
-                )
+                SceneObject(one.name, meshes[one.mesh], transform, one.colliders, material, represented=represented)
             )
         for one, transform in zip(placed, transforms, strict=True):
             if one.mesh is None:

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from PIL import Image
 from oracles.usd_in_process import load_usd
+from PIL import Image
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.colour.appearance import sample
