@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import fields, replace
 from pathlib import Path
 from time import perf_counter
@@ -15,8 +15,10 @@ from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
-from voxrt.outputs import check_folder, uninterrupted, writing
+from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
+from voxrt.outputs import writing
 from voxrt.pictures import Picture, render, save_picture
+from voxrt.sim.image import encode_png
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
@@ -50,8 +52,8 @@ def build(
         A glTF, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices and faces
         as arrays, ``(vertices, faces)``; a :class:`Scene`.
     output
-        Folder for ``NAME.mem`` and ``NAME.json``. It is made if it is missing. None writes neither. NAME is the name
-        of the file or of the scene.
+        Folder for ``NAME.mem`` and ``NAME.json``, where NAME is the name of the file or of the scene; or the file of
+        words itself, such as ``yard.mem`` or ``yard.coe``. Folders are made if they are missing. None writes neither.
     options
         How to build; None for the defaults.
     progress
@@ -73,9 +75,10 @@ def build(
     DoesNotFitError
         The asset is sound but too large.
     OutputError
-        A file cannot be written. Old files stay as they were.
+        A file cannot be written, or the folder has files of the same name that were built from another asset. Old
+        files stay as they were.
     SimulatorError
-        The preview cannot be rendered. The memory and the manifest are complete by then.
+        The preview cannot be rendered. Nothing is written then: memory, manifest and preview change together.
 
     Examples
     --------
@@ -93,8 +96,10 @@ def build(
         raise TypeError(f"build() has no option {unknown[0]!r}; it has {', '.join(names)}")
     if keywords:
         options = replace(options, **keywords)
-    name = asset_name(asset)
-    picture_file = _picture_file(name, output, options)
+    files = output_files(asset_name(asset), output, options.preview)
+    source = as_text(Path(asset).name if isinstance(asset, str | os.PathLike) else files.name)
+    if files.words is not None and not files.named:
+        refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
         scene = load_asset(asset, options)
@@ -102,33 +107,22 @@ def build(
     scene, grid, voxelization = _voxelize(scene, options, clock)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
-        rom = octree.Rom(name, tree, scene.materials, grid)
+        rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, scene, options, clock)
     view, lighting, unseen = _authored(scene, grid)
     warnings = scene.warnings + voxelization.warnings + unseen
     _refuse_warnings(asset, scene, warnings, options)
-    outputs: dict[str, Path] = {}
-    if output is not None:
-        source = asset if isinstance(asset, str | os.PathLike) else name
-        with clock.stage("write"), writing(Path(output)), uninterrupted():
-            files = export.write_rom(
-                Path(output),
-                rom,
-                dialect=options.dialect,
-                objects=voxelization.objects,
-                warnings=warnings,
-                seconds=clock.seconds,
-                source=export.Source(as_text(Path(source).name), _settings(options)),
-                view=view,
-                lighting=lighting,
-            )
-        outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
-    if picture_file is not None:
+    if files.preview is not None:
         with clock.stage("preview"):
             picture = _picture(rom, scene, lighting, options)
-            save_picture(picture.frame.colour, picture_file)
-            outputs["preview"] = picture_file
+    provenance = export.Provenance(
+        export.Source(source, _settings(options)), voxelization.objects, warnings, clock.seconds
+    )
+    with clock.stage("write"):
+        outputs = _write(files, export.Blob(rom, view, lighting, provenance), picture, options)
+    if picture is not None:  # what programs read keeps its order
+        clock.seconds["preview"] = clock.seconds.pop("preview")
     return BuildResult(
         rom,
         scene,
@@ -260,15 +254,36 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
     }
 
 
-def _picture_file(name: str, output: str | os.PathLike[str] | None, options: BuildOptions) -> Path | None:
-    """Check that the folders can be written to, and return the file of the preview; None for none."""
-    if output is not None:
-        check_folder(Path(output))
-    if not options.preview:
-        return None
-    file = Path(output or ".") / f"{name}.preview.png" if options.preview is True else Path(options.preview)
-    check_folder(file.parent)
-    return file
+def _write(files: OutputFiles, blob: export.Blob, picture: Picture | None, options: BuildOptions) -> dict[str, Path]:
+    """Write the set of files, all of it or nothing, and return the files by kind."""
+    outputs: dict[str, Path] = {}
+    if files.words is None:
+        if picture is not None and files.preview is not None:
+            save_picture(picture.frame.colour, files.preview)
+            outputs["preview"] = files.preview
+        return outputs
+    told = blob.provenance
+    beside = {}
+    with ExitStack() as stack:
+        if picture is not None and files.preview is not None:
+            stack.enter_context(writing(files.preview))
+            beside[files.preview] = encode_png(picture.frame.colour)
+        stack.enter_context(writing(files.words))
+        written = export.write_rom(
+            files.words.parent,
+            blob.rom,
+            suffix=files.words.suffix,
+            dialect=options.dialect,
+            objects=told.objects,
+            warnings=told.warnings,
+            seconds=told.seconds,
+            source=told.source,
+            view=blob.view,
+            lighting=blob.lighting,
+            beside=beside,
+        )
+    outputs |= {"mem": written.mem, "manifest": written.manifest}
+    return outputs | {"preview": picture_file for picture_file in beside}
 
 
 def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:

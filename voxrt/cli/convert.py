@@ -12,7 +12,7 @@ from voxrt.cli.arguments import Reporting, UsageError, levels
 from voxrt.cli.memory_results import ConvertResult
 from voxrt.cli.messages import name_file, summarize, warn
 from voxrt.cli.results import print_json, warning_entries
-from voxrt.outputs import check_folder, uninterrupted
+from voxrt.outputs import check_folder
 
 
 def convert(
@@ -51,8 +51,7 @@ def convert(
         raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
     check_folder(target.parent)
     blob, warnings = voxrt.read_any(source, depth=depth, dialect=from_dialect, colours=_colours(material))
-    with uninterrupted():
-        files = voxrt.convert(blob, target, dialect=dialect)
+    files = voxrt.convert(blob, target, dialect=dialect)
     warn(warnings)
     if reporting.json:
         print_json(ConvertResult([name_file(file) for file in files], warning_entries(warnings)))

@@ -78,7 +78,6 @@ def _write(name: str, file: Path) -> None:
     with stage_bar(len(STAGES)) as begin:
         text = plain_verilog(configuration, progress=begin)
     with writing(file):
-        file.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(file, text.encode())
     summarize(f"{name}:", [("top", "voxrt_core, without parameters"), ("wrote", str(file))])
 

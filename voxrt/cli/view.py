@@ -129,7 +129,6 @@ def view(
     for file, write in writers:
         if file is not None:
             with writing(file):
-                file.parent.mkdir(parents=True, exist_ok=True)
                 write(file)
             rows.append(("wrote", str(file)))
     summarize(f"{scene.name}:", rows)
