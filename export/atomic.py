@@ -44,8 +44,10 @@ def write_atomically(path: Path, data: bytes) -> None:
     write_together({path: data})
 
 
-def write_together(files: Mapping[Path, bytes]) -> None:
+def write_together(files: Mapping[Path, bytes | None]) -> None:
     """Write files that belong together: an error or an interruption leaves all of the old ones or all of the new.
+
+    None in place of the bytes removes a file that does not belong to the new set.
 
     They change places in their order. Sets whose first files stand in one folder change one after another, whoever
     writes them. A process that is killed in the microseconds between two renamings leaves the rest of the set under
@@ -61,8 +63,16 @@ def write_together(files: Mapping[Path, bytes]) -> None:
         if len(targets) > 1:
             stack.enter_context(_lock_folder(next(iter(targets)).parent))
         stack.enter_context(uninterrupted())
-        staged = [(path, _stage(path, data, stack)) for path, data in targets.items()]
-        _rename([(path, temporary) for path, temporary in staged if temporary is not None])
+        staged: dict[Path, Path | None] = {}
+        for path, data in targets.items():
+            if data is None:
+                staged[path] = None
+            elif _is_device(path):
+                with path.open("wb") as device:
+                    device.write(data)
+            else:
+                staged[path] = _stage(path, data, stack)
+        _rename(staged)
         for folder in {path.parent for path in targets}:
             sync_folder(folder)
         for path in targets:
@@ -120,22 +130,23 @@ def _followed(path: Path) -> Path:
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
-def _stage(path: Path, data: bytes, stack: ExitStack) -> Path | None:
-    """Write to a new file beside the target, which `stack` removes and closes; None if the target is written itself."""
-    mode = None
-    with suppress(FileNotFoundError):
-        mode = path.stat().st_mode
-    if mode is not None and stat.S_ISDIR(mode):
+def _is_device(path: Path) -> bool:
+    """Tell whether a file is there that cannot be replaced: a pipe, a terminal, a null device."""
+    try:
+        return not stat.S_ISREG(mode := path.stat().st_mode) and not stat.S_ISDIR(mode)
+    except FileNotFoundError:
+        return False
+
+
+def _stage(path: Path, data: bytes, stack: ExitStack) -> Path:
+    """Write to a new file beside the target; `stack` removes and closes it."""
+    if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    if mode is not None and not stat.S_ISREG(mode):
-        with path.open("wb") as device:
-            device.write(data)
-        return None
     temporary, file = _new_file(path)
     stack.callback(file.close)
     stack.callback(temporary.unlink, missing_ok=True)
-    if mode is not None:
-        os.fchmod(file.fileno(), stat.S_IMODE(mode))
+    with suppress(FileNotFoundError):
+        os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
     file.write(data)
     file.flush()
     os.fsync(file.fileno())
@@ -157,26 +168,29 @@ def _temporary(path: Path) -> Path:
     return path.with_name(f".{path.name[:_STEM]}.{secrets.token_hex(4)}.tmp")
 
 
-def _rename(staged: list[tuple[Path, Path]]) -> None:
-    """Give each temporary file its target's name, or none of them."""
+def _rename(staged: Mapping[Path, Path | None]) -> None:
+    """Give each temporary file its target's name, and remove targets that have none; do all of it or nothing."""
     kept: dict[Path, Path] = {}
     done: list[Path] = []
     try:
         if len(staged) > 1:
-            for path, _ in staged:
+            for path in staged:
                 with suppress(OSError):  # there is no old file, or the file system has no links
                     kept_as = _temporary(path)
                     os.link(path, kept_as)
                     kept[path] = kept_as
-        for path, temporary in staged:
-            temporary.replace(path)
+        for path, temporary in staged.items():
+            if temporary is None:
+                path.unlink(missing_ok=True)
+            else:
+                temporary.replace(path)
             done.append(path)
     except BaseException:
         for path in reversed(done):
             if path in kept:
                 kept.pop(path).replace(path)
             else:
-                path.unlink()
+                path.unlink(missing_ok=True)
         raise
     finally:
         for kept_as in kept.values():

@@ -64,7 +64,7 @@ def write_rom(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
-    beside: Mapping[Path, bytes] | None = None,
+    beside: Mapping[Path, bytes | None] | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
 
@@ -83,7 +83,8 @@ def write_rom(
     view, lighting
         The camera and the lighting that the manifest names.
     beside
-        The bytes of further files that belong to the pair, such as a preview: all of the files change or none.
+        The bytes of further files that belong to the pair, such as a preview: all of the files change or none. None
+        for the bytes removes a file.
 
     Returns
     -------

@@ -13,11 +13,14 @@ from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_name, load_asset
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
+from voxrt.export.atomic import write_together
+from voxrt.estimate import estimate_build
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
 from voxrt.outputs import writing
-from voxrt.pictures import Picture, render, save_picture
+from voxrt.pictures import Picture, render
+from voxrt.sim import SimulatorError
 from voxrt.sim.image import encode_png
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
 from voxrt.voxelize import AssetError, Scene, SceneWarning
@@ -30,10 +33,15 @@ if TYPE_CHECKING:
 
     from voxrt.asset_source import Asset
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
+    from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Grid, Voxelization
+
+
+_MUCH = 10
+"""Percent of the surface that a budget may take without a word about it."""
 
 
 def build(
@@ -42,6 +50,7 @@ def build(
     options: BuildOptions | None = None,
     *,
     progress: Callable[[str], None] | None = None,
+    estimated: Callable[[BuildEstimate], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build the octree memory of an asset, and write it with its manifest and its preview.
@@ -58,6 +67,8 @@ def build(
         How to build; None for the defaults.
     progress
         Called with the name of each stage as it begins.
+    estimated
+        Called with what the build will take, once the scene is loaded and its grid is known.
     **keywords
         The options of :class:`BuildOptions` by name. They take precedence over `options`.
 
@@ -78,7 +89,8 @@ def build(
         A file cannot be written, or the folder has files of the same name that were built from another asset. Old
         files stay as they were.
     SimulatorError
-        The preview cannot be rendered. Nothing is written then: memory, manifest and preview change together.
+        The preview cannot be rendered. The memory and the manifest are complete by then; an older preview is removed,
+        for it shows another memory.
 
     Examples
     --------
@@ -102,33 +114,29 @@ def build(
         refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
-        scene = load_asset(asset, options)
-    _refuse_warnings(asset, scene, scene.warnings, options)
-    scene, grid, voxelization = _voxelize(scene, options, clock)
+        loaded = load_asset(asset, options)
+    _refuse_warnings(asset, loaded, loaded.warnings, options)
+    scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
-    rom, interior_fit, budget_fit = _made_smaller(rom, asset, scene, options, clock)
+    rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
     view, lighting, unseen = _authored(scene, grid)
     warnings = scene.warnings + voxelization.warnings + unseen
     _refuse_warnings(asset, scene, warnings, options)
-    picture = None
+    picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
-            picture = _picture(rom, scene, lighting, options)
-    provenance = export.Provenance(
-        export.Source(source, _settings(options)), voxelization.objects, warnings, clock.seconds
-    )
-    with clock.stage("write"):
-        outputs = _write(files, export.Blob(rom, view, lighting, provenance), picture, options)
-    if picture is not None:  # what programs read keeps its order
-        clock.seconds["preview"] = clock.seconds.pop("preview")
-    return BuildResult(
+            try:
+                picture = _picture(rom, scene, lighting, options)
+            except (SimulatorError, ViewpointError) as error:
+                unseen_picture = error  # the memory is sound: it is written first
+    result = BuildResult(
         rom,
         scene,
         voxelization.objects,
         warnings,
-        outputs,
+        {},
         picture,
         interior_fit,
         budget_fit,
@@ -136,7 +144,15 @@ def build(
         {"voxelize": voxelization.seconds},
         view,
         lighting,
+        export.Source(source, _settings(options)),
     )
+    with clock.stage("write"):
+        result.outputs.update(_write(files, result, options))
+    if picture is not None:  # what programs read keeps its order
+        clock.seconds["preview"] = clock.seconds.pop("preview")
+    if unseen_picture is not None:
+        raise unseen_picture
+    return result
 
 
 def voxelize_mesh(
@@ -206,12 +222,16 @@ class _Clock:
         self.seconds[name] = perf_counter() - start
 
 
-def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene, Grid, Voxelization]:
+def _voxelize(
+    scene: Scene, options: BuildOptions, clock: _Clock, estimated: Callable[[BuildEstimate], None] | None
+) -> tuple[Scene, Grid, Voxelization]:
     """Fit a grid, reduce colours to materials, voxelize."""
     depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
         grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
+    if estimated is not None:
+        estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
     with clock.stage("voxelize"):
@@ -222,20 +242,32 @@ def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene
 
 
 def _made_smaller(
-    rom: Rom, asset: Asset, scene: Scene, options: BuildOptions, clock: _Clock
+    rom: Rom, asset: Asset, loaded: Scene, options: BuildOptions, clock: _Clock
 ) -> tuple[Rom, InteriorFit | None, BudgetFit | None]:
     """Give hidden voxels their material and fit the budget, if that is asked for."""
     interior_fit, budget_fit = None, None
     interior, budget = options.interior, options.budget
     if interior != "keep":
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(_label(asset, scene), scene, interior)
+            material = None if interior == "any" else find_material(_label(asset, loaded), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
     if budget is not None:
         with clock.stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
             rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            if budget_fit.fit.percent_changed > _MUCH:
+                budget_fit = replace(budget_fit, lossless=_lossless_depth(loaded, options, rom.octree.depth, words))
     return rom, interior_fit, budget_fit
+
+
+def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int) -> tuple[int, int] | None:
+    """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
+    for lesser in range(depth - 1, 0, -1):
+        whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
+        size = len(build(loaded, options=whole).octree.words)
+        if size <= words:
+            return lesser, size
+    return None
 
 
 def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -254,36 +286,35 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
     }
 
 
-def _write(files: OutputFiles, blob: export.Blob, picture: Picture | None, options: BuildOptions) -> dict[str, Path]:
+def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
     """Write the set of files, all of it or nothing, and return the files by kind."""
+    pictures: dict[Path, bytes | None] = {}
+    if files.preview is not None:
+        pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
     outputs: dict[str, Path] = {}
-    if files.words is None:
-        if picture is not None and files.preview is not None:
-            save_picture(picture.frame.colour, files.preview)
-            outputs["preview"] = files.preview
-        return outputs
-    told = blob.provenance
-    beside = {}
     with ExitStack() as stack:
-        if picture is not None and files.preview is not None:
-            stack.enter_context(writing(files.preview))
-            beside[files.preview] = encode_png(picture.frame.colour)
-        stack.enter_context(writing(files.words))
-        written = export.write_rom(
-            files.words.parent,
-            blob.rom,
-            suffix=files.words.suffix,
-            dialect=options.dialect,
-            objects=told.objects,
-            warnings=told.warnings,
-            seconds=told.seconds,
-            source=told.source,
-            view=blob.view,
-            lighting=blob.lighting,
-            beside=beside,
-        )
-    outputs |= {"mem": written.mem, "manifest": written.manifest}
-    return outputs | {"preview": picture_file for picture_file in beside}
+        for path in (*pictures, files.words):
+            if path is not None:
+                stack.enter_context(writing(path))
+        if files.words is None:
+            if result.preview is not None:
+                write_together(pictures)
+        else:
+            written = export.write_rom(
+                files.words.parent,
+                result.rom,
+                suffix=files.words.suffix,
+                dialect=options.dialect,
+                objects=result.objects,
+                warnings=result.warnings,
+                seconds=result.seconds,
+                source=result.source,
+                view=result.view,
+                lighting=result.lighting,
+                beside=pictures,
+            )
+            outputs = {"mem": written.mem, "manifest": written.manifest}
+    return outputs | {"preview": path for path, data in pictures.items() if data is not None}
 
 
 def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
