@@ -18,7 +18,7 @@ needs_yosys = pytest.mark.skipif(
 
 def test_it_lists_the_configurations(voxrt):
     finished = voxrt("core")
-    assert (finished.code, finished.out) == (0, "")
+    assert (finished.code, finished.err) == (0, "")
     listed = {line.split()[0]: line.split()[1:] for line in finished.out.splitlines()[1:]}
     assert list(listed) == list(read_configurations())
     assert listed["octo"] == ["8", "10", "32,769", "private"]

@@ -20,7 +20,7 @@ def test_what_a_ray_reads(voxrt, folder):
     assert result.material == material_at(rom.octree, result.voxel) != 0
     assert result.face in {"x", "y", "z"}
     for_people = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48")
-    assert for_people.out == ""
+    assert for_people.err == ""
     lines = for_people.out.splitlines()
     assert f"reads      {len(result.readings)} words" in for_people.out
     for number, reading in enumerate(result.readings, 1):

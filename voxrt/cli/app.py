@@ -15,7 +15,7 @@ import cyclopts
 
 import voxrt
 from voxrt.cli.arguments import UsageError, bind_preview
-from voxrt.cli.messages import complain, set_verbosity
+from voxrt.cli.messages import complain, discard_output, set_verbosity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,8 +133,7 @@ def run(arguments: Sequence[str]) -> ExitCode:
     except SystemExit:
         return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
     except BrokenPipeError:
-        # Nobody reads standard output any more: let the interpreter's last flush go nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        discard_output()  # nobody reads it any more
         return ExitCode.PIPE_CLOSED
     except Exception as error:  # noqa: BLE001 - the outermost frame: everything becomes a line and an exit code
         if "--debug" in arguments:
@@ -188,6 +187,8 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
         case voxrt.SimulatorError() | voxrt.ViewerError() | voxrt.ToolError():
             code = ExitCode.SIMULATOR
         case OSError():  # the machine's fault: no room, no more files, a stream that is closed
+            if not error.filename:
+                discard_output()
             problem, code = f"{error.filename or 'standard output'}: {error.strerror or problem}", ExitCode.USAGE
         case _:
             system = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"

@@ -88,7 +88,7 @@ def print_answer(text: str) -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # where the interpreter's last flush may go
+        discard_output()
         raise OutputError(f"standard output: {error.strerror}") from error
 
 
@@ -99,6 +99,11 @@ def picture_cost(frame: Frame, engine: str) -> str:
     cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles per pixel, "
     words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words per ray, "
     return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
+
+
+def discard_output() -> None:
+    """Let what standard output still holds go nowhere, where the interpreter flushes it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def is_verbose() -> bool:

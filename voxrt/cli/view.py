@@ -19,6 +19,7 @@ from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
 from voxrt.outputs import check_folder, writing
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
+from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 from voxrt.writers import PANE_WRITERS
 
@@ -112,6 +113,8 @@ def view(
     _check_company(other, ray, clip and slice, turntable, output)
     paths = [path for path in (scene, other) if path is not None]
     sources = [read_source(path, depth) for path in paths]
+    if output is None and screenshot is None and turntable is None:
+        check_screen(off_screen=False)
     panes = [_pane(source, as_text(path.stem), by, overlay) for source, path in zip(sources, paths, strict=True)]
     if level_limit is not None:
         panes = [pane.coarsened(level_limit) for pane in panes]
