@@ -136,6 +136,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
     files = write_rom(
         target.parent,
         replace(blob.rom, name=target.stem),
+        stem=target.stem,
         suffix=target.suffix,
         dialect=dialect,
         objects=told.objects,

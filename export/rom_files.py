@@ -56,6 +56,7 @@ def write_rom(
     folder: Path,
     rom: Rom,
     *,
+    stem: str | None = None,
     suffix: str = ".mem",
     dialect: str = "report",
     objects: tuple[ObjectReport, ...] = (),
@@ -73,7 +74,9 @@ def write_rom(
     folder
         The folder. It is made if it is missing.
     rom
-        The memory. Its name names the files.
+        The memory.
+    stem
+        The name of the files without their suffixes; None for the memory's name.
     suffix
         The kind of the file of words, one of :data:`WORD_SUFFIXES`.
     dialect
@@ -94,7 +97,7 @@ def write_rom(
     Raises
     ------
     TypeError, ValueError
-        The memory is none, its name cannot name a file, or there is no such dialect or suffix.
+        The memory is none, its name or `stem` cannot name a file, or there is no such dialect or suffix.
     DoesNotFitError
         The dialect cannot name a material in use.
     OSError
@@ -110,8 +113,9 @@ def write_rom(
     """
     instance("rom", rom, Rom)
     choice("suffix", suffix.lower(), WORD_SUFFIXES)
-    if rom.name in {"", ".", ".."} or any(c in rom.name for c in "/\\\0"):
-        raise ValueError(f"{rom.name!r} cannot name a file")
+    stem = rom.name if stem is None else stem
+    if stem in {"", ".", ".."} or any(c in stem for c in "/\0") or (stem == rom.name and "\\" in stem):
+        raise ValueError(f"{stem!r} cannot name a file")
     words = encode(rom.octree.words, dialect)
     manifest = make_manifest(
         rom,
@@ -124,7 +128,7 @@ def write_rom(
         view=view,
         lighting=lighting,
     )
-    files = RomFiles(folder / f"{rom.name}{suffix}", folder / f"{rom.name}.json")
+    files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):
         _refuse_foreign(files.manifest)
         write_together(

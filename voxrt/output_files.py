@@ -62,7 +62,7 @@ def output_files(
         named = path.suffix.lower() in WORD_SUFFIXES and not path.is_dir()
         if named:
             name = as_text(path.stem)
-        words = path.with_name(f"{name}{path.suffix}") if named else path / f"{name}.mem"
+        words = path if named else path / f"{name}.mem"
         check_folder(words.parent)
     picture = None
     if preview:

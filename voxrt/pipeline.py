@@ -303,6 +303,7 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
             written = export.write_rom(
                 files.words.parent,
                 result.rom,
+                stem=files.words.stem,
                 suffix=files.words.suffix,
                 dialect=options.dialect,
                 objects=result.objects,

@@ -26,7 +26,9 @@ _UNITS = {
     "in": Decimal("0.0254"),
     "ft": Decimal("0.3048"),
 }
-_LENGTH = re.compile(rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE)
+_LENGTH = re.compile(
+    rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
+)
 
 
 class UsageError(Exception):

@@ -9,7 +9,20 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, board as board_name, choice, levels, metres, metres_per_unit, png, seconds, shades, words
+from voxrt.cli.arguments import (
+    Pixels,
+    Reporting,
+    UsageError,
+    board as board_name,
+    choice,
+    levels,
+    metres,
+    metres_per_unit,
+    png,
+    seconds,
+    shades,
+    words,
+)
 from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
@@ -31,7 +44,11 @@ def build(
     *,
     output: Annotated[
         Path,
-        Parameter(("--output", "-o"), metavar="DIR|FILE", help="Folder for the files, or the file of words itself: NAME.mem, .coe, .mif or .bin."),
+        Parameter(
+            ("--output", "-o"),
+            metavar="DIR|FILE",
+            help="Folder for the files, or the file of words itself: NAME.mem, .coe, .mif or .bin.",
+        ),
     ] = Path(),
     depth: Annotated[int | None, _option("depth", converter=levels, metavar="N")] = BuildOptions.depth,
     voxel_size: Annotated[
@@ -42,7 +59,9 @@ def build(
     geometry: Annotated[Geometry, _option("geometry", converter=choice)] = BuildOptions.geometry,
     pow2: Annotated[Pow2, _option("pow2", converter=choice)] = BuildOptions.pow2,
     up: Annotated[UpAxis | None, _option("up", converter=choice)] = BuildOptions.up,
-    unit: Annotated[float | None, _option("unit", converter=metres_per_unit, metavar="mm|cm|m|in|ft|METRES")] = BuildOptions.unit,
+    unit: Annotated[
+        float | None, _option("unit", converter=metres_per_unit, metavar="mm|cm|m|in|ft|METRES")
+    ] = BuildOptions.unit,
     time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),

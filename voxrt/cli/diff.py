@@ -14,6 +14,7 @@ from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
 from voxrt.cli.source import Source, is_asset, read_source
 
+
 def diff(
     first: Annotated[Path, Parameter(metavar="FIRST")],
     second: Annotated[Path, Parameter(metavar="SECOND")],
