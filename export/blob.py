@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -63,7 +63,7 @@ class Blob:
     rom: Rom
     view: Camera | None = None
     lighting: Lighting | None = None
-    provenance: Provenance = Provenance()
+    provenance: Provenance = field(default_factory=Provenance)
 
 
 def blob_bytes(blob: Blob) -> bytes:

@@ -13,8 +13,8 @@ from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_name, load_asset
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
-from voxrt.export.atomic import write_together
 from voxrt.estimate import estimate_build
+from voxrt.export.atomic import write_together
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
@@ -315,7 +315,9 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
                 beside=pictures,
             )
             outputs = {"mem": written.mem, "manifest": written.manifest}
-    return outputs | {"preview": path for path, data in pictures.items() if data is not None}
+    if files.preview is not None and result.preview is not None:
+        outputs["preview"] = files.preview
+    return outputs
 
 
 def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:

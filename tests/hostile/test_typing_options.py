@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import signal
 import sys
@@ -45,6 +44,10 @@ def typed(tmp_path, monkeypatch, capfd):
     yield command
     for number, handler in handlers.items():
         signal.signal(number, handler)
+
+
+def names(folder: str = ".") -> list[str]:
+    return sorted(path.name for path in Path(folder).iterdir())
 
 
 def manifest(name: str = "house.json") -> dict:
@@ -122,7 +125,7 @@ def test_several_assets(typed):
     finished = typed("build", "house.obj", "dog.usda", "-o", "out", "--depth", "3", "--json")
     assert finished.code == 0, finished.err
     assert [report["outputs"]["mem"] for report in json.loads(finished.out)] == ["out/house.mem", "out/dog.mem"]
-    assert sorted(os.listdir("out")) == ["dog.json", "dog.mem", "house.json", "house.mem"]
+    assert names("out") == ["dog.json", "dog.mem", "house.json", "house.mem"]
     for wrong in (("-o", "one.mem"), ("--preview", "one.png")):
         finished = typed("build", "house.obj", "dog.usda", *wrong)
         assert (finished.code, finished.out) == (2, "")
@@ -131,21 +134,21 @@ def test_several_assets(typed):
 @pytest.mark.parametrize("suffix", [".mem", ".coe", ".mif", ".bin"])
 def test_the_file_of_words_by_its_name(typed, suffix):
     assert typed("build", "house.obj", "-o", f"new/yard{suffix}", "--depth", "3").code == 0
-    assert sorted(os.listdir("new")) == sorted(["yard.json", f"yard{suffix}"])
+    assert names("new") == sorted(["yard.json", f"yard{suffix}"])
     assert manifest("new/yard.json")["name"] == "yard"
     assert export.read_any(f"new/yard{suffix}")[0].rom.octree.depth == 3
 
 
 def test_assets_where_memories_may_stand(typed):
     assert typed("build", "house.obj", "--depth", "4").code == 0
-    before = sorted(os.listdir())
+    before = names()
     of_memory, of_asset = (typed("info", *scene).out for scene in (("house.mem",), ("house.obj", "--depth", "4")))
     assert of_memory.splitlines()[1:] == of_asset.splitlines()[1:]
     same = typed("diff", "house.obj", "house.mem")
     assert (same.code, same.out.splitlines()) == (0, ["house.obj to house.mem:", "  differ     0 voxels"])
     traces = [typed("trace", *s, "--pixel", "320,240").out for s in (("house.mem",), ("house.obj", "--depth", "4"))]
     assert traces[0].splitlines()[1:] == traces[1].splitlines()[1:] != []
-    assert sorted(os.listdir()) == before
+    assert names() == before
     assert typed("convert", "house.obj", "two.coe", "--depth", "4").code == 0
     assert manifest("two.json")["objects"] == manifest()["objects"]
     assert manifest("two.json")["source"] == manifest()["source"]

@@ -82,7 +82,7 @@ def test_names_that_are_no_text(folder, monkeypatch, capfd):
     Path(f"{odd}.json").unlink()
     assert run(("info", f"{odd}.mem", "--json")) == 0
     assert run(("build", f"{odd}-nothing.obj")) == 3
-    assert {f"{odd}.mem", f"{odd}.png", f"{odd}-2.coe", f"{odd}-2.json"} <= set(os.listdir())
+    assert {f"{odd}.mem", f"{odd}.png", f"{odd}-2.coe", f"{odd}-2.json"} <= {path.name for path in Path().iterdir()}
     for number, handler in handlers.items():
         signal.signal(number, handler)
 

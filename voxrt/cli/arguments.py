@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 SIZE_LIMIT = 1 << 14
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
+_TIMES = "xX\N{MULTIPLICATION SIGN}"
 _UNITS = {
     "mm": Decimal("0.001"),
     "cm": Decimal("0.01"),
@@ -123,7 +124,7 @@ def choice(kind: Any, tokens: Sequence[Token]) -> str:  # noqa: ANN401 - a Liter
     raise ValueError(f"{tokens[0].value!r} is none of " + ", ".join(f'"{name}"' for name in names))
 
 
-def board(_type: type, tokens: Sequence[Token]) -> str:
+def board_name(_type: type, tokens: Sequence[Token]) -> str:
     """Read the name of a board, however it is spelled."""
     from voxrt.octree import BOARDS  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
@@ -178,7 +179,7 @@ def seconds(_type: type, tokens: Sequence[Token]) -> float:
 
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a picture's size, ``640x480``, or its width alone: a picture of 4 to 3."""
-    parts = _parts(tokens[0].value, "xX×")
+    parts = _parts(tokens[0].value, _TIMES)
     if len(parts) not in {1, 2} or not all(part.isdecimal() and len(part) < 8 for part in parts):
         raise ValueError(f"{tokens[0].value!r} is not WIDTHxHEIGHT, such as 640x480, or WIDTH")
     width = int(parts[0])
@@ -207,7 +208,7 @@ def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
 
 def pixel(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a pixel's place, ``320,240``."""
-    parts = _parts(tokens[0].value, "xX×")
+    parts = _parts(tokens[0].value, _TIMES)
     if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
         raise ValueError(f"{tokens[0].value!r} is not COLUMN,ROW, such as 320,240")
     return int(parts[0]), int(parts[1])

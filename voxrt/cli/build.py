@@ -13,7 +13,7 @@ from voxrt.cli.arguments import (
     Pixels,
     Reporting,
     UsageError,
-    board as board_name,
+    board_name,
     choice,
     levels,
     metres,

@@ -89,6 +89,8 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     psnr: float | None
     """Of the scene's picture against that without a budget, decibel; null where they are equal."""
     ssim: float
+    lossless: tuple[int, int] | None = None
+    """The greatest depth that fits without loss, and its words there, where much was given up."""
 
 
 class InteriorEntry(msgspec.Struct, frozen=True):
@@ -158,6 +160,7 @@ def _budget_entry(budget: BudgetFit) -> BudgetEntry:
         recoloured=fit.recoloured,
         psnr=budget.psnr if math.isfinite(budget.psnr) else None,
         ssim=budget.ssim,
+        lossless=budget.lossless,
     )
 
 
