@@ -41,7 +41,8 @@ class BuildOptions:
         Levels of the octree, 1 to 16. The grid has 2**depth voxels per side. The default is 7, unless `voxel_size` is
         given.
     voxel_size
-        Side of a voxel in metres. Give this or `depth`, not both.
+        Side of a voxel in metres; on the command line also with a unit, such as ``5cm``. Give this or `depth`, not
+        both.
     fill
         ``"solid"``: fill what closed surfaces enclose. ``"surface"``: keep only the shell.
     interior
@@ -57,7 +58,8 @@ class BuildOptions:
     up
         The up axis of an asset whose format does not state it (OBJ, STL, PLY). The default is y.
     unit
-        Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.
+        Metres per unit of an asset whose format does not state it (OBJ, STL, PLY); on the command line also the name of
+        the unit, such as ``mm``. The default is 1.
     time
         Second of the animation at which the asset is built (glTF, USD).
     animation
