@@ -17,17 +17,12 @@ from voxrt.estimate import estimate_build
 from voxrt.export.atomic import write_together
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
-<<<<<<< HEAD
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
-from voxrt.outputs import check_folder, uninterrupted, writing
-from voxrt.pictures import Picture, render, save_picture
-=======
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
 from voxrt.outputs import writing
 from voxrt.pictures import Picture, render
 from voxrt.sim import SimulatorError
 from voxrt.sim.image import encode_png
->>>>>>> main
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
@@ -120,49 +115,20 @@ def build(
         refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
-<<<<<<< HEAD
-        scene = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
-    _refuse_warnings(asset, scene.warnings, options)
-    scene, grid, voxelization = _voxelize(scene, options, clock)
+        loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+    _refuse_warnings(asset, loaded.warnings, options)
+    scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
         refuse_empty(asset_label(asset), grid, voxelization)
-=======
-        loaded = load_asset(asset, options)
-    _refuse_warnings(asset, loaded, loaded.warnings, options)
-    scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
->>>>>>> main
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
     view, lighting, unseen = _authored(scene, grid)
-<<<<<<< HEAD
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
     _refuse_warnings(asset, warnings, options)
-    outputs: dict[str, Path] = {}
-    if output is not None:
-        source = asset if isinstance(asset, str | os.PathLike) else name
-        with clock.stage("write"), writing(Path(output)), uninterrupted():
-            files = export.write_rom(
-                Path(output),
-                rom,
-                dialect=options.dialect,
-                objects=voxelization.objects,
-                warnings=warnings,
-                seconds=clock.seconds,
-                source=export.Source(as_text(Path(source).name), _settings(options)),
-                view=view,
-                lighting=lighting,
-            )
-        outputs |= {"mem": files.mem, "manifest": files.manifest}
-    picture = None
-    if picture_file is not None:
-=======
-    warnings = scene.warnings + voxelization.warnings + unseen
-    _refuse_warnings(asset, scene, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
->>>>>>> main
         with clock.stage("preview"):
             try:
                 picture = _picture(rom, scene, lighting, options)
@@ -266,16 +232,12 @@ def _voxelize(
     depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
-<<<<<<< HEAD
         corners = None if options.bounds is None else (options.bounds[:3], options.bounds[3:])
         grid = voxelize.fit_grid(
             scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
         )
-=======
-        grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
     if estimated is not None:
         estimated(estimate_build(scene, grid, options))
->>>>>>> main
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
     with clock.stage("voxelize"):
@@ -293,11 +255,7 @@ def _made_smaller(
     interior, budget = options.interior, options.budget
     if interior != "keep":
         with clock.stage("interior"):
-<<<<<<< HEAD
-            material = None if interior == "any" else find_material(asset_label(asset), scene, interior)
-=======
-            material = None if interior == "any" else find_material(_label(asset, loaded), rom.materials, interior)
->>>>>>> main
+            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
     if budget is not None:
         with clock.stage("budget"):
