@@ -66,6 +66,13 @@ class BuildOptions:
         The animation to use, by name or by number, counted from 0 (glTF). The default is the first.
     variants
         Variants to build: the name of a material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
+    ignore
+        Names of objects to leave out. A prim path of a USD file leaves out all below it, too.
+    bounds
+        The lowest and the highest corner of what the grid holds, in metres of the scene: x, y, z, x, y, z. What lies
+        outside the grid is cut off. The default is the bounds of all objects.
+    allow_empty
+        Accept a memory without a single solid voxel.
     allow_outside
         Also open files that the asset names outside of its own folder.
     colours
@@ -119,6 +126,9 @@ class BuildOptions:
     time: float | None = None
     animation: str | None = None
     variants: Sequence[str] = ()
+    ignore: Sequence[str] = ()
+    bounds: tuple[float, float, float, float, float, float] | None = None
+    allow_empty: bool = False
     allow_outside: bool = False
     colours: int = 32
     budget: int | str | None = None
@@ -148,6 +158,9 @@ class BuildKeywords(TypedDict, total=False):
     time: float | None
     animation: str | None
     variants: Sequence[str]
+    ignore: Sequence[str]
+    bounds: tuple[float, float, float, float, float, float] | None
+    allow_empty: bool
     allow_outside: bool
     colours: int
     budget: int | str | None
@@ -182,6 +195,9 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "time": real,
         "animation": text,
         "variants": _texts,
+        "ignore": _texts,
+        "bounds": _bounds,
+        "allow_empty": flag,
         "allow_outside": flag,
         "colours": lambda name, value: whole(name, value, 1, 254),
         "budget": budget,
@@ -206,6 +222,17 @@ def _texts(name: str, value: object) -> tuple[str, ...]:
     if isinstance(value, str) or not isinstance(value, Iterable):
         raise TypeError(f"{name} must be a sequence of strings, not {shown(value)}")
     return tuple(text(f"{name}[{row}]", one) for row, one in enumerate(value))
+
+
+def _bounds(name: str, value: object) -> tuple[float, ...]:
+    from voxrt.voxelize.arguments import real, shown  # noqa: PLC0415
+
+    if not isinstance(value, Iterable) or len(parts := list(value)) != 6:
+        raise ValueError(f"{name} must be the lowest and the highest corner, six numbers, not {shown(value)}")
+    corners = tuple(real(f"{name}[{row}]", one) for row, one in enumerate(parts))
+    if not all(low < high for low, high in zip(corners[:3], corners[3:], strict=True)):
+        raise ValueError(f"{name} must be the lowest and then the highest corner, not {shown(value)}")
+    return corners
 
 
 def _pixels(name: str, value: object) -> tuple[int, int]:

@@ -10,13 +10,14 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.asset_source import as_text, asset_name, load_asset
+from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.estimate import estimate_build
 from voxrt.export.atomic import write_together
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
+from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
 from voxrt.outputs import writing
 from voxrt.pictures import Picture, render
@@ -114,16 +115,18 @@ def build(
         refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
-        loaded = load_asset(asset, options)
-    _refuse_warnings(asset, loaded, loaded.warnings, options)
+        loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+    _refuse_warnings(asset, loaded.warnings, options)
     scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
+    if not options.allow_empty:
+        refuse_empty(asset_label(asset), grid, voxelization)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
     view, lighting, unseen = _authored(scene, grid)
-    warnings = scene.warnings + voxelization.warnings + unseen
-    _refuse_warnings(asset, scene, warnings, options)
+    warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
+    _refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
@@ -229,7 +232,10 @@ def _voxelize(
     depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
-        grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
+        corners = None if options.bounds is None else (options.bounds[:3], options.bounds[3:])
+        grid = voxelize.fit_grid(
+            scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
+        )
     if estimated is not None:
         estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
@@ -249,7 +255,7 @@ def _made_smaller(
     interior, budget = options.interior, options.budget
     if interior != "keep":
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(_label(asset, loaded), rom.materials, interior)
+            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
     if budget is not None:
         with clock.stage("budget"):
@@ -282,6 +288,8 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "time": options.time,
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
+        "ignore": ", ".join(options.ignore) or None,
+        "bounds": None if options.bounds is None else ",".join(f"{value:g}" for value in options.bounds),
         "colours": options.colours,
     }
 
@@ -352,17 +360,10 @@ def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None,
     return view, lighting, tuple(unseen)
 
 
-def _label(asset: Asset, scene: Scene) -> str:
-    """Return what errors call an asset: the file's path, else the scene's name."""
-    return os.fspath(asset) if isinstance(asset, str | os.PathLike) else scene.name
-
-
-def _refuse_warnings(asset: Asset, scene: Scene, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
+def _refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
     """Raise AssetError for the first warning of a build that is strict."""
     if warnings and options.strict:
         first, *others = warnings
         kinds = sorted({warning.kind for warning in others})
         more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
-        raise AssetError(
-            _label(asset, scene), f"{first.message}{more}", fix="correct the asset, or build without strict"
-        )
+        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

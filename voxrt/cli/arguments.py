@@ -177,6 +177,20 @@ def seconds(_type: type, tokens: Sequence[Token]) -> float:
     return number
 
 
+def corners(_type: object, tokens: Sequence[Token]) -> tuple[float, ...]:
+    """Read the lowest and the highest corner of a box, ``-1,0,-1,1,2.5,1``."""
+    text = tokens[0].value
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 6 or not all(map(isfinite, values)):
+        raise ValueError(f"{text!r} is not X,Y,Z,X,Y,Z: two corners in metres, with commas and no spaces between")
+    if not all(low < high for low, high in zip(values[:3], values[3:], strict=True)):
+        raise ValueError(f"{text!r} is not a lowest and a highest corner: each number must be below its partner")
+    return values
+
+
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a picture's size, ``640x480``, or its width alone: a picture of 4 to 3."""
     parts = _parts(tokens[0].value, _TIMES)
