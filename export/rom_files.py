@@ -266,7 +266,7 @@ def _fits(manifest: Manifest, mem: WordFile) -> bool:
 
 def _state(*paths: Path) -> tuple[tuple[int, int, int] | None, ...]:
     """Tell files from those that take their places."""
-    found = []
+    found: list[tuple[int, int, int] | None] = []
     for path in paths:
         try:
             status = path.stat()
