@@ -10,6 +10,7 @@ from fakes.sockets import ended, raw_connection
 from hypothesis import given
 from hypothesis import strategies as st
 
+from voxrt.board.errors import DeviceError
 from voxrt.board.view import Camera
 from voxrt.serve.legacy_server import read_legacy_request
 from voxrt.serve.scene_files import MemoryReader
@@ -59,7 +60,7 @@ def test_pictures(run):
                     assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
                 assert server.session.renderer.view == before
                 # An incomplete request, a failing device, too many clients: the server closes each connection.
-                device.fail_frames = True
+                device.fail_frames = DeviceError("the lanes hang")
                 async with raw_connection(server.legacy_port) as (other_reader, other):
                     other.write(b"\0" * 27)
                     other.write_eof()

@@ -17,7 +17,7 @@ from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from voxrt.board.errors import Refused
+from voxrt.board.errors import DeviceError, Refused
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT, Chunk, pack_chunk
@@ -317,16 +317,21 @@ def test_trouble_is_told_and_passes(run):
         async with served(device, scene()) as server, open_client(server.url) as client:
             await client.take_control()
             await client.next_frame()
-            device.fail_frames = True
-            await client.request("view", camera=CAMERA, nonstop=True)
-            while not client.state or client.state["trouble"] != "the lanes hang":
-                await client._receive()
-            device.fail_frames = False
-            request = await client.send("view", camera=CAMERA)
-            await frame_where(client, lambda packet: packet.request == request)
-            while client.state["trouble"] is not None:
-                await client._receive()
-            assert server.session.renderer.trouble is None
+            for failure, trouble in (
+                (DeviceError("the lanes hang"), "the lanes hang"),
+                (MemoryError(), "there is not enough memory for a frame; choose a smaller picture"),
+                (ValueError("?"), "the frame failed: ValueError: ?; please report this"),
+            ):
+                device.fail_frames = failure
+                await client.request("view", camera=CAMERA, nonstop=True)
+                while client.state.get("trouble") != trouble:
+                    await client._receive()
+                device.fail_frames = None
+                request = await client.send("view", camera=CAMERA)
+                await frame_where(client, lambda packet, request=request: packet.request == request)
+                while client.state["trouble"] is not None:
+                    await client._receive()
+                assert server.session.renderer.trouble is None
 
     run(check())
 
