@@ -51,8 +51,8 @@ class Renderer:
     """Renders a frame when the view or the scene has changed and a client is ready for it, or without end.
 
     All calls of the device come from one thread, and never two at a time. A scene is loaded in steps between frames;
-    :class:`~.scene_memory.SceneMemory` says what frames show meanwhile. Every frame has a time limit. A scene whose first
-    frame exceeds it is refused, and the present one stays.
+    :class:`~.scene_memory.SceneMemory` says what frames show meanwhile. Every frame has a time limit. A scene whose
+    first frame exceeds it is refused, and the present one stays.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
     core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
     return RegisterDevice(
-        f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause, _PIXEL_SECONDS
+        f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
     )
 
 
