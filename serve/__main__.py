@@ -7,20 +7,16 @@ import asyncio
 import contextlib
 import secrets
 import sys
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..board.errors import DeviceError, Refused
 from ..board.pynq_device import open_pynq
 from .access_control import is_loopback
-from .scene_files import MemoryReader
-from .scene_library import SceneLibrary
+from .scene_files import read_memory
+from .scene_library import SceneLibrary, scene_names
+from .scene_process import memory_reader
 from .server import FrameServer
 from .server_options import ServerOptions
-
-if TYPE_CHECKING:
-    from ..board.scene import Scene
 
 
 def main() -> int:
@@ -61,17 +57,17 @@ def main() -> int:
 
 
 async def _serve(bitstream: str, scenes: list[Path], options: ServerOptions) -> None:
-    library = SceneLibrary(MemoryReader(), {path.stem: partial(_read, path) for path in scenes})
+    library = SceneLibrary(memory_reader(), {name: _files(path) for name, path in scene_names(scenes).items()})
     async with FrameServer(open_pynq(bitstream), library, options) as server:
         for path in scenes[:1]:
-            await server.session.renderer.load(_read(path), _ignore_progress)
+            await server.session.renderer.load(read_memory(_files(path), _ignore_progress), _ignore_progress)
         sys.stderr.write(f"serving at {server.url}; Ctrl-C ends it\n")
         await asyncio.Event().wait()
 
 
-def _read(path: Path) -> Scene:
-    manifest = [path.with_suffix(".json")] if path.suffix == ".mem" else []
-    return MemoryReader()({file.name: file.read_bytes() for file in (path, *manifest)}, _ignore_progress)
+def _files(path: Path) -> list[Path]:
+    """Return the file of a scene, and the manifest of a ``.mem``."""
+    return [path, path.with_suffix(".json")] if path.suffix.lower() == ".mem" else [path]
 
 
 def _ignore_progress(_stage: str, _done: int, _total: int) -> None:

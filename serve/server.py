@@ -114,6 +114,7 @@ class FrameServer:
                 )
             )
             self._start_task(self.session.run())
+            self._start_task(self.session.watch_control())
             self._exit_stack = stack.pop_all()
         return self
 

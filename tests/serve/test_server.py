@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, scene, wide_scene
+from fakes.scene_reader import ReadyScenes
 from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -21,8 +22,8 @@ from voxrt.board.errors import DeviceError, Refused
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT, Chunk, pack_chunk
-from voxrt.serve.scene_files import MemoryReader
 from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import Limits, ServerOptions
 
@@ -45,7 +46,8 @@ def mem_files(made, name=None):
 @asynccontextmanager
 async def served(device=None, loaded=None, scenes=None, reader=None, **options):
     device = device or FakeDevice()
-    library = SceneLibrary(reader or MemoryReader(), scenes or {})
+    own = ReadyScenes(**scenes or {})
+    library = SceneLibrary(reader or memory_reader(), own.files, own)
     async with FrameServer(device, library, ServerOptions(**options)) as server:
         if loaded is not None:
             await server.session.renderer.load(loaded, ignore)
@@ -272,21 +274,18 @@ def test_a_controller_that_leaves_in_the_middle(run):
 
 def test_control_lost_while_a_scene_is_made(run):
     async def check():
-        reading, may_read = asyncio.Event(), asyncio.Event()
-        loop = asyncio.get_running_loop()
+        reading = asyncio.Event()
 
-        class SlowReader(MemoryReader):
-            def __call__(self, files, progress):
-                loop.call_soon_threadsafe(reading.set)
-                asyncio.run_coroutine_threadsafe(may_read.wait(), loop).result()
-                return super().__call__(files, progress)
+        class SlowReader(ReadyScenes):
+            async def read(self, _paths, _progress):
+                reading.set()
+                await asyncio.Event().wait()
 
         async with served(loaded=scene(), reader=SlowReader()) as server, open_client(server.url) as client:
             await client.take_control()
             upload = asyncio.create_task(client.upload(mem_files(scene("new")), ignore))
             await reading.wait()
             server.session.control.release(client.hello["viewer"])
-            may_read.set()
             with pytest.raises(Refused, match="another viewer took control"):
                 await upload
             assert server.session.renderer.scene.name == "scene"
@@ -296,7 +295,7 @@ def test_control_lost_while_a_scene_is_made(run):
 
 def test_library(run):
     async def check():
-        scenes = {"a": lambda: scene("a", material=6)}
+        scenes = {"a": scene("a", material=6)}
         async with served(loaded=scene(), scenes=scenes) as server, open_client(server.url) as client:
             assert client.hello["scenes"] == ["a"]
             await client.take_control()
@@ -367,7 +366,7 @@ def test_access(run):
                 return error.response.status_code
 
         with pytest.raises(Refused, match=r"0\.0\.0\.0 can be reached from other machines; give a token"):
-            FrameServer(FakeDevice(), SceneLibrary(MemoryReader()), ServerOptions(host="0.0.0.0"))
+            FrameServer(FakeDevice(), SceneLibrary(memory_reader()), ServerOptions(host="0.0.0.0"))
         async with served(token="sesame") as server:
             assert await status(server) == 401
             assert await status(server, "?token=sesame") == 101

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import secrets
 import signal
-from functools import partial
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -69,9 +68,9 @@ def serve(
     reporting
         The form of the output: --json prints the address of the page on standard output.
     """
-    from voxrt.board_scenes import AssetReader  # noqa: PLC0415 - it imports NumPy
+    from voxrt.board_scenes import asset_reader  # noqa: PLC0415 - it imports NumPy
     from voxrt.serve.access_control import is_loopback  # noqa: PLC0415
-    from voxrt.serve.scene_library import SceneLibrary  # noqa: PLC0415
+    from voxrt.serve.scene_library import SceneLibrary, scene_names  # noqa: PLC0415
     from voxrt.serve.server_options import ServerOptions  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
@@ -82,7 +81,8 @@ def serve(
     if token is None and not is_loopback(host):
         token = secrets.token_urlsafe(16)
     first = _read_first(scenes[0], depth) if scenes else None
-    library = SceneLibrary(AssetReader(depth), {path.stem: partial(_read_listed, path, depth) for path in scenes})
+    named = {name: _files(path) for name, path in scene_names(scenes).items()}
+    library = SceneLibrary(asset_reader(depth), named, asset_reader(depth, memory_depth=depth))
     options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
@@ -118,14 +118,10 @@ def _read_first(path: Path, depth: int | None) -> Scene:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 
-def _read_listed(path: Path, depth: int | None) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.board_scenes import load_scene  # noqa: PLC0415
-
-    try:
-        return load_scene(path, depth)
-    except (voxrt.RomError, voxrt.AssetError, voxrt.DoesNotFitError) as error:
-        raise Refused(str(error)) from error
+def _files(path: Path) -> list[Path]:
+    """Return the file of a scene, and the manifest of a memory where it has one."""
+    manifest = path.with_suffix(".json")
+    return [path, manifest] if path.suffix.lower() == ".mem" and manifest.exists() else [path]
 
 
 async def _serve(
