@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from ..board.scene_memory import Progress
     from .requests import StartUpload
     from .scene_library import SceneLibrary
+    from .server_options import Limits
 
-_CONTROL_SECONDS = 1.0  # between two looks whether the controller is idle
+_WATCH_SECONDS = 0.5
 
 
 class Session:
@@ -38,11 +39,13 @@ class Session:
         The ray tracer; :meth:`close` closes it.
     library
         The scenes that can be loaded.
+    limits
+        The load that the clients may be.
     """
 
-    def __init__(self, device: Device, library: SceneLibrary) -> None:
+    def __init__(self, device: Device, library: SceneLibrary, limits: Limits) -> None:
         self.renderer = Renderer(device)
-        self.clients = Clients(self.state)
+        self.clients = Clients(self.state, limits)
         self.control = ControlTransfer(time.monotonic, self._drop_work_of)
         self.upload: Upload | None = None
         self._library = library
@@ -56,10 +59,11 @@ class Session:
         """Render frames for the clients, without end."""
         await self.renderer.run(self.clients)
 
-    async def watch_control(self) -> None:
-        """Pass control on when the controller is idle, without end."""
+    async def watch(self) -> None:
+        """Drop clients that are too slow, and pass control on when the controller is idle, without end."""
         while True:
-            await asyncio.sleep(_CONTROL_SECONDS)
+            await asyncio.sleep(_WATCH_SECONDS)
+            self.clients.drop_slow()
             if self._load is not None:
                 self.control.use(self._load.client)  # who waits for a scene is not idle
             if self.control.pass_on():
@@ -188,6 +192,10 @@ class Session:
         paths = self._library.find(name)
         reader = self._library.scene_reader or self._library.reader
         return await self._load_scene(client, reader.read(paths, progress), progress, check_only=False)
+
+    def stop(self) -> None:
+        """End the frame in progress; there are no further ones."""
+        self.renderer.device.stop()
 
     def close(self) -> None:
         """Close the device."""

@@ -16,7 +16,7 @@ from fakes.device import FakeDevice, scene, wide_scene
 from fakes.scene_reader import ReadyScenes
 from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from voxrt.board.errors import DeviceError, Refused
 from voxrt.serve.clients import Client
@@ -414,10 +414,14 @@ def test_malformed_and_excess_connections(run):
 
     async def check():
         random = np.random.default_rng(7)
+        limits = Limits(
+            connections=120,
+            strangers_per_address=200,
+            new_connections_per_address_and_second=1000,
+            handshake_seconds=0.5,
+        )
         async with (
-            served(
-                loaded=scene(), limits=Limits(connections=120, new_clients_per_second=1000, handshake_seconds=0.5)
-            ) as server,
+            served(loaded=scene(), limits=limits) as server,
             open_client(server.url) as correct,
         ):
             await correct.take_control()
@@ -446,9 +450,11 @@ def test_malformed_and_excess_connections(run):
                     await malformed.send(random.bytes(int(random.integers(0, 200))))
                     await malformed.send('{"type": "view", "camera": 3}')
                 await malformed.send(bytes(CHUNK_LIMIT + 100))
-                await malformed.wait_closed()
+                with pytest.raises(ConnectionClosed):
+                    while True:
+                        await malformed.recv()
                 assert malformed.close_code == 1009
-            while len(server.connections) > 1:
+            while server.connections > 1:
                 await correct.request("counters")
             request = await correct.send("view", camera=CAMERA)
             await frame_where(correct, lambda packet: packet.request == request)
@@ -463,7 +469,7 @@ def test_backlog_of_answers(run):
             async def send(self, _message):
                 await asyncio.Event().wait()
 
-        client = Client(1, lambda: None, dict)
+        client = Client(1, lambda: None, str, lambda: None)
         sending = asyncio.create_task(client.send_all(BlockedConnection()))
         for number in range(1000):
             client.queue_answer({"type": "done", "request": number})
