@@ -121,7 +121,7 @@ class Renderer:
             The device did not keep it; the present scene stays.
         """
         async with self._loading:
-            steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene))
+            steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene, progress))
             complete = False
             while not complete:
                 async with self._device_lock:
@@ -196,7 +196,8 @@ class Renderer:
     def _render(self, view: View) -> Frame:
         return self.device.frame(view, self.device.identity.frame_seconds(view.size))
 
-    def _render_first(self, scene: Scene) -> None:
+    def _render_first(self, scene: Scene, progress: Progress) -> None:
+        progress("render", 0, 1)
         view = self._view_of(scene)
         self._first_frame = view, self._render(view)
 

@@ -9,6 +9,7 @@ import socket
 import time
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import quote
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -17,6 +18,7 @@ from websockets.http11 import Response
 
 from ..board.errors import Refused
 from .access_control import AccessControl, is_loopback
+from .addresses import accepted_hosts, reachable_hosts
 from .legacy_server import LegacyServer
 from .limited_connection import ConnectionGuard, LimitedConnection
 from .log_limit import LogLimit
@@ -26,6 +28,7 @@ from .rate_limiter import RateLimiter
 from .request_handler import RequestHandler
 from .session import Session
 from .strangers import Strangers
+from .token import check_token
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
@@ -63,12 +66,15 @@ class FrameServer:
     """
 
     def __init__(self, device: Device, library: SceneLibrary, options: ServerOptions) -> None:
-        if options.token is None and not is_loopback(options.host):
+        if options.token is not None:
+            check_token(options.token)
+        elif not is_loopback(options.host):
             raise Refused(f"{options.host} can be reached from other machines; give a token, or listen on 127.0.0.1")
+        self._hosts = reachable_hosts(options.host)
         self.session = Session(device, library, options.limits)
         self.refused = 0
         self._options = options
-        self._access = AccessControl(options.token, options.origins)
+        self._access = AccessControl(options.token, options.origins, accepted_hosts(options.host))
         self._guard = ConnectionGuard(options.limits, Strangers(options.limits))
         self._new_clients = RateLimiter(options.limits.new_clients_per_second, time.monotonic)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -93,11 +99,16 @@ class FrameServer:
         return None if self._legacy is None else self._legacy.port
 
     @property
+    def urls(self) -> tuple[str, ...]:
+        """The addresses of the page, with the token where there is one; the best one for other machines is first."""
+        token = f"#token={quote(self._options.token, safe='')}" if self._options.token else ""
+        hosts = [f"[{host}]" if ":" in host else host for host in self._hosts]
+        return tuple(f"http://{host}:{self.port}/{token}" for host in hosts)
+
+    @property
     def url(self) -> str:
-        """The address of the page, with the token where there is one."""
-        host = f"[{self._options.host}]" if ":" in self._options.host else self._options.host
-        token = f"#token={self._options.token}" if self._options.token else ""
-        return f"http://{host}:{self.port}/{token}"
+        """The first of :attr:`urls`."""
+        return self.urls[0]
 
     async def __aenter__(self) -> FrameServer:  # noqa: PYI034 - Self needs Python 3.11
         async with contextlib.AsyncExitStack() as stack:
@@ -169,8 +180,13 @@ class FrameServer:
             headers["Content-Length"] = str(len(file.data))
             headers["Connection"] = "close"
             return Response(200, "OK", headers, file.data)
+        origin = request.headers.get("Origin")
+        if "Upgrade" not in request.headers and "Host" in request.headers:
+            origin = (
+                f"http://{request.headers['Host']}"  # the page asks why it was refused, which browsers do not tell it
+            )
         refusal = self._access.check(
-            request.path, request.headers.get("Authorization"), request.headers.get("Origin"), connection.local_address
+            request.path, request.headers.get("Authorization"), origin, connection.local_address
         )
         if refusal is not None:
             self.refused += 1

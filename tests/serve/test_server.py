@@ -172,7 +172,7 @@ def test_upload(run):
             assert server.session.renderer.scene.name == "scene"
             done = await client.upload(mem_files(new), lambda stage, _d, _t: stages.append(stage))
             assert done["scene"] == {"name": "new", "depth": 3, "words": 25, "crc32": new.crc32}
-            assert set(stages) == {"send", "read", "write", "verify"}
+            assert set(stages) == {"send", "read", "write", "verify", "render"}
             packet = await frame_where(client, lambda packet: packet.scene == 2)
             assert pixel(packet)[0] == 6
 
@@ -404,7 +404,12 @@ def test_page(run):
                 assert b" 200 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             for name in (b"nothing", b"../server.py", b"%2e%2e/server.py", b"page_files.py"):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
-            assert b" 426 " in await http(server.port, b"GET /v2 HTTP/1.1\r\nHost: x\r\n\r\n")
+            # The page asks why it was refused: it would be, under a name that is not this machine's.
+            asked = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
+            assert b" 426 " in await http(server.port, asked % (b"127.0.0.1:%d" % server.port))
+            refused = await http(server.port, asked % b"x")
+            assert refused.startswith(b"HTTP/1.1 403 ")
+            assert b"pages of http://x may not connect; start the server with --origin http://x" in refused
 
     run(check())
 
