@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, place, png, whole
+from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, place, png, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import aim
@@ -38,6 +38,8 @@ def render(
     ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     shading: Literal["faces", "report", "flat"] | None = None,
+    samples: Literal[1, 2, 4] = 1,
+    background: Backdrop = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -75,6 +77,11 @@ def render(
         What brightness depends on. faces: each side of a block has its own; the top is the brightest. report: the angle
         to the camera or to the light, as in the report on the original hardware. flat: materials show their own colour.
         The default is that of the memory, or faces.
+    samples
+        Rays per pixel on each axis. More than one smooths the edges; it takes as many frames as rays per pixel.
+    background
+        light, dark, transparent, or a colour such as #204060. The default is the background of the memory. A
+        transparent picture suits pages of any colour.
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
@@ -97,10 +104,21 @@ def render(
             lighting = replace(lighting, on=False, bounces=0)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, lighting=lighting, config=config)
+        checked = voxrt.check(
+            memory, camera, size, lighting=lighting, samples=samples, background=background, config=config
+        )
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
+        frame = voxrt.render(
+            memory,
+            camera,
+            size=size,
+            engine=engine,
+            config=config,
+            lighting=lighting,
+            samples=samples,
+            background=background,
+        )
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
