@@ -17,7 +17,14 @@ from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
 from voxrt.outputs import check_folder, uninterrupted, writing
 from voxrt.pictures import Picture, render, save_picture
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.viewpoint import (
+    ViewpointError,
+    aim_camera,
+    authored_camera,
+    authored_lighting,
+    named_camera,
+    stands_inside,
+)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -31,7 +38,7 @@ if TYPE_CHECKING:
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Grid, Voxelization
+    from voxrt.voxelize import Grid, Viewpoint, Voxelization
 
 
 def build(
@@ -98,13 +105,15 @@ def build(
     clock = _Clock(progress)
     with clock.stage("load"):
         scene = load_asset(asset, options)
+        if options.camera is not None:
+            scene = replace(scene, viewpoint=named_camera(_label(asset, scene), scene, options.camera))
     _refuse_warnings(asset, scene, scene.warnings, options)
     scene, grid, voxelization = _voxelize(scene, options, clock)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, scene, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
+    view, lighting, unseen = _authored(scene, rom)
     warnings = scene.warnings + voxelization.warnings + unseen
     _refuse_warnings(asset, scene, warnings, options)
     outputs: dict[str, Path] = {}
@@ -126,7 +135,7 @@ def build(
     picture = None
     if picture_file is not None:
         with clock.stage("preview"):
-            picture = _picture(rom, scene, lighting, options)
+            picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
             save_picture(picture.frame.colour, picture_file)
             outputs["preview"] = picture_file
     return BuildResult(
@@ -271,9 +280,9 @@ def _picture_file(name: str, output: str | os.PathLike[str] | None, options: Bui
     return file
 
 
-def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    if scene.viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(scene.viewpoint, rom.grid, options.size)
+def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    if viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
         camera = aim_camera(rom, options.size)
     frame = render(
@@ -283,19 +292,28 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         engine=options.engine,
         config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used."""
     view, lighting, unseen = None, None, []
+    grid = rom.grid
+    assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
+    if view is not None and stands_inside(rom, view):
+        unseen.append(
+            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
+        )
+        view = None
     try:
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
