@@ -11,6 +11,8 @@ from dataclasses import dataclass, fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 
+from voxrt.backgrounds import read_background
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -89,6 +91,14 @@ class BuildOptions:
         or to ``NAME.preview.png`` in the output folder. In Python, True asks for the latter.
     size
         Width and height of the preview in pixels. The default is 640 x 480.
+    camera
+        The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The
+        default is the first. Without one, pictures show the whole scene from the front right and above.
+    samples
+        Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges.
+    background
+        The background of the preview: ``"light"``, ``"dark"``, ``"transparent"``, or a colour such as ``"#204060"``.
+        The default is the background of the scene.
     engine
         What renders the preview. ``"rtl"``: the verilated hardware, which counts its clock cycles. ``"model"``: the
         exact C++ model, which is faster. Both give the same pixels.
@@ -135,6 +145,9 @@ class BuildOptions:
     dialect: Dialect = "report"
     preview: str | PathLike[str] | bool = False
     size: tuple[int, int] = PREVIEW_SIZE
+    camera: str | None = None
+    samples: int = 1
+    background: str | tuple[int, int, int] | None = None
     engine: Engine = "rtl"
     strict: bool = False
     threads: int = 0
@@ -167,6 +180,9 @@ class BuildKeywords(TypedDict, total=False):
     dialect: Dialect
     preview: str | PathLike[str] | bool
     size: tuple[int, int]
+    camera: str | None
+    samples: int
+    background: str | tuple[int, int, int] | None
     engine: Engine
     strict: bool
     threads: int
@@ -204,6 +220,9 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
         "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
         "size": _pixels,
+        "camera": text,
+        "samples": _samples,
+        "background": read_background,
         "engine": lambda name, value: choice(name, value, get_args(Engine)),
         "strict": flag,
         "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
@@ -233,6 +252,16 @@ def _bounds(name: str, value: object) -> tuple[float, ...]:
     if not all(low < high for low, high in zip(corners[:3], corners[3:], strict=True)):
         raise ValueError(f"{name} must be the lowest and then the highest corner, not {shown(value)}")
     return corners
+
+
+def _samples(name: str, value: object) -> int:
+    from voxrt.octree.camera import SAMPLES  # noqa: PLC0415
+    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
+
+    samples = whole(name, value, 1, max(SAMPLES))
+    if samples not in SAMPLES:
+        raise ValueError(f"{name} must be 1, 2 or 4, not {samples}")
+    return samples
 
 
 def _pixels(name: str, value: object) -> tuple[int, int]:

@@ -23,7 +23,14 @@ from voxrt.outputs import writing
 from voxrt.pictures import Picture, render
 from voxrt.sim import SimulatorError
 from voxrt.sim.image import encode_png
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.viewpoint import (
+    ViewpointError,
+    aim_camera,
+    authored_camera,
+    authored_lighting,
+    named_camera,
+    stands_inside,
+)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -38,7 +45,7 @@ if TYPE_CHECKING:
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Grid, Voxelization
+    from voxrt.voxelize import Grid, Viewpoint, Voxelization
 
 
 _MUCH = 10
@@ -116,6 +123,9 @@ def build(
     clock = _Clock(progress)
     with clock.stage("load"):
         loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+        if options.camera is not None:
+            viewpoint = named_camera(asset_label(asset), loaded, options.camera)
+            loaded = replace(loaded, viewpoint=viewpoint)
     _refuse_warnings(asset, loaded.warnings, options)
     scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
@@ -124,14 +134,14 @@ def build(
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
+    view, lighting, unseen = _authored(scene, rom)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
     _refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
             try:
-                picture = _picture(rom, scene, lighting, options)
+                picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
             except (SimulatorError, ViewpointError) as error:
                 unseen_picture = error  # the memory is sound: it is written first
     result = BuildResult(
@@ -328,9 +338,9 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
     return outputs
 
 
-def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    if scene.viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(scene.viewpoint, rom.grid, options.size)
+def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    if viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
         camera = aim_camera(rom, options.size)
     frame = render(
@@ -338,21 +348,30 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         camera,
         size=options.size,
         engine=options.engine,
-        config="tiny" if lighting is None else "lit",
+        config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used."""
     view, lighting, unseen = None, None, []
+    grid = rom.grid
+    assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
+    if view is not None and stands_inside(rom, view):
+        unseen.append(
+            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
+        )
+        view = None
     try:
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 from voxrt.cli.arguments import (
+    Backdrop,
     Pixels,
     Reporting,
     UsageError,
@@ -24,6 +25,7 @@ from voxrt.cli.arguments import (
     shades,
     words,
 )
+from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
@@ -83,6 +85,11 @@ def build(
     ] = None,
     preview: Annotated[str | None, _option("preview", metavar="[FILE]")] = None,
     size: Annotated[Pixels, _option("size")] = BuildOptions.size,
+    camera: Annotated[str | None, _option("camera", metavar="NAME")] = BuildOptions.camera,
+    samples: Annotated[Literal[1, 2, 4], _option("samples")] = 1,
+    background: Annotated[
+        Backdrop, _option("background", converter=read_colour, n_tokens=1, metavar="COLOUR", show_default=False)
+    ] = None,
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
@@ -119,6 +126,9 @@ def build(
         dialect=dialect,
         preview=png(Path(preview)) if preview else preview is not None,
         size=size,
+        camera=camera,
+        samples=samples,
+        background=background,
         engine=engine,
         strict=strict,
     )
