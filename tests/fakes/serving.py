@@ -37,6 +37,9 @@ class Serving:
         status = Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) / 1024
 
+    def open_files(self) -> int:
+        return len(list(Path(f"/proc/{self.process.pid}/fd").iterdir()))
+
     def children(self) -> list[int]:
         """Processes that it or its children started."""
         found, waiting = [], [self.process.pid]
