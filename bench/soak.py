@@ -52,7 +52,6 @@ class Load:
         self.server = server
         self.scenes = scenes
         self.counted: collections.Counter[str] = collections.Counter()
-        self.first_lines = server.log.count("\n")
         self.gap = 0.0
         self.attack = "none"
         self.gap_during = "none"
@@ -162,7 +161,7 @@ def report(load: Load, device: str) -> str:
         ("attacks", f"{sum(count for name, count in load.counted.items() if name.startswith('attacks')):,}"),
         ("longest gap between two frames of a viewer", f"{load.gap:.2f} s (attack: {load.gap_during})"),
         ("memory after the first minute varies by", f"{spread(load.samples):.1f} MB"),
-        ("what the server logged", f"{max(0, load.server.log.count(chr(10)) - load.first_lines)} lines"),
+        ("what the server logged", f"{len(load.server.log.splitlines())} lines"),
     ]
     step = max(1, len(load.samples) // 15)
     lines = ["# The frame server under load, by bench/soak.py", "", "| what | measured |", "|---|---|"]
@@ -194,8 +193,10 @@ def main() -> int:
             load = Load(server, scenes)
             asyncio.run(load.run(arguments.minutes, arguments.attacks))
             code = server.interrupt()
-            text = report(load, arguments.device)
+            text, log = report(load, arguments.device), server.log
     print(text)
+    if log:
+        print(f"the server logged:\n{log[:5000]}")
     if load.gap > GAP_LIMIT:
         print(f"a gap of {load.gap:.2f} s is more than {GAP_LIMIT:.0f} s: is the machine idle?")
     if arguments.write:

@@ -31,7 +31,9 @@ class Serving:
 
     @property
     def log(self) -> str:
-        return self._errors.read_text()
+        """What it has said on standard error, besides where it serves."""
+        lines = self._errors.read_text().splitlines()
+        return "\n".join(line for line in lines if not re.match(r"serving |  (page|legacy) ", line))
 
     def megabytes(self) -> float:
         status = Path(f"/proc/{self.process.pid}/status").read_text()

@@ -178,15 +178,14 @@ def test_ten_floods_leave_a_viewer_its_frames(tmp_path):
                 await frames_of(polite, 150)
                 assert (await polite.request("counters"))["counters"]["viewers"] > 3
                 assert server.megabytes() - before < 150
-                assert server.log == log
+                assert server.log == ""
                 assert await asyncio.to_thread(server.interrupt) == 0
             finally:
                 flooding.stdin.close()
                 flooding.wait()
-        assert server.log == log
+        assert server.log == ""
 
     with serving(tmp_path, EXAMPLES / "house.obj", "--depth", 5) as server:
-        log = server.log
         run(check(server))
 
 
