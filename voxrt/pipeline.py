@@ -10,19 +10,27 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.asset_source import as_text, asset_name, load_asset
+from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.estimate import estimate_build
 from voxrt.export.atomic import write_together
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
+from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
 from voxrt.outputs import writing
 from voxrt.pictures import Picture, render
 from voxrt.sim import SimulatorError
 from voxrt.sim.image import encode_png
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.viewpoint import (
+    ViewpointError,
+    aim_camera,
+    authored_camera,
+    authored_lighting,
+    named_camera,
+    stands_inside,
+)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -37,7 +45,7 @@ if TYPE_CHECKING:
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Grid, Voxelization
+    from voxrt.voxelize import Grid, Viewpoint, Voxelization
 
 
 _MUCH = 10
@@ -114,21 +122,26 @@ def build(
         refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
-        loaded = load_asset(asset, options)
-    _refuse_warnings(asset, loaded, loaded.warnings, options)
+        loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+        if options.camera is not None:
+            viewpoint = named_camera(asset_label(asset), loaded, options.camera)
+            loaded = replace(loaded, viewpoint=viewpoint)
+    _refuse_warnings(asset, loaded.warnings, options)
     scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
+    if not options.allow_empty:
+        refuse_empty(asset_label(asset), grid, voxelization)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
-    warnings = scene.warnings + voxelization.warnings + unseen
-    _refuse_warnings(asset, scene, warnings, options)
+    view, lighting, unseen = _authored(scene, rom)
+    warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
+    _refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
             try:
-                picture = _picture(rom, scene, lighting, options)
+                picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
             except (SimulatorError, ViewpointError) as error:
                 unseen_picture = error  # the memory is sound: it is written first
     result = BuildResult(
@@ -229,7 +242,10 @@ def _voxelize(
     depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
-        grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
+        corners = None if options.bounds is None else (options.bounds[:3], options.bounds[3:])
+        grid = voxelize.fit_grid(
+            scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
+        )
     if estimated is not None:
         estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
@@ -249,7 +265,7 @@ def _made_smaller(
     interior, budget = options.interior, options.budget
     if interior != "keep":
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(_label(asset, loaded), rom.materials, interior)
+            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
     if budget is not None:
         with clock.stage("budget"):
@@ -282,6 +298,8 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "time": options.time,
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
+        "ignore": ", ".join(options.ignore) or None,
+        "bounds": None if options.bounds is None else ",".join(f"{value:g}" for value in options.bounds),
         "colours": options.colours,
     }
 
@@ -320,9 +338,9 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
     return outputs
 
 
-def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    if scene.viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(scene.viewpoint, rom.grid, options.size)
+def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    if viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
         camera = aim_camera(rom, options.size)
     frame = render(
@@ -330,21 +348,30 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         camera,
         size=options.size,
         engine=options.engine,
-        config="tiny" if lighting is None else "lit",
+        config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used."""
     view, lighting, unseen = None, None, []
+    grid = rom.grid
+    assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
+    if view is not None and stands_inside(rom, view):
+        unseen.append(
+            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
+        )
+        view = None
     try:
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
@@ -352,17 +379,10 @@ def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None,
     return view, lighting, tuple(unseen)
 
 
-def _label(asset: Asset, scene: Scene) -> str:
-    """Return what errors call an asset: the file's path, else the scene's name."""
-    return os.fspath(asset) if isinstance(asset, str | os.PathLike) else scene.name
-
-
-def _refuse_warnings(asset: Asset, scene: Scene, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
+def _refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
     """Raise AssetError for the first warning of a build that is strict."""
     if warnings and options.strict:
         first, *others = warnings
         kinds = sorted({warning.kind for warning in others})
         more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
-        raise AssetError(
-            _label(asset, scene), f"{first.message}{more}", fix="correct the asset, or build without strict"
-        )
+        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

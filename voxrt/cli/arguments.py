@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from decimal import Decimal
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from cyclopts import Parameter
+
+from voxrt.backgrounds import read_background
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -177,6 +179,20 @@ def seconds(_type: type, tokens: Sequence[Token]) -> float:
     return number
 
 
+def corners(_type: object, tokens: Sequence[Token]) -> tuple[float, ...]:
+    """Read the lowest and the highest corner of a box, ``-1,0,-1,1,2.5,1``."""
+    text = tokens[0].value
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 6 or not all(map(isfinite, values)):
+        raise ValueError(f"{text!r} is not X,Y,Z,X,Y,Z: two corners in metres, with commas and no spaces between")
+    if not all(low < high for low, high in zip(values[:3], values[3:], strict=True)):
+        raise ValueError(f"{text!r} is not a lowest and a highest corner: each number must be below its partner")
+    return values
+
+
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a picture's size, ``640x480``, or its width alone: a picture of 4 to 3."""
     parts = _parts(tokens[0].value, _TIMES)
@@ -193,6 +209,11 @@ def place(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
     """Read a position in voxels, ``10,-2.5,3``, to 1/16 voxel."""
     x, y, z = (_sixteenths(part) for part in _three(tokens[0].value))
     return x, y, z
+
+
+def background(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int] | Literal["transparent"]:
+    """Read a background: a name or a colour."""
+    return read_background("the background", tokens[0].value)
 
 
 def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
@@ -248,6 +269,10 @@ def _sixteenths(text: str) -> int:
 
 Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]
 Pixel = Annotated[tuple[int, int], Parameter(converter=pixel, n_tokens=1, metavar="X,Y", show_default=False)]
+Backdrop = Annotated[
+    tuple[int, int, int] | Literal["transparent"] | None,
+    Parameter(converter=background, n_tokens=1, metavar="COLOUR", show_default=False),
+]
 Depth = Annotated[int | None, Parameter(converter=levels, metavar="N")]
 _Register = Annotated[
     tuple[int, int, int] | None,

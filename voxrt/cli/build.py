@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 from voxrt.cli.arguments import (
+    Backdrop,
     Pixels,
     Reporting,
     UsageError,
     board_name,
     choice,
+    corners,
     levels,
     metres,
     metres_per_unit,
@@ -23,6 +25,7 @@ from voxrt.cli.arguments import (
     shades,
     words,
 )
+from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
@@ -65,6 +68,12 @@ def build(
     time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
+    ignore: Annotated[tuple[str, ...], _option("ignore", metavar="NAME", show_default=False)] = (),
+    bounds: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        _option("bounds", converter=corners, n_tokens=1, metavar="X,Y,Z,X,Y,Z", allow_leading_hyphen=True),
+    ] = BuildOptions.bounds,
+    allow_empty: Annotated[bool, _option("allow_empty", show_default=False)] = BuildOptions.allow_empty,
     allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
     colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
     budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
@@ -76,6 +85,11 @@ def build(
     ] = None,
     preview: Annotated[str | None, _option("preview", metavar="[FILE]")] = None,
     size: Annotated[Pixels, _option("size")] = BuildOptions.size,
+    camera: Annotated[str | None, _option("camera", metavar="NAME")] = BuildOptions.camera,
+    samples: Annotated[Literal[1, 2, 4], _option("samples")] = 1,
+    background: Annotated[
+        Backdrop, _option("background", converter=read_colour, n_tokens=1, metavar="COLOUR", show_default=False)
+    ] = None,
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
@@ -103,12 +117,18 @@ def build(
         time=time,
         animation=animation,
         variants=variants,
+        ignore=ignore,
+        bounds=bounds,
+        allow_empty=allow_empty,
         allow_outside=allow_outside,
         colours=colours,
         budget=board or budget,
         dialect=dialect,
         preview=png(Path(preview)) if preview else preview is not None,
         size=size,
+        camera=camera,
+        samples=samples,
+        background=background,
         engine=engine,
         strict=strict,
     )
