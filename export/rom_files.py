@@ -29,7 +29,7 @@ from voxrt.voxelize.arguments import choice, instance
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from voxrt.export.manifest import Manifest
+    from voxrt.export.manifest import BakedLight, Manifest
     from voxrt.export.word_file import WordFile
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport
@@ -62,6 +62,7 @@ def write_rom(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
+    baked: BakedLight | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
 
@@ -79,6 +80,8 @@ def write_rom(
         What the manifest says of the build.
     view, lighting
         The camera and the lighting that the manifest names.
+    baked
+        The light that was baked into the materials.
 
     Returns
     -------
@@ -117,6 +120,7 @@ def write_rom(
         source=source,
         view=view,
         lighting=lighting,
+        baked=baked,
     )
     folder.mkdir(parents=True, exist_ok=True)
     files = RomFiles(folder / f"{rom.name}{suffix}", folder / f"{rom.name}.json")

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voxrt.baking import Bake
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
@@ -44,11 +45,13 @@ class BuildResult:
         What fitting the budget took; None if there was none.
     seconds
         Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
-        ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
+        ``"bake"``, ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
-        The author's camera and light; None if the author gave none.
+        The author's camera and light; None if the author gave none. A memory with baked light is shown flat.
+    bake
+        What was baked; None if no light was.
 
     Examples
     --------
@@ -74,6 +77,7 @@ class BuildResult:
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
     view: Camera | None = None
     lighting: Lighting | None = None
+    bake: Bake | None = None
 
     def __repr__(self) -> str:
         words, count = len(self.octree.words), len(self.rom.materials) - 1

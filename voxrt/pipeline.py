@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_name, load_asset
+from voxrt.baking import FLAT, bake, fit_baked
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.fitting import find_material, fit_budget, fit_interior
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.asset_source import Asset
+    from voxrt.baking import Bake
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
@@ -103,8 +105,8 @@ def build(
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(name, tree, scene.materials, grid)
-    rom, interior_fit, budget_fit = _made_smaller(rom, asset, scene, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
+    rom, baked, interior_fit, budget_fit = _finished(rom, asset, scene, options, clock)
+    view, lighting, unseen = _authored(scene, grid, options)
     warnings = scene.warnings + voxelization.warnings + unseen
     _refuse_warnings(asset, scene, warnings, options)
     outputs: dict[str, Path] = {}
@@ -121,6 +123,7 @@ def build(
                 source=export.Source(as_text(Path(source).name), _settings(options)),
                 view=view,
                 lighting=lighting,
+                baked=None if baked is None else export.BakedLight(**asdict(baked)),
             )
         outputs |= {"mem": files.mem, "manifest": files.manifest}
     picture = None
@@ -142,6 +145,7 @@ def build(
         {"voxelize": voxelization.seconds},
         view,
         lighting,
+        baked,
     )
 
 
@@ -227,21 +231,29 @@ def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene
     return scene, grid, voxelization
 
 
-def _made_smaller(
+def _finished(
     rom: Rom, asset: Asset, scene: Scene, options: BuildOptions, clock: _Clock
-) -> tuple[Rom, InteriorFit | None, BudgetFit | None]:
-    """Give hidden voxels their material and fit the budget, if that is asked for."""
-    interior_fit, budget_fit = None, None
+) -> tuple[Rom, Bake | None, InteriorFit | None, BudgetFit | None]:
+    """Give hidden voxels their material, bake light and fit the budget, if that is asked for."""
+    light, baked, interior_fit, budget_fit = None, None, None, None
     interior, budget = options.interior, options.budget
-    if interior != "keep":
+    if interior not in ("keep", "any"):
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(_label(asset, scene), scene, interior)
-            rom, interior_fit = fit_interior(rom, material)
+            rom, interior_fit = fit_interior(rom, find_material(_label(asset, scene), scene, interior))
+    if options.bake:
+        with clock.stage("bake"):
+            rom, light, baked = bake(rom, scene, options)
+    if interior == "any":  # what hidden voxels may share depends on the colours of all others
+        with clock.stage("interior"):
+            rom, interior_fit = fit_interior(rom, None)
     if budget is not None:
         with clock.stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
-    return rom, interior_fit, budget_fit
+            if light is None or baked is None:
+                rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            else:
+                rom, budget_fit, baked = fit_baked(rom, light, baked, words, options)
+    return rom, baked, interior_fit, budget_fit
 
 
 def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -257,6 +269,7 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
         "colours": options.colours,
+        "bake": options.bake,
     }
 
 
@@ -288,8 +301,13 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(
+    scene: Scene, grid: Grid, options: BuildOptions
+) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold.
+
+    A memory with baked light is shown flat, and its author's light is not used.
+    """
     view, lighting, unseen = None, None, []
     if scene.viewpoint is not None:
         try:
@@ -300,6 +318,10 @@ def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None,
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
         unseen.append(SceneWarning("light", str(error)))
+    if options.bake:
+        if lighting is not None and lighting.on:
+            unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
+        lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)
     return view, lighting, tuple(unseen)
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.arguments import colour, real, vector, whole
-from voxrt.voxelize.colour.srgb import linear_from_srgb
+from voxrt.voxelize.arguments import vector, whole
+from voxrt.voxelize.colour.srgb import linear_from_hex
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,31 +78,15 @@ class Daylight:
         return _SUN_LIGHT if any(self.sun) else 0.0
 
 
-def sky_light(name: str, value: object) -> tuple[float, float, float]:
-    """Return the sky's light from a strength (0.4), or from a colour (``"#rrggbb"`` or three integers), linear.
-
-    Raises
-    ------
-    TypeError, ValueError
-        It is neither.
+def sky_light(value: float | str) -> tuple[float, float, float]:
+    """Return the sky's light from a strength, or from a colour like ``#9db4d0``.
 
     Examples
     --------
-    >>> sky_light("sky", 0.5), sky_light("sky", "#ff0000")
+    >>> sky_light(0.5), sky_light("#ff0000")
     ((0.5, 0.5, 0.5), (1.0, 0.0, 0.0))
     """
-    if isinstance(value, str):
-        digits = value.removeprefix("#")
-        if not (len(digits) == 6 and value.startswith("#") and all(one in "0123456789abcdefABCDEF" for one in digits)):
-            raise ValueError(f"{name} must be a strength like 0.4 or a colour like #9db4d0, not {value!r}")
-        value = tuple(bytes.fromhex(digits))
-    if isinstance(value, (tuple, list)):
-        red, green, blue = linear_from_srgb(colour(name, value)).tolist()
-        return red, green, blue
-    strength = real(name, value)
-    if not 0 <= strength <= _BRIGHTEST:
-        raise ValueError(f"{name} must be a strength of 0 … {_BRIGHTEST:g}, not {strength:g}")
-    return strength, strength, strength
+    return linear_from_hex("sky", value) if isinstance(value, str) else (value, value, value)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

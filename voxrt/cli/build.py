@@ -9,7 +9,20 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
+from voxrt.cli.arguments import (
+    Direction,
+    Pixels,
+    Reporting,
+    UsageError,
+    levels,
+    metres,
+    png,
+    samples,
+    seconds,
+    shades,
+    sky_light,
+    words,
+)
 from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.results import build_report, print_json
@@ -47,6 +60,10 @@ def build(
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
     allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
     colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
+    bake: Annotated[bool, _option("bake", show_default=False)] = BuildOptions.bake,
+    sun: Annotated[Direction, _option("sun")] = BuildOptions.sun,
+    sky: Annotated[float | str, _option("sky", converter=sky_light, metavar="STRENGTH|COLOUR")] = BuildOptions.sky,
+    bake_samples: Annotated[int, _option("bake_samples", converter=samples, metavar="N")] = BuildOptions.bake_samples,
     budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
     board: Annotated[
         str | None,
@@ -66,6 +83,8 @@ def build(
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture."""
     if depth is not None and voxel_size is not None:
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
+    if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
+        raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     if board is not None and board not in voxrt.BOARDS:
@@ -84,6 +103,10 @@ def build(
         variants=variants,
         allow_outside=allow_outside,
         colours=colours,
+        bake=bake,
+        sun=sun,
+        sky=sky,
+        bake_samples=bake_samples,
         budget=board or budget,
         dialect=dialect,
         preview=png(Path(preview)) if preview else preview is not None,
@@ -91,7 +114,7 @@ def build(
         engine=engine,
         strict=strict,
     )
-    stages = 6 + bool(options.preview) + (interior != "keep") + (options.budget is not None)
+    stages = 6 + bool(options.preview) + (interior != "keep") + bake + (options.budget is not None)
     with stage_bar(stages) as progress:
         result = voxrt.build(asset, output, options, progress=progress)
     warn(result.warnings)
@@ -121,6 +144,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
         *([("interior", _interior(result.interior, rom))] if result.interior else []),
+        *([("baked", _baked(result.bake))] if result.bake else []),
         *([("budget", _budget(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
@@ -132,6 +156,13 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
 def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
     made = "of any material" if interior.material is None else f"of {rom.materials[interior.material].name}"
     return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
+
+
+def _baked(bake: voxrt.Bake) -> str:
+    return (
+        f"{bake.voxels:,} voxels, {bake.samples} rays to the sky each; {bake.words:,} words, "
+        f"{bake.words / bake.words_before:.1f} times the {bake.words_before:,} without baked light"
+    )
 
 
 def _budget(budget: voxrt.BudgetFit) -> str:
