@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.octree.camera import CAMERA_LIGHT, THREE_QUARTER
+from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
@@ -91,7 +91,7 @@ def fit_interior(rom: Rom, material: int | None) -> tuple[Rom, InteriorFit]:
 
 
 def fit_budget(
-    rom: Rom, words: int, size: tuple[int, int], threads: int, *, lighting: Lighting = CAMERA_LIGHT
+    rom: Rom, words: int, size: tuple[int, int], threads: int, *, lighting: Lighting = PLAIN_LIGHTING
 ) -> tuple[Rom, BudgetFit]:
     """Fit `rom` to a memory of so many words; pictures of `size` pixels tell how like it is to what it was."""
     colours = np.array([material.colour for material in rom.materials], np.uint8)
@@ -112,7 +112,7 @@ class Views:
     size = (320, 240)
     """Pixels."""
 
-    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = CAMERA_LIGHT) -> None:
+    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = PLAIN_LIGHTING) -> None:
         self._rom = rom
         self._threads = threads
         self._lighting = lighting

@@ -117,16 +117,26 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
     Raises
     ------
     ViewpointError
-        The eye is its own target, is straight above or below it, or is too far away for the registers.
+        The camera is too far away for the registers, or its `up` points along the line of sight.
+
+    Examples
+    --------
+    A camera that looks straight down has the scene's -z axis at the top of its picture, as a map:
+
+    >>> from voxrt.voxelize import Grid, Viewpoint
+    >>> camera = authored_camera(Viewpoint((4, 9, 4), (4, 0, 4)), Grid(3, (0, 0, 0), 1.0), (64, 48))
+    >>> camera.look[:1], camera.up[0], camera.up[2] < 0
+    ((0,), 0, True)
     """
     eye, target = ((np.array(point) - grid.origin) / grid.voxel_size for point in (viewpoint.eye, viewpoint.target))
-    wanted = {}
+    wanted: dict[str, float] = {}
     if viewpoint.field_of_view is not None:
         # Theirs is from top to bottom, look_at's across the shorter side.
         height = 2 * np.tan(np.radians(viewpoint.field_of_view) / 2)
         wanted["field_of_view"] = float(np.degrees(2 * np.arctan(height * min(size) / size[1] / 2)))
+    up = _upright(_unit(target - eye, "the line of sight")) if viewpoint.up is None else np.array(viewpoint.up)
     try:
-        return look_at(eye, target, size=size, **wanted)
+        return look_at(eye, target, size=size, up=up, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
 
@@ -174,8 +184,7 @@ def _complete(
     """Return all registers: missing ones as of an upright right-handed camera that looks along `sight`."""
     given = up if right is None else right
     if given is None:  # look alone is a direction
-        upright = _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])
-        made = look_at(np.zeros(3), sight, size=size, up=upright)
+        made = look_at(np.zeros(3), sight, size=size, up=_upright(sight))
         return made.look, made.right, made.up
     across = _unit(right if right is not None else np.cross(sight, given), "right" if right else "look x up")
     above = np.cross(across, sight)
@@ -186,6 +195,11 @@ def _complete(
         right or _register(across * step),
         up or _register(above * step),
     )
+
+
+def _upright(sight: Vector) -> Vector:
+    """Return what points up in the picture of a camera along a unit vector: y, or -z or z along a vertical one."""
+    return _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])
 
 
 def _unit(vector: ArrayLike, name: str) -> Vector:

@@ -228,7 +228,7 @@ class Author:
             raise AuthoringError("the camera's eye and target must differ")
         if field_of_view is not None:
             field_of_view = arguments.real("field_of_view", field_of_view, above=0, below=180)
-        self._viewpoint = Viewpoint(eye, target, field_of_view)
+        self._viewpoint = Viewpoint(eye, target, field_of_view, name="camera")
 
     def light(self, position: Sequence[float]) -> None:
         """Set the point light's position, in metres.
@@ -259,6 +259,7 @@ class Author:
             self._log.warnings(),
             self._viewpoint,
             self._light,
+            () if self._viewpoint is None else (self._viewpoint,),
         )
 
     @property

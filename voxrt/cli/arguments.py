@@ -7,9 +7,11 @@ from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 from string import hexdigits
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
+
+from voxrt.backgrounds import read_background
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,6 +164,11 @@ def place(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
     return x, y, z
 
 
+def background(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int] | Literal["transparent"]:
+    """Read a background: a name or a colour."""
+    return read_background("the background", tokens[0].value)
+
+
 def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
     """Read three register values, ``0,0,-90``."""
     try:
@@ -213,6 +220,10 @@ Direction = Annotated[
     Parameter(converter=direction, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True),
 ]
 Pixel = Annotated[tuple[int, int], Parameter(converter=pixel, n_tokens=1, metavar="X,Y", show_default=False)]
+Backdrop = Annotated[
+    tuple[int, int, int] | Literal["transparent"] | None,
+    Parameter(converter=background, n_tokens=1, metavar="COLOUR", show_default=False),
+]
 Depth = Annotated[int | None, Parameter(converter=levels, metavar="N")]
 _Register = Annotated[
     tuple[int, int, int] | None,

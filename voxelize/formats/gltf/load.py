@@ -9,6 +9,7 @@ import numpy as np
 from voxrt.voxelize.collider_shapes import bounding_points, collider_around
 from voxrt.voxelize.formats.gltf.animation import posed
 from voxrt.voxelize.formats.gltf.appearance import find_variant, read_appearance
+from voxrt.voxelize.formats.gltf.cameras import read_cameras
 from voxrt.voxelize.formats.gltf.document import Document
 from voxrt.voxelize.formats.gltf.extras import refuse_misplaced
 from voxrt.voxelize.formats.gltf.materials import number_materials
@@ -69,7 +70,8 @@ def load_gltf(
     check_required_extensions(document)
     refuse_misplaced(document)
     document.gltf = posed(document, time, animation)
-    nodes = VisibleNodes(document, place_nodes(document), find_variant(document, variants))
+    hierarchy = place_nodes(document)
+    nodes = VisibleNodes(document, hierarchy, find_variant(document, variants))
     contents = list(nodes.contents())
     textures = Textures(document)
     mesh_keys = list(dict.fromkeys(content.mesh for content in contents if content.mesh is not None))
@@ -94,7 +96,11 @@ def load_gltf(
         reasons = "; ".join(one.message for one in document.log.warnings())
         problem = "has no triangles to voxelize" + (f" ({reasons})" if reasons else "")
         raise document.error("", problem, "check that the scene shows a mesh")
-    return Scene(path.stem, objects, table.materials(), document.log.warnings())
+    cameras = read_cameras(document, hierarchy)
+    viewpoint = cameras[0] if cameras else None
+    return Scene(
+        path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras
+    )
 
 
 def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialKey, int]) -> LoadedMesh:

@@ -1,5 +1,6 @@
-"""OpenUSD stages (usda, usdc, usdz), read through usd-core."""
+"""OpenUSD stages (usda, usdc, usdz), read through usd-core, which runs in a process of its own."""
 
-from voxrt.voxelize.formats.usd.load import load_usd
+from voxrt.voxelize.formats.usd.isolated import read_isolated
+from voxrt.voxelize.formats.usd.limits import Limits
 
-__all__ = ["load_usd"]
+__all__ = ["Limits", "read_isolated"]

@@ -12,6 +12,7 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.usd.geometry import Surface, solid_key, surface_of
+from voxrt.voxelize.formats.usd.images import Images
 from voxrt.voxelize.formats.usd.instancer import placed_copies
 from voxrt.voxelize.formats.usd.materials import Materials
 from voxrt.voxelize.formats.usd.physics import colliders_of
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import Shading
     from voxrt.voxelize.warning_log import WarningLog
 
@@ -58,6 +60,7 @@ class StageTraversal:
     stage: Usd.Stage
     external_files: ExternalFiles
     log: WarningLog
+    allowance: Allowance
     time: Usd.TimeCode
     materials: Materials = field(init=False)
     _transforms: UsdGeom.XformCache = field(init=False)
@@ -69,7 +72,8 @@ class StageTraversal:
     _count: int = 0
 
     def __post_init__(self) -> None:
-        self.materials = Materials(self.path, self.external_files, MaterialTable(), self.log, self.time)
+        images = Images(self.path, self.external_files, self.log, self.allowance)
+        self.materials = Materials(self.path, images, MaterialTable(), self.log, self.time)
         self._transforms = UsdGeom.XformCache(self.time)
         self._deformed = deformed_meshes(self.stage, self.time, self.log)
 
@@ -144,7 +148,7 @@ class StageTraversal:
     def _charge(self, count: int) -> None:
         self._count += count
         if self._count > MOST_OBJECTS:
-            raise DoesNotFitError(f"{self.path}: shows more than {MOST_OBJECTS:,} objects; make its instancers sparser")
+            raise DoesNotFitError(f"shows more than {MOST_OBJECTS:,} objects; make its instancers sparser")
 
     def _to_stage(self, prim: Usd.Prim) -> NDArray[np.float64]:
         return np.array(self._transforms.GetLocalToWorldTransform(prim), dtype=np.float64).T
