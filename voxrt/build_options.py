@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Fill: TypeAlias = Literal["solid", "surface"]
+Fill: TypeAlias = Literal["solid", "surface", "auto"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
@@ -44,7 +44,8 @@ class BuildOptions:
     voxel_size
         Side of a voxel in metres. Give this or `depth`, not both.
     fill
-        ``"solid"``: fill what closed surfaces enclose. ``"surface"``: keep only the shell.
+        ``"solid"``: fill what surfaces enclose, small holes or not. ``"surface"``: keep only the shell. ``"auto"``: as
+        solid, but open pieces whose openings exceed 5 % of their area together keep only their shell, as clothes.
     interior
         Material of the hidden voxels: those that no ray from outside can reach. ``"keep"``: the material of their
         object. ``"any"``: for each the material that makes the memory smallest. The name or the id of a material: that
