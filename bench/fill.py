@@ -25,9 +25,7 @@ def measure(path: Path) -> tuple[list[int], int, set[str]] | None:
     """Give the solid voxels for surface, solid and auto, the objects mostly filled, and the kinds of auto's warnings."""
     try:
         scene = voxrt.load(path, allow_outside=True)
-        built = [
-            voxrt.build(scene, depth=DEPTH, geometry="render", fill=fill) for fill in ("surface", "solid", "auto")
-        ]
+        built = [voxrt.build(scene, depth=DEPTH, geometry="render", fill=fill) for fill in ("surface", "solid", "auto")]
     except (AssetError, DoesNotFitError):
         return None
     noted = sum(warning.count for warning in built[1].warnings if warning.kind == "mostly-filled")

@@ -2,8 +2,9 @@
 
 Visibility comes from Open3D's RaycastingScene (Embree): the first triangle on a ray, the shadow rays to the sun and the
 rays to the sky. Colours come from the source: textures and vertex colours at the point hit, not from voxels. The shade
-is Lambert's; normals are smooth where they are within 45 degrees of their triangle, and face the viewer. There is no
-light from surface to surface. Open3D's own renderer (Filament) needs a GPU driver, which build machines lack.
+is Lambert's; a triangle is smooth where the normals of its corners are within 45 degrees of its own. Sides that face
+away are shaded as if they faced the viewer. There is no light from surface to surface. Open3D's own renderer (Filament)
+needs a Vulkan driver, which many machines lack.
 """
 
 from __future__ import annotations
@@ -62,7 +63,9 @@ class Reference:
         normals = np.zeros((len(welded), 3))
         for corner in range(3):
             np.add.at(normals, places.reshape(-1, 3)[:, corner], faces)
-        self._normals = _unit(normals)[places.reshape(-1, 3)]
+        smooth = _unit(normals)[places.reshape(-1, 3)]
+        is_smooth = (np.einsum("tkc,tc->tk", smooth, self._faces) > _SMOOTH).all(axis=1)
+        self._normals = np.where(is_smooth[:, None, None], smooth, self._faces[:, None])
 
     def shade(
         self, origins: np.ndarray, directions: np.ndarray, daylight: Daylight, background: np.ndarray, rays: int
@@ -77,8 +80,7 @@ class Reference:
         shares = np.column_stack([1 - uv.sum(axis=1), uv])
         points = origins[hit] + distance[hit, None] * directions[hit]
         faces = self._faces[triangle]
-        smooth = _unit(np.einsum("nk,nkc->nc", shares, self._normals[triangle]))
-        normals = np.where((np.einsum("nc,nc->n", smooth, faces) > _SMOOTH)[:, None], smooth, faces)
+        normals = _unit(np.einsum("nk,nkc->nc", shares, self._normals[triangle]))
         away = np.einsum("nc,nc->n", faces, directions[hit]) > 0
         normals[away] = -normals[away]
         faces = np.where(away[:, None], -faces, faces)

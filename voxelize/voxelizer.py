@@ -117,7 +117,9 @@ def voxelize(
             "open objects, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
         )
-    mostly_filled = [item.name for item, mostly in zip(scene.objects, result.object_mostly_filled, strict=True) if mostly]
+    mostly_filled = [
+        item.name for item, mostly in zip(scene.objects, result.object_mostly_filled, strict=True) if mostly
+    ]
     if mostly_filled:
         first, *others = mostly_filled
         more = f" and {len(others)} more" if others else ""

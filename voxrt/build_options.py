@@ -44,8 +44,9 @@ class BuildOptions:
     voxel_size
         Side of a voxel in metres. Give this or `depth`, not both.
     fill
-        ``"solid"``: fill what surfaces enclose, small holes or not. ``"surface"``: keep only the shell. ``"auto"``: as
-        solid, but open pieces whose openings exceed 5 % of their area together keep only their shell, as clothes.
+        ``"solid"``: fill what surfaces enclose, small holes or not. ``"surface"``: keep only the shell. ``"auto"``, the
+        default: as solid, but open pieces whose openings exceed 5 % of their area together keep only their shell, as
+        clothes do.
     interior
         Material of the hidden voxels: those that no ray from outside can reach. ``"keep"``: the material of their
         object. ``"any"``: for each the material that makes the memory smallest. The name or the id of a material: that
@@ -120,7 +121,7 @@ class BuildOptions:
 
     depth: int | None = None
     voxel_size: float | None = None
-    fill: Fill = "solid"
+    fill: Fill = "auto"
     interior: int | str = "keep"
     geometry: Geometry = "auto"
     pow2: Pow2 = "box"

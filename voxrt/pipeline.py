@@ -157,7 +157,7 @@ def voxelize_mesh(
     voxel_size: float | None = None,
     colours: ArrayLike | None = None,
     face_colours: ArrayLike | None = None,
-    fill: Fill = "solid",
+    fill: Fill = "auto",
     up: UpAxis | None = None,
     unit: float | None = None,
     threads: int = 0,

@@ -189,7 +189,8 @@ HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, 
     for (const auto& loop : components.loops())
         if (found.shell_only.empty() || !components.is_open(loop.vertices[0])) {
             close_loop(loop.vertices, found.triangles);
-            found.opening = std::max(found.opening, components.openings(loop.vertices[0]));
+            if (!components.is_open(loop.vertices[0])) // else it is closed by others
+                found.opening = std::max(found.opening, components.openings(loop.vertices[0]));
         }
     return found;
 }

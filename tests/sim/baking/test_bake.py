@@ -47,7 +47,9 @@ def test_a_wall_sees_half_of_sky_and_ground_and_casts_a_shadow():
     scene = white(box_mesh((0, 0, 0), (32, 2, 32)), box_mesh((14, 2, 0), (18, 30, 32)))
     light = baked(scene, grid=Grid(5, (0, 0, 0), 1), daylight=Daylight(sun=(1, 1, 0)))
     floor = light.voxels[:, 1] == 1
-    floor &= (light.voxels[:, 2] > 4) & (light.voxels[:, 2] < 27)  # light is measured before the surface: not at its end
+    floor &= (light.voxels[:, 2] > 4) & (
+        light.voxels[:, 2] < 27
+    )  # light is measured before the surface: not at its end
     lit, shaded = floor & (light.voxels[:, 0] > 20), floor & (light.voxels[:, 0] < 12)
     assert light.sun[lit].min() > 0.4
     assert light.sun[shaded].max() == 0
@@ -125,7 +127,9 @@ def test_a_sheet_shows_its_lit_side():
 
 
 def test_colliders_have_the_normals_of_their_voxels():
-    item = SceneObject("ball", box_mesh((0, 0, 0), (1, 1, 1)), np.eye(4), (voxrt.voxelize.BoxCollider((4, 4, 4), (20, 20, 20)),))
+    item = SceneObject(
+        "ball", box_mesh((0, 0, 0), (1, 1, 1)), np.eye(4), (voxrt.voxelize.BoxCollider((4, 4, 4), (20, 20, 20)),)
+    )
     light = baked(Scene("box", (item,), WHITE), grid=Grid(5, (0, 0, 0), 1))
     normals = light._surface.normals  # noqa: SLF001
     top = light.voxels[:, 1] == light.voxels[:, 1].max()
@@ -155,7 +159,10 @@ def test_the_memory_holds_the_colours_and_the_same_voxels():
     assert np.abs(found - light.colours.astype(int)).max() <= 16
     assert np.abs(found - light.colours.astype(int)).mean() < 1
     few = light.memory(5)
-    assert len({few.materials[number].colour for number in census(few.octree).voxels if number} - {(200,) * 3, (90,) * 3}) <= 5
+    assert (
+        len({few.materials[number].colour for number in census(few.octree).voxels if number} - {(200,) * 3, (90,) * 3})
+        <= 5
+    )
 
 
 def test_mirrors_are_not_baked():
