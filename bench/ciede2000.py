@@ -1,7 +1,7 @@
 """CIEDE2000, the difference of two colours as people see it.
 
-Source: Sharma, Wu and Dalal, "The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data, and
-Mathematical Observations", 2005. About 1 is just noticeable side by side; 5 is plain; 20 is another colour.
+Source: Sharma, Wu and Dalal, "The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data,
+and Mathematical Observations", 2005. About 1 is just noticeable side by side; 5 is plain; 20 is another colour.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What ``--fill`` makes of open meshes: solid voxels of the development assets with each choice.
 
 Usage: ``python bench/fill.py [--write]``. ``--write`` puts the table into ``bench/results/fill.md`` as well. It has the
-assets for which ``auto`` differs from ``solid``, or of which ``solid`` notes that an open object is mostly filled. Depth 7.
+assets for which ``auto`` differs from ``solid``, or of which ``solid`` notes that an open object is mostly filled.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ LEFT_OUT = ("malformed", "trouble", "24_gpu_instancing", "teapotScene", "PointIn
 DEPTH = 7
 
 
-def measure(path: Path) -> tuple[list[int], int, set[str]] | None:
-    """Give the solid voxels for surface, solid and auto, the objects mostly filled, and the kinds of auto's warnings."""
+def measure(path: Path) -> tuple[list[int], int] | None:
+    """Give the solid voxels for surface, solid and auto, and the open objects that solid fills for the most part."""
     try:
         scene = voxrt.load(path, allow_outside=True)
         built = [voxrt.build(scene, depth=DEPTH, geometry="render", fill=fill) for fill in ("surface", "solid", "auto")]
     except (AssetError, DoesNotFitError):
         return None
     noted = sum(warning.count for warning in built[1].warnings if warning.kind == "mostly-filled")
-    return [one.solid_voxels for one in built], noted, {warning.kind for warning in built[2].warnings}
+    return [one.solid_voxels for one in built], noted
 
 
 def main() -> None:
@@ -44,7 +44,7 @@ def main() -> None:
             continue
         if (found := measure(path)) is None:
             continue
-        (surface, solid, auto), noted, _ = found
+        (surface, solid, auto), noted = found
         if solid == auto and not noted:
             same += 1
             continue

@@ -5,8 +5,8 @@ Usage: ``python bench/likeness.py [--write] [--only WORD] [--pictures FOLDER]``.
 the project is developed with (``VOXRT_ASSETS``).
 
 Each asset is voxelized at depth 8 and rendered with brightness by face, and with baked light. The reference
-(``reference_picture.py``) shows its triangles from the same camera, under the sun and the sky of the baked light. All pictures
-have 2 x 2 rays per pixel, averaged in linear light. Figures are those of the pixels that show the asset in both
+(``reference_picture.py``) shows its triangles from the same camera, under the sun and the sky of the baked light. All
+pictures have 2 x 2 rays per pixel, averaged in linear light. Figures are those of the pixels that show the asset in both
 pictures, but for the SSIM, which is that of the whole pictures.
 """
 
@@ -19,8 +19,8 @@ from pathlib import Path
 
 import numpy as np
 from ciede2000 import ciede2000, lab
-from reference_picture import Reference
 from PIL import Image, ImageDraw
+from reference_picture import Reference
 
 import voxrt
 from voxrt.octree.camera import Lighting, pixel_directions

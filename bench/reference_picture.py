@@ -10,14 +10,17 @@ needs a Vulkan driver, which many machines lack.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import open3d
 
-from voxrt.sim.baking.daylight import Daylight
-from voxrt.voxelize import Grid, Scene
 from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import linear_from_srgb
+
+if TYPE_CHECKING:
+    from voxrt.sim.baking.daylight import Daylight
+    from voxrt.voxelize import Grid, Scene
 
 _SMOOTH = np.cos(np.radians(45.0))
 _GROUND = 0.5

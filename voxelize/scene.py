@@ -37,6 +37,10 @@ class SceneObject:
         The colliders that its author gave it; they are filled with `collider_material`.
     collider_material
         Material id 1 … 255.
+    hidden
+        Whether it is not shown: its colliders count with ``geometry="collider"`` alone, its triangles never.
+    represented
+        Whether other objects' colliders stand for it with ``geometry="collider"``: it needs none of its own.
 
     Raises
     ------
@@ -55,6 +59,8 @@ class SceneObject:
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     colliders: tuple[Collider, ...] = ()
     collider_material: int = 1
+    hidden: bool = False
+    represented: bool = False
 
     def __post_init__(self) -> None:
         arguments.text("SceneObject.name", self.name)
@@ -70,6 +76,8 @@ class SceneObject:
         object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
         object.__setattr__(self, "colliders", colliders)
         object.__setattr__(self, "collider_material", material)
+        object.__setattr__(self, "hidden", arguments.flag("SceneObject.hidden", self.hidden))
+        object.__setattr__(self, "represented", arguments.flag("SceneObject.represented", self.represented))
 
     def __repr__(self) -> str:
         return f"SceneObject(name={self.name!r}, mesh={self.mesh!r}, colliders={len(self.colliders)})"

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MOST_THREADS = 1024
+_MOST_NAMES = 20
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no material per triangle: the part has one
 _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -109,7 +110,10 @@ def voxelize(
         for item, (source, moved, grown), mode, count in zip(
             scene.objects, reports, result.object_modes, result.object_voxels, strict=True
         )
+        if geometry == "collider" or not item.hidden
     )
+    if without := [report.name for report in objects if not report.voxels]:
+        parts.warn("no-voxels", f"objects got no voxel: {_names(without)}", len(without))
     standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
     if standing_open:
         parts.warn(
@@ -125,8 +129,8 @@ def voxelize(
         more = f" and {len(others)} more" if others else ""
         parts.warn(
             "mostly-filled",
-            f"open objects were filled, and are more inside than shell ({first}{more}): where one is a thin sheet, such "
-            "as cloth, build it with fill auto or surface",
+            f"open objects were filled, and are more inside than shell ({first}{more}): build thin sheets, such as "
+            "cloth, with fill auto or surface",
             len(mostly_filled),
         )
     if pieces := int(result.object_flipped.sum()):
@@ -147,6 +151,12 @@ def voxelize(
         octant_materials=result.octant_materials,
     )
     return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
+
+
+def _names(names: list[str]) -> str:
+    """Return names as a message lists them; the reports of the objects list all."""
+    shown = ", ".join(names[:_MOST_NAMES])
+    return shown + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
 
 
 class _Parts:

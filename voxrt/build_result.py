@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from voxrt.export import Blob, Provenance
 from voxrt.octree import census, to_dense, to_points
 
 if TYPE_CHECKING:
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.baking import Bake
+    from voxrt.export import Source
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
@@ -50,6 +52,8 @@ class BuildResult:
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
         The author's camera and light; None if the author gave none. A memory with baked light is shown flat.
+    source
+        The name of the asset, and the options of the build.
     bake
         What was baked; None if no light was.
 
@@ -77,6 +81,7 @@ class BuildResult:
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
     view: Camera | None = None
     lighting: Lighting | None = None
+    source: Source | None = None
     bake: Bake | None = None
 
     def __repr__(self) -> str:
@@ -86,6 +91,12 @@ class BuildResult:
             f"<BuildResult {self.rom.name!r}: depth {self.octree.depth}, {words:,} words, {self.solid_voxels:,} solid "
             f"voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
         )
+
+    @property
+    def blob(self) -> Blob:
+        """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
+        told = Provenance(self.source, self.objects, self.warnings, self.seconds)
+        return Blob(self.rom, self.view, self.lighting, told)
 
     @property
     def octree(self) -> Octree:

@@ -155,5 +155,4 @@ def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
     if path.is_dir():
         raise OutputError(f"{path}: is a folder; name a file")
     with writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
         sim.write_png(path, pixels)

@@ -8,11 +8,12 @@ from contextlib import contextmanager
 
 import numpy as np
 from fakes.browser import chromium
+from fakes.scene_reader import ReadyScenes
 from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import AssetReader, board_scene
+from voxrt.board_scenes import asset_reader, board_scene
 from voxrt.export import Blob, write_rom
 from voxrt.octree import Octree, Rom
 from voxrt.serve.scene_library import SceneLibrary
@@ -41,7 +42,8 @@ def serving(scene, port=0):
 
     async def serve():
         kept["stop"] = asyncio.Event()
-        library = SceneLibrary(AssetReader(depth=4), {scene.name: lambda: scene})
+        own = ReadyScenes(**{scene.name: scene})
+        library = SceneLibrary(asset_reader(depth=4), own.files, own)
         async with FrameServer(ModelDevice(), library, ServerOptions(port=port)) as server:
             await server.session.renderer.load(scene, lambda *_: None)
             kept["server"] = server

@@ -204,7 +204,8 @@ class Author:
             path = f"{name}/{one.name.strip('/')}"
             with np.errstate(over="ignore", invalid="ignore"):
                 placed = outer @ one.transform
-            self._enter(SceneObject(path, mesh, _finite(path, placed), colliders, filling or 1))
+            flags = (one.hidden and not (collider and filling), one.represented)
+            self._enter(SceneObject(path, mesh, _finite(path, placed), colliders, filling or 1, *flags))
         for warning in asset.warnings:
             self._log.add(warning.kind, f"{name}: {warning.message}", warning.count)
 
@@ -239,6 +240,10 @@ class Author:
             A position that is not three finite numbers.
         """
         self._light = PointLight(arguments.vector("position", position))
+
+    def warn(self, kind: str, message: str) -> None:
+        """Count one more case of a warning about how the scene was written."""
+        self._log.add(kind, message)
 
     def build(self) -> Scene:
         """Return the scene.

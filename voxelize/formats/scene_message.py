@@ -95,6 +95,8 @@ class ObjectsMessage(msgspec.Struct, frozen=True):
     meshes: list[Row]
     colliders: list[list[Row]]
     materials: list[Row]
+    hidden: list[bool]
+    represented: list[bool]
     transforms: ArrayMessage
 
 
@@ -171,6 +173,8 @@ def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
         [meshes.number(one.mesh) for one in scene.objects],
         [[colliders.number(collider) for collider in one.colliders] for one in scene.objects],
         [one.collider_material for one in scene.objects],
+        [one.hidden for one in scene.objects],
+        [one.represented for one in scene.objects],
         arrays.add(np.array([one.transform for one in scene.objects], dtype=np.float64).reshape(-1, 4, 4)),
     )
     sent_meshes = [
@@ -257,9 +261,7 @@ def _scene(message: SceneMessage, arrays: NDArray[np.uint8]) -> Scene:
 
     textures = [Texture(array(one.pixels), one.wrap, one.nearest) for one in message.textures]  # type: ignore[arg-type]
     appearances = [
-        Appearance(
-            one.name, one.factor, None if one.texture is None else textures[one.texture], one.cutoff, one.mirror
-        )
+        Appearance(one.name, one.factor, None if one.texture is None else textures[one.texture], one.cutoff, one.mirror)
         for one in message.appearances
     ]
     meshes = [
@@ -281,13 +283,15 @@ def _scene(message: SceneMessage, arrays: NDArray[np.uint8]) -> Scene:
     colliders = [_collider(one, [array(part) for part in one.arrays]) for one in message.colliders]
     cameras = tuple(Viewpoint(*camera) for camera in message.cameras)
     objects = tuple(
-        SceneObject(name, meshes[mesh], transform, tuple(colliders[row] for row in own), material)
-        for name, mesh, transform, own, material in zip(
+        SceneObject(name, meshes[mesh], transform, tuple(colliders[row] for row in own), material, *flags)
+        for name, mesh, transform, own, material, *flags in zip(
             message.objects.names,
             message.objects.meshes,
             array(message.objects.transforms),
             message.objects.colliders,
             message.objects.materials,
+            message.objects.hidden,
+            message.objects.represented,
             strict=True,
         )
     )
@@ -337,9 +341,9 @@ class _Arrays:
         if id(array) in self._known:  # the array is kept, for an id is unique only while its array lives
             return self._known[id(array)][1]
         little = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-        message = ArrayMessage(little.dtype.str, little.shape, self.length)  # type: ignore[arg-type]
+        message = ArrayMessage(little.dtype.str, little.shape, self.length)
         if little.size:
-            self.parts.append(memoryview(little.reshape(-1)).cast("B"))
+            self.parts.append(little.reshape(-1).view(np.uint8).data)
         padding = -little.nbytes % _ALIGNMENT
         self.parts.append(bytes(padding))
         self.length += little.nbytes + padding

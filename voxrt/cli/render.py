@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, place, png, whole
+from voxrt.build_options import Dialect, Engine  # noqa: TC001 - cyclopts reads the signature
+from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, choice, place, png, whole
 from voxrt.cli.messages import picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
-from voxrt.cli.source import aim
+from voxrt.cli.source import read_source
 
 if TYPE_CHECKING:
     from voxrt import Lighting
@@ -22,16 +23,16 @@ Triple = tuple[int, int, int]
 
 
 def render(
-    rom: Annotated[Path, Parameter(metavar="ROM")],
+    scene: Annotated[Path, Parameter(metavar="ROM|ASSET")],
     /,
     *,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
-    engine: Literal["rtl", "model"] = "rtl",
+    engine: Annotated[Engine, Parameter(converter=choice)] = "rtl",
     config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     size: Pixels = (640, 480),
     sight: Annotated[Sight, Parameter(name="*")] = Sight(),  # noqa: B008
     depth: Depth = None,
-    dialect: Literal["report", "seed-rtl", "msb"] | None = None,
+    dialect: Annotated[Dialect | None, Parameter(converter=choice)] = None,
     light: Annotated[
         Triple | None, Parameter(converter=place, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True)
     ] = None,
@@ -43,12 +44,13 @@ def render(
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
-    """Render a picture of a memory, with the same pixels as the hardware.
+    """Render a picture of a memory or an asset, with the same pixels as the hardware.
 
     Parameters
     ----------
-    rom
-        A memory: .mem or another format. Its manifest, the .json beside it, states materials, depth and dialect.
+    scene
+        A memory: .mem or another format. Its manifest, the .json beside it, states materials, depth and dialect. Or an
+        asset, which is built first.
     output
         The picture, a .png. The default is NAME.png in this folder.
     engine
@@ -62,7 +64,7 @@ def render(
     sight
         The camera.
     depth
-        Levels of the octree, for a memory without a manifest.
+        Levels of the octree, for an asset or for a memory without a manifest.
     dialect
         How the memory encodes materials, for a memory without a manifest.
     light
@@ -87,11 +89,10 @@ def render(
     reporting
         How results are printed.
     """
-    file = png(Path(f"{rom.stem}.png") if output is None else output)
-    blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
-    warn(warnings)
-    memory = blob.rom
-    camera = aim(memory, blob.view, size, sight)
+    file = png(Path(f"{scene.stem}.png") if output is None else output)
+    source = read_source(scene, depth, dialect)
+    blob, memory = source.blob, source.rom
+    camera = source.camera(size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, shading)
     if config is None:
         config = "lit" if lighting.features else "tiny"
@@ -126,10 +127,10 @@ def render(
         rows = [("picture", picture_cost(frame, engine)), ("wrote", str(file))]
         if check:
             rows.append(("check", f"{wrong_pixels} pixels differ between the hardware and its model"))
-        summarize(f"{rom.name}:", rows)
+        summarize(f"{scene.name}:", rows)
     if wrong_pixels:
         raise voxrt.SimulatorError(
-            f"{rom}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
+            f"{scene}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
 
 

@@ -73,7 +73,7 @@ def test_every_voxel_has_the_light_of_rational_rays(daylight):
     # The points and normals are taken as they are; what they see, and what it comes to, is found again.
     scene = scene_of(icosphere(2, (8, 9, 8), 5.5), box_mesh((1, 1, 1), (15, 2, 15), 2))
     light = baked(scene, grid=Grid(4, (0, 0, 0), 1), daylight=daylight)
-    cube, surface = to_dense(light.rom.octree), light._surface  # noqa: SLF001
+    cube, surface = to_dense(light.rom.octree), light._surface
     daylight = daylight or Daylight()
     sky, sun = sky_directions(daylight.samples), sun_direction(daylight)
     chosen = np.random.default_rng(0).choice(len(light.voxels), 25, replace=False)
@@ -82,7 +82,7 @@ def test_every_voxel_has_the_light_of_rational_rays(daylight):
         by_voxel.setdefault(number, []).append(row)
     for index in chosen.tolist():
         candidates = []
-        for row in by_voxel[int(light._rows[index])]:  # noqa: SLF001
+        for row in by_voxel[int(light._rows[index])]:
             normal, origin = surface.normals[row] / 16384, 16 * surface.origins[row] + 8
 
             def share(directions, normal=normal, origin=origin):
@@ -101,7 +101,7 @@ def test_every_voxel_has_the_light_of_rational_rays(daylight):
 
 def test_normals_of_a_sphere_are_radial_and_rays_start_in_empty_voxels_beside_it():
     light = baked(white(icosphere(4, (16, 16, 16), 13)), grid=Grid(5, (0, 0, 0), 1))
-    surface = light._surface  # noqa: SLF001
+    surface = light._surface
     radial = light.voxels + 0.5 - 16
     radial /= np.linalg.norm(radial, axis=1, keepdims=True)
     assert len(surface.voxels) == len(light.voxels)
@@ -114,7 +114,7 @@ def test_normals_of_a_sphere_are_radial_and_rays_start_in_empty_voxels_beside_it
 
 def test_a_box_is_smooth_on_its_faces_and_has_edges():
     light = baked(white(box_mesh((4, 4, 4), (28, 28, 28))), grid=Grid(5, (0, 0, 0), 1))
-    normals = light._surface.normals  # noqa: SLF001
+    normals = light._surface.normals
     top = (light.voxels[:, 1] == 27) & (np.abs(light.voxels[:, [0, 2]] - 15.5).max(axis=1) < 10)
     assert (normals[top] == (0, 16384, 0)).all()
 
@@ -131,7 +131,7 @@ def test_colliders_have_the_normals_of_their_voxels():
         "ball", box_mesh((0, 0, 0), (1, 1, 1)), np.eye(4), (voxrt.voxelize.BoxCollider((4, 4, 4), (20, 20, 20)),)
     )
     light = baked(Scene("box", (item,), WHITE), grid=Grid(5, (0, 0, 0), 1))
-    normals = light._surface.normals  # noqa: SLF001
+    normals = light._surface.normals
     top = light.voxels[:, 1] == light.voxels[:, 1].max()
     inner = top & (np.abs(light.voxels[:, [0, 2]] - 11.5).max(axis=1) < 5)
     assert inner.any()

@@ -20,7 +20,7 @@ from voxrt.voxelize.formats.gltf.unused import refuse_broken_parts
 from voxrt.voxelize.formats.gltf.visible_nodes import VisibleNodes
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
-from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.mesh import NO_TRIANGLES
 from voxrt.voxelize.scene import Scene, SceneObject
 
 if TYPE_CHECKING:
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.materials import MaterialKey
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.visible_nodes import NodeContent, PoseKey
-
-_NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
+    from voxrt.voxelize.mesh import Mesh
 
 
 def load_gltf(
@@ -98,9 +97,7 @@ def load_gltf(
         raise document.error("", problem, "check that the scene shows a mesh")
     cameras = read_cameras(document, hierarchy)
     viewpoint = cameras[0] if cameras else None
-    return Scene(
-        path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras
-    )
+    return Scene(path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras)
 
 
 def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialKey, int]) -> LoadedMesh:
@@ -119,7 +116,7 @@ def _objects(
 ) -> Iterator[SceneObject]:
     """Make the objects of a node, one per instance; none where its mesh is fully transparent."""
     if content.mesh is None:
-        mesh, material = _NO_TRIANGLES, ids[content.material]
+        mesh, material = NO_TRIANGLES, ids[content.material]
     else:
         mesh = meshes[content.mesh]
         if not len(mesh.triangles):

@@ -36,8 +36,7 @@ def read_cameras(
     prims = [
         prim
         for prim in Usd.PrimRange(stage.GetPseudoRoot(), PREDICATE)
-        if prim.IsA(UsdGeom.Camera)
-        and UsdGeom.Imageable(prim).ComputeVisibility(time) != UsdGeom.Tokens.invisible
+        if prim.IsA(UsdGeom.Camera) and UsdGeom.Imageable(prim).ComputeVisibility(time) != UsdGeom.Tokens.invisible
     ]
     repeats = Counter(prim.GetName() for prim in prims)
     found = []

@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.scene_message import Failure
 
 _CHILD = "voxrt.voxelize.formats.usd.child"
-_THREADS = 4  # each takes memory of its own, whatever it does
+# Each thread takes memory of its own, whatever it does.
+_ENVIRONMENT = {"PXR_WORK_THREAD_LIMIT": "4", "MALLOC_ARENA_MAX": "2", "OPENBLAS_NUM_THREADS": "1"}
 _REPAIR = "it is damaged, or made to do harm: repair it or export it again"
 
 
@@ -97,13 +98,13 @@ def read_isolated(
     )
     # usd-core leaves notes about its crashes in the temporary folder: it gets one that is removed.
     with tempfile.TemporaryDirectory(prefix="voxrt-usd-") as folder, tempfile.TemporaryFile() as printed:
-        child = subprocess.Popen(
+        child = subprocess.Popen(  # noqa: S603 - our own module; the file's name is one argument
             # -P: the folder that the user works in may hold a hostile numpy.py.
             [sys.executable, "-P", "-m", _CHILD, path, msgspec.json.encode(request)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=printed,
-            env=os.environ | {"TMPDIR": folder, "PXR_WORK_THREAD_LIMIT": str(_THREADS), "MALLOC_ARENA_MAX": "2"},
+            env=os.environ | {"TMPDIR": folder, **_ENVIRONMENT},
         )
         assert child.stdout is not None
         try:
@@ -135,7 +136,7 @@ def _receive(pipe: IO[bytes], most: int) -> tuple[bytes, NDArray[np.uint8]] | No
         return None
     text = pipe.read(of_text)
     arrays = np.empty(of_arrays, np.uint8)
-    view, filled = memoryview(arrays), 0
+    view, filled = arrays.data, 0
     while filled < of_arrays:
         count = pipe.readinto(view[filled:])  # type: ignore[attr-defined]
         if not count:

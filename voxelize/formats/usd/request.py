@@ -6,7 +6,7 @@ import msgspec
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True):
-    """The options of :func:`voxrt.voxelize.formats.usd.read_isolated`, its limits, and the parent's process id."""
+    """The options and limits of ``read_isolated``, and the process id of its caller."""
 
     parent: int
     variants: tuple[str, ...]

@@ -37,7 +37,7 @@ def read_stage(
     time: float | None = None,
     allow_outside: bool = False,
 ) -> Scene:
-    """Read a USD stage in this process; :func:`voxrt.voxelize.formats.usd.read_isolated` says how.
+    """Read a USD stage in this process; :func:`voxrt.voxelize.formats.usd.isolated.read_isolated` says how.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def read_stage(
     allowance
         Told of each file before it is opened.
     variants, time, allow_outside
-        As for :func:`voxrt.voxelize.formats.usd.read_isolated`.
+        As for :func:`voxrt.voxelize.formats.usd.isolated.read_isolated`.
 
     Raises
     ------
