@@ -31,6 +31,7 @@ __all__ = [
     "BOARDS",
     "WRITABLE_SUFFIXES",
     "AssetError",
+    "Bake",
     "BudgetFit",
     "BuildOptions",
     "BuildResult",
@@ -89,6 +90,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "voxrt.baking": ("Bake",),
     "voxrt.build_options": ("BuildOptions",),
     "voxrt.build_result": ("BuildResult",),
     "voxrt.export": (
@@ -168,6 +170,7 @@ _ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 
 if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
     from voxrt import board, export, octree, serve, sim, view, voxelize
+    from voxrt.baking import Bake
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
     from voxrt.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve
