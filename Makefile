@@ -7,7 +7,7 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint lint-workflows hardware docs bench sanitize fuzz clean
+.PHONY: help demo test lint lint-workflows hardware docs bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -17,6 +17,7 @@ help:
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
+	@echo "make soak MINUTES=15  load and attack the frame server, write bench/results/soak.md"
 	@echo "make sanitize  run the native voxelizer and octree under the address, undefined and thread sanitizers"
 	@echo "make fuzz      fuzz both under the address and undefined sanitizers, RUNS=1000000 times each"
 	@echo "make clean   remove what the others made"
@@ -51,6 +52,10 @@ lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
+
+MINUTES ?= 15
+soak: $(VENV)/.installed
+	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
 # The registers as generated, the cocotb benches and what they cover, the formal proofs.
 hardware: $(VENV)/.hardware

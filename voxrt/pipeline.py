@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, contextmanager
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
+from voxrt.baking import FLAT, bake, fit_baked
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.estimate import estimate_build
@@ -23,7 +24,14 @@ from voxrt.outputs import writing
 from voxrt.pictures import Picture, render
 from voxrt.sim import SimulatorError
 from voxrt.sim.image import encode_png
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.viewpoint import (
+    ViewpointError,
+    aim_camera,
+    authored_camera,
+    authored_lighting,
+    named_camera,
+    stands_inside,
+)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -33,12 +41,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.asset_source import Asset
+    from voxrt.baking import Bake
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Grid, Voxelization
+    from voxrt.voxelize import Grid, Viewpoint, Voxelization
 
 
 _MUCH = 10
@@ -116,6 +125,9 @@ def build(
     clock = _Clock(progress)
     with clock.stage("load"):
         loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+        if options.camera is not None:
+            viewpoint = named_camera(asset_label(asset), loaded, options.camera)
+            loaded = replace(loaded, viewpoint=viewpoint)
     _refuse_warnings(asset, loaded.warnings, options)
     scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
@@ -123,15 +135,15 @@ def build(
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
-    rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
+    rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
+    view, lighting, unseen = _authored(scene, rom, options)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
     _refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
             try:
-                picture = _picture(rom, scene, lighting, options)
+                picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
             except (SimulatorError, ViewpointError) as error:
                 unseen_picture = error  # the memory is sound: it is written first
     result = BuildResult(
@@ -148,6 +160,7 @@ def build(
         view,
         lighting,
         export.Source(source, _settings(options)),
+        baked,
     )
     with clock.stage("write"):
         result.outputs.update(_write(files, result, options))
@@ -166,7 +179,7 @@ def voxelize_mesh(
     voxel_size: float | None = None,
     colours: ArrayLike | None = None,
     face_colours: ArrayLike | None = None,
-    fill: Fill = "solid",
+    fill: Fill = "auto",
     up: UpAxis | None = None,
     unit: float | None = None,
     threads: int = 0,
@@ -247,23 +260,36 @@ def _voxelize(
     return scene, grid, voxelization
 
 
-def _made_smaller(
-    rom: Rom, asset: Asset, loaded: Scene, options: BuildOptions, clock: _Clock
-) -> tuple[Rom, InteriorFit | None, BudgetFit | None]:
-    """Give hidden voxels their material and fit the budget, if that is asked for."""
-    interior_fit, budget_fit = None, None
+def _finished(
+    rom: Rom, asset: Asset, scenes: tuple[Scene, Scene], options: BuildOptions, clock: _Clock
+) -> tuple[Rom, Bake | None, InteriorFit | None, BudgetFit | None]:
+    """Give hidden voxels their material, bake light and fit the budget, if that is asked for.
+
+    `scenes`: as it was loaded, and with its colours reduced to materials.
+    """
+    loaded, scene = scenes
+    light, baked, interior_fit, budget_fit = None, None, None, None
     interior, budget = options.interior, options.budget
-    if interior != "keep":
+    if interior not in ("keep", "any"):
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
+            material = find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
+    if options.bake:
+        with clock.stage("bake"):
+            rom, light, baked = bake(rom, scene, options)
+    if interior == "any":  # what hidden voxels may share depends on the colours of all others
+        with clock.stage("interior"):
+            rom, interior_fit = fit_interior(rom, None)
     if budget is not None:
         with clock.stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            if light is None or baked is None:
+                rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            else:
+                rom, budget_fit, baked = fit_baked(rom, light, baked, words, options)
             if budget_fit.fit.percent_changed > _MUCH:
                 budget_fit = replace(budget_fit, lossless=_lossless_depth(loaded, options, rom.octree.depth, words))
-    return rom, interior_fit, budget_fit
+    return rom, baked, interior_fit, budget_fit
 
 
 def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int) -> tuple[int, int] | None:
@@ -290,6 +316,7 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
         "colours": options.colours,
+        "bake": options.bake,
     }
     if options.ignore:
         settings["ignore"] = ", ".join(options.ignore)
@@ -324,6 +351,7 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
                 source=result.source,
                 view=result.view,
                 lighting=result.lighting,
+                baked=None if result.bake is None else export.BakedLight(**asdict(result.bake)),
                 beside=pictures,
             )
             outputs = {"mem": written.mem, "manifest": written.manifest}
@@ -332,9 +360,9 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
     return outputs
 
 
-def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    if scene.viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(scene.viewpoint, rom.grid, options.size)
+def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    if viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
         camera = aim_camera(rom, options.size)
     frame = render(
@@ -342,25 +370,43 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         camera,
         size=options.size,
         engine=options.engine,
-        config="tiny" if lighting is None else "lit",
+        config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(
+    scene: Scene, rom: Rom, options: BuildOptions
+) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used.
+
+    A memory with baked light is shown flat, and its author's light is not used.
+    """
     view, lighting, unseen = None, None, []
+    grid = rom.grid
+    assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
+    if view is not None and stands_inside(rom, view):
+        unseen.append(
+            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
+        )
+        view = None
     try:
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
         unseen.append(SceneWarning("light", str(error)))
+    if options.bake:
+        if lighting is not None and lighting.on:
+            unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
+        lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)
     return view, lighting, tuple(unseen)
 
 

@@ -91,8 +91,12 @@ def main() -> None:
             longest = max(longest, time.monotonic() - begun)
             if time.monotonic() - start > arguments.seconds:
                 break
-    print(f"{seen.total()} files of {len(sources)} seeds in {time.monotonic() - start:.0f} s, 0 dead parents")
-    print(", ".join(f"{kind}: {count}" for kind, count in seen.most_common()) + f"; the longest {longest:.1f} s")
+    took = time.monotonic() - start
+    kinds = ", ".join(f"{kind}: {count}" for kind, count in seen.most_common())
+    sys.stdout.write(
+        f"{seen.total()} files of {len(sources)} seeds in {took:.0f} s, 0 dead parents\n"
+        f"{kinds}; the longest {longest:.1f} s\n"
+    )
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ def test_an_address_is_no_path():
 
 
 def test_meshopt_streams_of_version_1():
-    """Streams and elements of meshoptimizer itself, with all modes of channels and the colour filter."""
+    """Streams and elements of meshoptimizer's own coder, with every mode of channels and the colour filter."""
     file = Path(__file__).parents[1] / "voxelize" / "formats" / "gltf" / "meshopt_version_1.json"
     for one in json.loads(file.read_text(encoding="ascii")):
         view = CompressedView(

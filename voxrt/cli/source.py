@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Sight
 from voxrt.cli.messages import warn
 from voxrt.cli.progress import build_bar
+from voxrt.octree.camera import refit
 from voxrt.viewpoint import authored_camera
 from voxrt.voxelize.assets import SUFFIXES
 
@@ -45,10 +47,16 @@ class Source:
 
     def camera(self, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
         """Give the camera of the scene's preview, or the one that is asked for."""
-        if self.scene is not None and self.scene.viewpoint and self.rom.grid and sight == Sight():
+        if (
+            self.blob.view is not None
+            and self.scene is not None
+            and self.scene.viewpoint
+            and self.rom.grid
+            and sight == Sight()
+        ):
             return authored_camera(self.scene.viewpoint, self.rom.grid, size)
         if self.blob.view is not None and sight == Sight():
-            return self.blob.view
+            return refit(self.blob.view, PREVIEW_SIZE, size)
         return voxrt.aim_camera(
             self.rom, size, position=sight.position, look=sight.look, right=sight.right, up=sight.up
         )
