@@ -26,6 +26,7 @@ from voxrt.voxelize.formats.usd.limits import Limits
 
 ROOT = Path(__file__).resolve().parents[2]
 _LARGEST_SEED = 64 << 10
+_COUNTS = (0, 1, 255, 1 << 31, 1 << 40, (1 << 64) - 1)
 _LIMITS = Limits(memory=1 << 30, most_memory=1 << 30, seconds=10)
 _TO_BINARY = "import sys; from pxr import Sdf; Sdf.Layer.FindOrOpen(sys.argv[1]).Export(sys.argv[2])"
 
@@ -54,7 +55,7 @@ def damaged(data: bytes, random: np.random.Generator) -> bytes:
         if kind < 3:
             made[at] = int(random.integers(256))
         elif kind == 3:
-            made[at : at + 8] = int(random.choice([0, 1, 255, 1 << 31, 1 << 40, (1 << 64) - 1])).to_bytes(8, "little")
+            made[at : at + 8] = _COUNTS[int(random.integers(len(_COUNTS)))].to_bytes(8, "little")
         elif kind == 4:
             del made[at : at + int(random.integers(1, 64))]
         else:
