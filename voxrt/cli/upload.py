@@ -11,7 +11,8 @@ from cyclopts import Parameter
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError
 from voxrt.cli.board_results import UploadResult
-from voxrt.cli.messages import summarize, transfer_bar
+from voxrt.cli.messages import summarize
+from voxrt.cli.progress import transfer_bar
 from voxrt.cli.results import print_json
 from voxrt.cli.serve import open_device
 
