@@ -6,8 +6,8 @@ the project is developed with (``VOXRT_ASSETS``).
 
 Each asset is voxelized at depth 8 and rendered with brightness by face, and with baked light. The reference
 (``reference_picture.py``) shows its triangles from the same camera, under the sun and the sky of the baked light. All
-pictures have 2 x 2 rays per pixel, averaged in linear light. Figures are those of the pixels that show the asset in
-both pictures, but for the SSIM, which is that of the whole pictures.
+pictures have 2 x 2 rays per pixel, averaged in linear light. Figures are of the pixels that show the asset in both
+pictures, but for the SSIM, which is that of the whole pictures.
 """
 
 from __future__ import annotations

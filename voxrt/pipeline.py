@@ -296,6 +296,7 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
     """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
     for lesser in range(depth - 1, 0, -1):
         whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
+        whole = replace(whole, ignore=(), allow_empty=True)  # done by now
         size = len(build(loaded, options=whole).octree.words)
         if size <= words:
             return lesser, size
@@ -304,7 +305,7 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
 
 def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
     """Return the options that the manifest names."""
-    return {
+    settings: dict[str, str | int | float | bool | None] = {
         "fill": options.fill,
         "interior": options.interior,
         "geometry": options.geometry,
@@ -314,11 +315,14 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "time": options.time,
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
-        "ignore": ", ".join(options.ignore) or None,
-        "bounds": None if options.bounds is None else ",".join(f"{value:g}" for value in options.bounds),
         "colours": options.colours,
         "bake": options.bake,
     }
+    if options.ignore:
+        settings["ignore"] = ", ".join(options.ignore)
+    if options.bounds is not None:
+        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
+    return settings
 
 
 def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:

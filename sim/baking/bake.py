@@ -90,7 +90,7 @@ class BakedLight:
         inside -= np.bincount(flat[self._rows], minlength=256)
         volumes = np.int64(1) << 3 * self._surface.octant_levels.astype(np.int64)
         inside = inside + np.bincount(levels, volumes, minlength=256).astype(np.int64)
-        replacement, kept = self._replacements(inside)
+        nearest, kept = self._nearest_kept(inside)
         free = [number for number in range(1, 256) if number not in kept]
         palette, rows = quantize(self.colours, np.ones(len(self.colours)), min(colours, len(free)))
         materials = {0: self.rom.materials[0]} | {number: self.rom.materials[number] for number in kept}
@@ -103,14 +103,14 @@ class BakedLight:
             materials[number] = Material(name, (red, green, blue))
         for number in set(range(max(materials))) - set(materials):  # ids that nothing uses any more
             materials[number] = self.rom.materials[number]
-        flat[:] = replacement[flat]
+        flat[:] = nearest[flat]
         if len(palette):
             flat[self._rows] = np.array(free[: len(palette)], np.uint8)[rows]
-        tree = build(_voxels(self.rom.octree.depth, self._surface, cells, replacement[levels]), threads=threads)
+        tree = build(_voxels(self.rom.octree.depth, self._surface, cells, nearest[levels]), threads=threads)
         table = tuple(materials[number] for number in sorted(materials))
         return replace(self.rom, octree=tree, materials=table)
 
-    def _replacements(self, inside: NDArray[np.int64]) -> tuple[NDArray[np.uint8], list[int]]:
+    def _nearest_kept(self, inside: NDArray[np.int64]) -> tuple[NDArray[np.uint8], list[int]]:
         """Return the id that each id becomes where it is not exposed, and the ids that stay: mirrors and the commonest.
 
         An id that does not stay becomes the one with the nearest colour.
@@ -120,10 +120,10 @@ class BakedLight:
         mirror = np.array([one.mirror for one in self.rom.materials])
         order = sorted(used.tolist(), key=lambda number: (not mirror[number], -inside[number], number))
         kept = order[: max(_MOST_INSIDE, int(mirror[used].sum()))]
-        replacement = np.arange(256).astype(np.uint8)
+        nearest = np.arange(256).astype(np.uint8)
         for number in order[len(kept) :]:
-            replacement[number] = kept[int(((table[kept] - table[number]) ** 2).sum(axis=1).argmin())]
-        return replacement, kept
+            nearest[number] = kept[int(((table[kept] - table[number]) ** 2).sum(axis=1).argmin())]
+        return nearest, kept
 
 
 def bake_light(

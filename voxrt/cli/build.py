@@ -34,6 +34,8 @@ from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
 from voxrt.cli.results import build_report, print_json
 
+_NAMED = 32  # so many materials still read as a list
+
 _ASSET = (
     "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml)."
 )
@@ -200,7 +202,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     rom, total = result.rom, sum(result.seconds.values())
     size, shown = len(rom.octree.words), rom.materials[1:]
     voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
-    names = ", ".join(material.name for material in shown)
+    names = ", ".join(material.name for material in shown) if len(shown) <= _NAMED else "voxrt info lists them"
     stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
     return [
         ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
