@@ -16,12 +16,14 @@ from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
 from ..board.view_check import check_view
 from .packets import FramePacket
+from .solid_bounds import solid_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from ..board.device import Device, Frame
     from ..board.scene_memory import Progress
+    from ..board.view import Triple
     from .clients import Clients
     from .requests import ChangeView
 
@@ -59,6 +61,7 @@ class Renderer:
         self.scene = EMPTY_SCENE
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
+        self.bounds: tuple[Triple, Triple] | None = None
         self.view = self.initial_view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
         self.nonstop = False
         self.frames = 0
@@ -103,13 +106,14 @@ class Renderer:
         """
         self.check_scene(scene)
         async with self._loading:
+            bounds = await asyncio.get_running_loop().run_in_executor(None, solid_bounds, scene)
             steps = self._memory.load_in_steps(scene, progress)
             complete = False
             while not complete:
                 async with self._device_lock:
                     complete = await self._on_device(partial(_finish_step, steps))
                     if complete:
-                        self.scene, self.crc32 = scene, scene.crc32
+                        self.scene, self.crc32, self.bounds = scene, scene.crc32, bounds
                         self.view = self.initial_view = self._view_of(scene)
                         self.scene_number += 1
         self._changed.set()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
 _NAME = 200
+_DIRECTION_LIMIT = (1 << 20) - 1
 _BOUNCES = 4  # of mirrors that are turned on without a number
 
 
@@ -99,8 +100,24 @@ class ReadCounters:
     """Get the counters of the server."""
 
 
+@dataclass(frozen=True, slots=True)
+class CastRay:
+    """Find the first solid voxel on a ray: origin, 1/16 voxel, and direction."""
+
+    origin: Triple
+    direction: Triple
+
+
 Request = (
-    TakeControl | ReleaseControl | ChangeView | LoadScene | StartUpload | CancelUpload | ReadRegisters | ReadCounters
+    TakeControl
+    | ReleaseControl
+    | ChangeView
+    | LoadScene
+    | StartUpload
+    | CancelUpload
+    | CastRay
+    | ReadRegisters
+    | ReadCounters
 )
 
 
@@ -184,6 +201,10 @@ _READERS: dict[str, Callable[[dict[str, Any]], Request]] = {
     "show": _load_scene,
     "upload": _start_upload,
     "cancel": lambda _: CancelUpload(),
+    "ray": lambda message: CastRay(
+        _position("origin", message.pop("origin", None)),
+        _triple("direction", message.pop("direction", None), -_DIRECTION_LIMIT, _DIRECTION_LIMIT),
+    ),
     "registers": lambda _: ReadRegisters(),
     "counters": lambda _: ReadCounters(),
 }

@@ -86,6 +86,7 @@ class Session:
                 "depth": scene.depth,
                 "words": len(scene.words),
                 "crc32": renderer.crc32,
+                "bounds": renderer.bounds,
                 "camera": asdict(renderer.initial_view.camera),
                 "size": renderer.initial_view.size,
             },
