@@ -62,7 +62,7 @@ class Renderer:
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
         self.bounds: tuple[Triple, Triple] | None = None
-        self.view = self.initial_view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
+        self.view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
@@ -114,7 +114,7 @@ class Renderer:
                     complete = await self._on_device(partial(_finish_step, steps))
                     if complete:
                         self.scene, self.crc32, self.bounds = scene, scene.crc32, bounds
-                        self.view = self.initial_view = self._view_of(scene)
+                        self.view = self._view_of(scene)
                         self.scene_number += 1
         self._changed.set()
 

@@ -10,10 +10,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..board.errors import Refused
+from ..board.view import frame_world
 from .clients import Clients
 from .control_transfer import ControlTransfer
 from .packets import CHUNK_LIMIT, PROTOCOL_VERSION
-from .renderer import Renderer
+from .renderer import DEFAULT_SIZE, Renderer
 from .upload import UPLOAD_LIMIT
 
 if TYPE_CHECKING:
@@ -87,8 +88,8 @@ class Session:
                 "words": len(scene.words),
                 "crc32": renderer.crc32,
                 "bounds": renderer.bounds,
-                "camera": asdict(renderer.initial_view.camera),
-                "size": renderer.initial_view.size,
+                "camera": asdict(scene.camera or frame_world(scene.depth, DEFAULT_SIZE)),
+                "size": DEFAULT_SIZE,
             },
             "view": {
                 "camera": asdict(renderer.view.camera),
