@@ -15,6 +15,7 @@ from .device import Counters, Frame, Identity
 from .errors import DeviceError
 from .registers import MATERIALS, REGISTERS
 from .scene import EMPTY_LEAF
+from .view import FEATURES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from .view import Triple, View
 
+_MINOR = 3
 _IDENTITY = int.from_bytes(b"VXRT", "big")
 _STUCK_SECONDS = 30.0
 _ERRORS = {
@@ -120,6 +122,11 @@ class RegisterDevice:
         version = self._fields("version")
         if version["major"] != 0:
             raise DeviceError(f"{name}: register version {version['major']} is not supported; upgrade voxrt-board")
+        if version["minor"] < _MINOR:
+            raise DeviceError(
+                f"{name}: register version 0.{version['minor']} is older than 0.{_MINOR}, which has the brightness of "
+                "faces; load the bitstream of this release"
+            )
         configuration = self._fields("configuration")
         words = min(1 + (8 << configuration["block_bits"]), len(memory))
         self.identity = Identity(
@@ -128,7 +135,7 @@ class RegisterDevice:
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
             size=video.size,
-            features=frozenset(name for name, built_in in self._fields("features").items() if built_in),
+            features=frozenset(name for name in FEATURES if self._fields("features")[name]),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
         )
@@ -179,10 +186,17 @@ class RegisterDevice:
         self._write_fields(
             "shading",
             flat=view.lighting.flat,
+            faces=view.lighting.faces is not None,
             light=view.lighting.on,
             ambient=view.lighting.ambient,
             bounces=view.lighting.bounces,
         )
+        if view.lighting.faces is not None:
+            for name, brightness in (
+                ("lower_faces", view.lighting.faces[::2]),
+                ("upper_faces", view.lighting.faces[1::2]),
+            ):
+                self._write_fields(name, **dict(zip("xyz", brightness, strict=True)))
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
         self._write("status", self._bits("status", "frame_done", *_ERRORS))  # writing 1 clears

@@ -177,7 +177,6 @@ class Renderer:
             lighting=replace(
                 lighting,
                 on=lighting.on and "light" in built_in,
-                flat=lighting.flat and "flat" in built_in,
                 bounces=lighting.bounces if "mirrors" in built_in else 0,
             ),
         )

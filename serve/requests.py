@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from ..board.errors import Refused
-from ..board.view import FEATURES, Camera, Lighting, Triple, View
+from ..board.view import FEATURES, Camera, Lighting, Shading, Triple, View
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
+_SHADINGS: tuple[Shading, ...] = get_args(Shading)
 _NAME = 200
 _DIRECTION_LIMIT = (1 << 20) - 1
 _BOUNCES = 4  # of mirrors that are turned on without a number
@@ -39,6 +40,7 @@ class ChangeView:
     light: Triple | None = None
     ambient: int | None = None
     features: frozenset[str] | None = None
+    shading: Shading | None = None
     bounces: int | None = None
     nonstop: bool | None = None
 
@@ -57,8 +59,8 @@ class ChangeView:
             lighting = replace(lighting, bounces=self.bounces)
         if self.features is not None:
             bounces = (lighting.bounces or _BOUNCES) if "mirrors" in self.features else 0
-            lighting = replace(lighting, on="light" in self.features, flat="flat" in self.features, bounces=bounces)
-        return lighting
+            lighting = replace(lighting, on="light" in self.features, bounces=bounces)
+        return lighting if self.shading is None else lighting.shaded(self.shading)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +169,7 @@ def _change_view(message: dict[str, Any]) -> ChangeView:
         light=optional("light", _position),
         ambient=optional("ambient", lambda name, value: _whole(name, value, 0, 255)),
         features=optional("features", _features),
+        shading=optional("shading", _shading),
         bounces=optional("bounces", lambda name, value: _whole(name, value, 0, 15)),
         nonstop=optional("nonstop", _truth),
     )
@@ -238,6 +241,13 @@ def _features(name: str, value: object) -> frozenset[str]:
     if not isinstance(value, list) or not all(isinstance(part, str) and part in FEATURES for part in value):
         raise Refused(f"{name} is not a list of {', '.join(FEATURES)}")
     return frozenset(value)
+
+
+def _shading(name: str, value: object) -> Shading:
+    for shading in _SHADINGS:
+        if value == shading:
+            return shading
+    raise Refused(f"{name} {_shown(value)} is not {', '.join(_SHADINGS[:-1])} or {_SHADINGS[-1]}")
 
 
 def _whole(name: str, value: object, low: int, high: int) -> int:

@@ -98,6 +98,7 @@ class Session:
                 "light": renderer.view.lighting.position,
                 "ambient": renderer.view.lighting.ambient,
                 "features": sorted(renderer.view.lighting.features),
+                "shading": renderer.view.lighting.shading,
                 "bounces": renderer.view.lighting.bounces,
                 "nonstop": renderer.nonstop,
             },

@@ -44,6 +44,7 @@ class Memory:
         instructions: str = "",
         *,
         flat: bool = False,
+        brightness: NDArray[np.uint8] | None = None,
         light: NDArray[np.int32] | None = None,
         ambient: int = 0,
         bounces: int = 0,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 import numpy as np
 
 from voxrt.octree import Rom
-from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
+from voxrt.octree.camera import BOUNCE_LIMIT, DIRECTION_LIMIT, PLAIN_LIGHTING, POSITION_UNITS
 from voxrt.sim import _model
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
+_FACES = 6
 _FRAME_LIMIT = 1 << 14
 _RTL_FRAME_LIMIT = (1 << 12) - 1
 
@@ -55,7 +56,7 @@ def render(
     size: tuple[int, int],
     *,
     engine: Engine,
-    lighting: Lighting = CAMERA_LIGHT,
+    lighting: Lighting = PLAIN_LIGHTING,
     threads: int = 0,
     config: str = "tiny",
 ) -> Frame:
@@ -73,7 +74,7 @@ def render(
         ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
         give the same pixels.
     lighting
-        Point light, mirrors and flat colours.
+        Brightness of faces, point light and mirrors.
     threads
         Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
@@ -120,7 +121,7 @@ def check(
     camera: Camera,
     size: tuple[int, int],
     *,
-    lighting: Lighting = CAMERA_LIGHT,
+    lighting: Lighting = PLAIN_LIGHTING,
     threads: int = 0,
     config: str = "tiny",
 ) -> EngineCheck:
@@ -185,7 +186,7 @@ def shader_features(config: str) -> frozenset[str]:
     Returns
     -------
     frozenset[str]
-        Some of ``"flat"``, ``"light"`` and ``"mirrors"``.
+        Some of ``"light"`` and ``"mirrors"``.
 
     Raises
     ------
@@ -197,7 +198,7 @@ def shader_features(config: str) -> frozenset[str]:
     Examples
     --------
     >>> sorted(shader_features("lit"))
-    ['flat', 'light', 'mirrors']
+    ['light', 'mirrors']
     """
     return frozenset(_ray_tracer(config).FEATURES[config])
 
@@ -260,6 +261,7 @@ def _shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
     mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     return {
         "flat": lighting.flat,
+        "brightness": None if lighting.faces is None else np.array(lighting.faces, dtype=np.uint8),
         "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
         "ambient": lighting.ambient if lighting.on else 0,
         "bounces": lighting.bounces,
@@ -289,6 +291,10 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
 def _check_lighting(lighting: Lighting) -> None:
     if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
         raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
+    if lighting.faces is not None and not (
+        len(lighting.faces) == _FACES and all(0 <= face <= 255 for face in lighting.faces)
+    ):
+        raise SimulatorError(f"the brightness of faces {lighting.faces} is not six numbers of 0 … 255")
     if not lighting.on:
         return
     if not 0 <= lighting.ambient <= 255:

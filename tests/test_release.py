@@ -18,9 +18,9 @@ import voxrt
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 RELEASED = json.loads((Path(__file__).parent / "golden" / "release-0.1.0.json").read_text(encoding="utf-8"))
 LIGHTINGS = {
-    "plain": None,
+    "plain": voxrt.Lighting(faces=None),
     "flat": voxrt.Lighting(flat=True),
-    "light and mirrors": voxrt.Lighting((16 * 40, 16 * 300, 16 * 200), ambient=40, on=True, bounces=2),
+    "light and mirrors": voxrt.Lighting((16 * 40, 16 * 300, 16 * 200), ambient=40, on=True, bounces=2, faces=None),
 }
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from voxrt import sim
 from voxrt.build_options import PREVIEW_SIZE
 from voxrt.octree import Rom
-from voxrt.octree.camera import CAMERA_LIGHT
+from voxrt.octree.camera import PLAIN_LIGHTING
 from voxrt.outputs import OutputError, check_folder, writing
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
@@ -79,8 +79,8 @@ def render(
     config
         The configuration of the ray tracer for ``"rtl"``.
     lighting
-        Light, mirrors and flat colours. The ray tracer needs a configuration that has them. None lights the scene from
-        the camera.
+        Brightness of faces, light and mirrors. For light and mirrors the ray tracer needs a configuration that has
+        them. None takes the default brightness of faces.
     threads
         Threads of the model; 0 takes one per core.
 
@@ -110,7 +110,7 @@ def render(
         camera or aim_camera(rom, size),
         size,
         engine=engine,
-        lighting=lighting or CAMERA_LIGHT,
+        lighting=lighting or PLAIN_LIGHTING,
         config=config,
         threads=threads,
     )

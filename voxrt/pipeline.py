@@ -281,7 +281,7 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         camera,
         size=options.size,
         engine=options.engine,
-        config="tiny" if lighting is None else "lit",
+        config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
         threads=options.threads,
     )

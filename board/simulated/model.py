@@ -146,6 +146,7 @@ class ModelDevice:
                 *view.size,
                 self._threads,
                 flat=view.lighting.flat,
+                brightness=None if view.lighting.faces is None else np.array(view.lighting.faces, dtype=np.uint8),
                 light=np.array(view.lighting.position, dtype=np.int32) if view.lighting.on else None,
                 ambient=view.lighting.ambient,
                 bounces=view.lighting.bounces,

@@ -3,7 +3,12 @@
 import { $, makeButton, makeSlider, makeToolbar, pressed } from "./elements.js";
 import { add, clamp, length, scale, subtract } from "./vectors.js";
 
-const FEATURES = { flat: "Flat", light: "Shadows", mirrors: "Mirrors" };
+const SHADINGS = {
+  faces: ["Faces", "Each face has its own brightness; tops are the brightest"],
+  report: ["Report", "Brightness by the angle to the camera or the lamp, as in the report on the original hardware"],
+  flat: ["Flat", "Materials show their own colour"],
+};
+const FEATURES = { light: ["Shadows", "A lamp casts shadows"], mirrors: ["Mirrors", "Mirror materials reflect"] };
 const FAR = 1.5; // from the middle of the scene to the lamp, in diagonals of the scene
 const DEGREE = Math.PI / 180;
 
@@ -20,7 +25,9 @@ export class Light {
     $("background").oninput = ({ target }) =>
       app.set({ background: [1, 3, 5].map((at) => parseInt(target.value.slice(at, at + 2), 16)) });
     $("bounces").oninput = ({ target }) => { if (target.value !== "") app.set({ bounces: clamp(Math.round(Number(target.value)), 0, 15) }); };
-    makeToolbar($("features"));
+    for (const [name, [label, title]] of Object.entries(SHADINGS))
+      makeButton($("shading"), label, () => app.set({ shading: name }), title).dataset.shading = name;
+    for (const name of ["shading", "features"]) makeToolbar($(name));
   }
 
   middle() {
@@ -47,19 +54,19 @@ export class Light {
   // Show what the device can do.
   hello({ device }) {
     $("features").replaceChildren();
-    for (const [name, label] of Object.entries(FEATURES)) {
+    for (const [name, [label, title]] of Object.entries(FEATURES)) {
       if (!device.features.includes(name)) continue;
       const toggle = makeButton($("features"), label, () => {
         const on = this.app.state().view.features;
         this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name] });
-      });
+      }, title);
       toggle.dataset.feature = name;
       pressed(toggle, false);
     }
-    this.mirrors = device.features.includes("mirrors");
   }
 
   show({ view, scene }) {
+    for (const made of $("shading").children) pressed(made, made.dataset.shading === view.shading);
     for (const made of $("features").children) pressed(made, view.features.includes(made.dataset.feature));
     const lit = view.features.includes("light");
     $("light").hidden = $("light-place").hidden = !lit;

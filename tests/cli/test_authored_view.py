@@ -40,7 +40,7 @@ def test_the_preview_has_the_light(yard, tmp_path):
     assert lit.warnings == ()
     origin, voxel = np.array(lit.rom.grid.origin), lit.rom.grid.voxel_size
     place = tuple(int(x) for x in np.rint((np.array([4, 6, 1]) - origin) / voxel * 16))
-    assert lit.lighting == Lighting(place, 32, on=True)
+    assert lit.lighting == Lighting(place, 90, on=True)
     expected = render_frame(lit.rom, lit.preview.camera, SIZE, engine="model", lighting=Lighting(place, on=True))
     assert np.array_equal(lit.preview.frame.colour, expected.colour)
     yard.write_text(YARD.replace("[light]\nposition = [4, 6, 1]\n", ""))

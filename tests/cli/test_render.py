@@ -157,13 +157,19 @@ def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
     assert "1 pixels differ" in finished.error
 
 
-def test_light_bounces_and_flat_colours(voxrt, built):
+def test_light_bounces_and_shading(voxrt, built):
     pictures = []
-    for options in ([], ["--light", "-20,90.5,-31", "--ambient", "5"], ["--flat"], ["--bounces", "2"]):
+    for options in (
+        [],
+        ["--light", "-20,90.5,-31", "--ambient", "5"],
+        ["--shading", "flat"],
+        ["--shading", "report"],
+        ["--bounces", "2"],
+    ):
         finished = voxrt("render", "house.mem", *MODEL, *options)
         assert finished.code == 0, finished.err
         pictures.append((built / "house.png").read_bytes())
-    assert len(set(pictures[:3])) == 3
+    assert len(set(pictures[:4])) == 4
     for options in (["--bounces", "16"], ["--light", "1,2,3", "--ambient", "256"]):
         finished = voxrt("render", "house.mem", *MODEL, *options)
         assert finished.code == 5

@@ -49,6 +49,14 @@ def test_blob():
     assert (bare.camera, bare.lighting) == (None, None)
 
 
+def test_the_shading_of_a_blob():
+    def lighting(flags):
+        return read_blob(encode({**SECTIONS, b"LITE": struct.pack("<3i4B", 1, -2, 3, 40, flags, 0, 0)})).lighting
+
+    assert [lighting(flags).shading for flags in (0, 2, 4)] == ["faces", "flat", "report"]
+    assert read_blob(encode({**SECTIONS, b"FACE": bytes([1, 2, 3, 4, 5, 255])})).lighting.faces == (1, 2, 3, 4, 5, 255)
+
+
 @pytest.mark.parametrize("name", [b"NAME", b"WRLD", b"MATL", b"WORD"])
 def test_missing_sections(name):
     with pytest.raises(Refused, match=f"no section {name.decode()}"):
@@ -66,6 +74,7 @@ def test_missing_sections(name):
         (b"WORD", b"abc"),
         (b"VIEW", bytes(47)),
         (b"LITE", bytes(17)),
+        (b"FACE", bytes(5)),
     ],
 )
 def test_other_layouts(name, data):

@@ -120,7 +120,7 @@ def test_page(tmp_path):
         browser.run("document.querySelector('#notice button').click()")
 
         # Controls of the panel: flat colours, background, flip, a preset.
-        for selector in ("[data-feature=flat]", "#flip-x", "#presets button:nth-child(2)", "[data-scene=first]"):
+        for selector in ("[data-shading=flat]", "#flip-x", "#presets button:nth-child(2)", "[data-scene=first]"):
             browser.run("document.querySelector(arguments[0]).click()", selector)
         assert browser.until("document.querySelector('#scene').innerText.startsWith('first')")
         browser.run(
@@ -128,7 +128,7 @@ def test_page(tmp_path):
         )
         assert browser.until(idle)
         assert server.session.renderer.view.background == (0x20, 0x40, 0x60)
-        assert server.session.renderer.view.lighting.features == {"flat"}
+        assert server.session.renderer.view.lighting.shading == "flat"
         assert shown(server, browser)
         assert browser.faults() == []
 

@@ -90,7 +90,7 @@ def compare(
 def _hardware(memory: Rom, camera: Camera, size: tuple[int, int]) -> EngineCheck | None:
     """Render by both engines; None where the simulated hardware is missing or cannot hold the memory."""
     try:
-        return voxrt.check(memory, camera, size)
+        return voxrt.check(memory, camera, size, lighting=voxrt.Lighting(faces=None))
     except voxrt.SimulatorError as error:
         complain(f"without the hardware's picture: {error}")
         return None

@@ -16,6 +16,7 @@ from voxrt.cli.source import aim
 
 if TYPE_CHECKING:
     from voxrt import Lighting
+    from voxrt.octree.camera import Shading
 
 Triple = tuple[int, int, int]
 
@@ -36,7 +37,7 @@ def render(
     ] = None,
     ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
-    flat: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    shading: Literal["faces", "report", "flat"] | None = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -53,7 +54,7 @@ def render(
         give the same pixels.
     config
         The configuration of the hardware: its lanes, its memory, the features of its shader. The default is tiny, or
-        lit if light, mirrors or flat colours are asked for.
+        lit if light or mirrors are asked for.
     size
         Width and height in pixels. [default: 640x480]
     sight
@@ -63,15 +64,17 @@ def render(
     dialect
         How the memory encodes materials, for a memory without a manifest.
     light
-        Position of a light that casts shadows, in voxels, in steps of 1/16. The default is the light of the memory. If
-        it has none, the light is in the camera.
+        Position of a light that casts shadows, in voxels, in steps of 1/16. The default is the light of the memory, if
+        it has one.
     ambient
-        The brightness of shadows, 0 to 255. [default: 32]
+        The brightness of shadows, 0 to 255. [default: 90]
     bounces
         The most reflections of a ray by mirrors, 0 to 15. With 0, mirrors are like other materials. The default is
         that of the memory, or 0.
-    flat
-        Show materials in their own colour, whatever the angle.
+    shading
+        What brightness depends on. faces: each side of a block has its own; the top is the brightest. report: the angle
+        to the camera or to the light, as in the report on the original hardware. flat: materials show their own colour.
+        The default is that of the memory, or faces.
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
@@ -82,17 +85,19 @@ def render(
     warn(warnings)
     memory = blob.rom
     camera = aim(memory, blob.view, size, sight)
-    lighting = _lighting(blob.lighting, light, ambient, bounces, flat=flat)
+    lighting = _lighting(blob.lighting, light, ambient, bounces, shading)
     if config is None:
-        config = "tiny" if lighting is None else "lit"
-    elif (
-        engine == "rtl" and lighting and lighting == blob.lighting and lighting.features - voxrt.shader_features(config)
-    ):
-        warn((voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),))
-        lighting = None
+        config = "lit" if lighting.features else "tiny"
+    elif engine == "rtl" and blob.lighting and light is None and bounces is None:
+        absent = lighting.features - voxrt.shader_features(config)
+        if absent:
+            warn(
+                (voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),)
+            )
+            lighting = replace(lighting, on=False, bounces=0)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, lighting=lighting or voxrt.Lighting(), config=config)
+        checked = voxrt.check(memory, camera, size, lighting=lighting, config=config)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
         frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
@@ -111,9 +116,9 @@ def render(
 
 
 def _lighting(
-    authored: Lighting | None, light: Triple | None, ambient: int | None, bounces: int | None, *, flat: bool
-) -> Lighting | None:
-    """Give the memory's lighting with what the command line says in its place; None where nothing is wanted."""
+    authored: Lighting | None, light: Triple | None, ambient: int | None, bounces: int | None, shading: Shading | None
+) -> Lighting:
+    """Give the memory's lighting with what the command line says in its place."""
     lighting = authored or voxrt.Lighting()
     if light is not None:
         lighting = replace(lighting, position=light, on=True, ambient=voxrt.Lighting().ambient)
@@ -121,6 +126,4 @@ def _lighting(
         lighting = replace(lighting, ambient=ambient)
     if bounces is not None:
         lighting = replace(lighting, bounces=bounces)
-    if flat:
-        lighting = replace(lighting, flat=True)
-    return lighting if lighting.on or lighting.bounces or lighting.flat else None
+    return lighting if shading is None else lighting.shaded(shading)

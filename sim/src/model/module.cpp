@@ -10,6 +10,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -31,6 +32,7 @@ using Registers = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::
 using Triples = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
 using Position = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
+using Faces = nb::ndarray<const uint8_t, nb::shape<6>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
 
 constexpr int kBounceLimit = 15;
@@ -66,14 +68,16 @@ void check_threads(int threads) {
 
 nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
                         int height, int threads, const std::string& instructions, bool flat,
-                        const std::optional<Position>& light, int ambient, int bounces,
-                        const std::optional<Flags>& mirrors) {
+                        const std::optional<Faces>& brightness, const std::optional<Position>& light, int ambient,
+                        int bounces, const std::optional<Flags>& mirrors) {
     if (ambient < 0 || ambient > 255)
         throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
     if (bounces < 0 || bounces > kBounceLimit)
         throw std::invalid_argument("bounces is " + std::to_string(bounces) + ", not 0 ... 15");
     const uint8_t no_mirrors[256] = {};
-    Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}};
+    Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}, {}};
+    if (brightness)
+        std::copy_n(brightness->data(), 6, shading.faces.emplace().begin());
     if (light)
         shading.light = Light{{(*light)(0), (*light)(1), (*light)(2)}, static_cast<uint8_t>(ambient)};
     check_threads(threads);
@@ -175,11 +179,12 @@ NB_MODULE(_model, m) {
              "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
         .def("render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
              nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
-             nb::arg("light") = nb::none(), nb::arg("ambient") = 0, nb::arg("bounces") = 0,
-             nb::arg("mirrors") = nb::none(),
+             nb::arg("brightness") = nb::none(), nb::arg("light") = nb::none(), nb::arg("ambient") = 0,
+             nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(),
              "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
              "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
-             "which is the fastest. docs/shading.md defines the rest: flat; light, None or (3,) int32 in 1/16 voxel, "
+             "which is the fastest. docs/shading.md defines the rest: flat; brightness, None or (6,) uint8 in\n"
+             "1/255, of the faces that look along -x, +x, -y, +y, -z, +z; light, None or (3,) int32 in 1/16 voxel, "
              "with\n"
              "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Returns colour (H, W, "
              "3), material (H, W), face (H, W), uint8, and words_read.\n"
