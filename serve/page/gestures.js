@@ -12,6 +12,7 @@ export class Gestures {
     this.canvas = canvas;
     this.actions = actions;
     this.pointers = new Map(); // id -> {x, y, pans}
+    this.done = null; // where the pointers were when the camera moved last
     this.tap = null; // the last one: {x, y, time}
     canvas.addEventListener("pointerdown", (event) => this.begin(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -30,30 +31,41 @@ export class Gestures {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
     const pans = event.button !== 0 || event.shiftKey || event.ctrlKey || event.metaKey;
+    this.step();
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, pans });
+    this.done = this.place();
     this.began = this.pointers.size === 1 && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
   }
 
   move(event) {
     const pointer = this.pointers.get(event.pointerId);
-    if (!pointer) return;
-    const before = this.spread();
-    const [right, down] = [event.clientX - pointer.x, event.clientY - pointer.y];
-    Object.assign(pointer, { x: event.clientX, y: event.clientY });
-    const fingers = this.pointers.size;
-    if (fingers === 1) this.actions[pointer.pans ? "pan" : "turn"](right, down);
-    else this.actions.pan(right / fingers, down / fingers);
-    if (fingers === 2) this.actions.dolly(before / (this.spread() || 1));
+    if (pointer) Object.assign(pointer, { x: event.clientX, y: event.clientY });
   }
 
-  // The distance of two fingers.
-  spread() {
-    const [a, b] = this.pointers.values();
-    return b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+  // The middle of the pointers, and the distance of the first two.
+  place() {
+    const all = [...this.pointers.values()];
+    const [a, b] = all;
+    const middle = (axis) => all.reduce((sum, pointer) => sum + pointer[axis], 0) / all.length;
+    return { x: middle("x"), y: middle("y"), spread: b ? Math.hypot(a.x - b.x, a.y - b.y) : 0 };
+  }
+
+  // Called once per frame of the screen: move the camera as far as all pointers have moved since.
+  step() {
+    if (!this.active) return;
+    const { done } = this;
+    this.done = this.place();
+    const [right, down] = [this.done.x - done.x, this.done.y - done.y];
+    const [{ pans }] = this.pointers.values();
+    if (right || down) this.actions[pans || this.pointers.size > 1 ? "pan" : "turn"](right, down);
+    if (done.spread && this.done.spread !== done.spread) this.actions.dolly(done.spread / (this.done.spread || 1));
   }
 
   finish(event) {
+    if (!this.pointers.has(event.pointerId)) return;
+    this.step();
     this.pointers.delete(event.pointerId);
+    this.done = this.place();
     const near = (place) => place && Math.hypot(event.clientX - place.x, event.clientY - place.y) <= TAP.pixels;
     if (event.type !== "pointerup" || !near(this.began)) return;
     const now = performance.now();

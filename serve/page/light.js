@@ -42,8 +42,7 @@ export class Light {
   }
 
   move(changed) {
-    const { direction, height } = { ...this.angles(), ...this.chosen, ...changed };
-    this.chosen = { direction, height };
+    const { direction, height } = { ...this.angles(), ...changed };
     const { centre, far } = this.middle();
     const level = Math.cos(height * DEGREE);
     const towards = [level * Math.sin(direction * DEGREE), Math.sin(height * DEGREE), level * Math.cos(direction * DEGREE)];
@@ -58,7 +57,7 @@ export class Light {
       if (!device.features.includes(name)) continue;
       const toggle = makeButton($("features"), label, () => {
         const on = this.app.state().view.features;
-        this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name] });
+        this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name].sort() });
       }, title);
       toggle.dataset.feature = name;
       pressed(toggle, false);
@@ -80,6 +79,5 @@ export class Light {
     const { direction, height } = this.angles();
     this.direction.set(Math.round(direction));
     this.height.set(Math.round(height));
-    this.chosen = null;
   }
 }

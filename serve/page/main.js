@@ -27,6 +27,7 @@ const glide = new Glide();
 let view = null; // the camera for people of camera.js
 let scene = null; // number of the scene to which `view` belongs
 let had = false; // control
+let unconfirmed = {}; // fields of the view that the state of the server does not have yet
 
 const state = () => connection.state;
 const hasControl = () => connection.connected && state()?.controller === connection.hello.viewer;
@@ -50,7 +51,8 @@ const app = {
   glide(how) { if (view && hasControl()) glide.start(view, how(view), frames.resolution.seconds(frames.size) > 1); },
   set(fields) {
     if (!hasControl()) return;
-    Object.assign(state().view, fields); // what the server will answer, so that the next change starts from it
+    Object.assign(unconfirmed, fields);
+    Object.assign(state().view, fields); // the next change starts from it
     frames.change(fields);
   },
   fixSize(size) { frames.resolution.fixed = size; },
@@ -100,9 +102,17 @@ function readView(camera, size) {
   return fromRegisters(camera, size, scale(add(low, high), 0.5), frames.size);
 }
 
+// Forget the fields that the server has, and keep the others in its view.
+function confirm(shown, mine) {
+  const same = (name) => JSON.stringify(shown[name]) === JSON.stringify(unconfirmed[name]);
+  unconfirmed = mine ? Object.fromEntries(Object.entries(unconfirmed).filter(([name]) => !same(name))) : {};
+  Object.assign(shown, unconfirmed);
+}
+
 let requested = false; // control, since nobody has it
 connection.addEventListener("state", ({ detail }) => {
   const mine = hasControl();
+  confirm(detail.view, mine);
   if (!mine || detail.trouble) connection.sent.clear(); // no frame will answer these
   if (detail.controller === null && !requested) connection.request("take").catch(() => {});
   requested = detail.controller === null;
@@ -126,7 +136,10 @@ connection.addEventListener("state", ({ detail }) => {
   if (detail.trouble) notice("error", "The device has failed", detail.trouble);
 });
 
-connection.addEventListener("refused", ({ detail }) => notice("error", "The request was refused", detail.problem));
+connection.addEventListener("refused", ({ detail }) => {
+  unconfirmed = {};
+  notice("error", "The request was refused", detail.problem);
+});
 connection.addEventListener("frame", ({ detail }) => {
   const samples = frames.receive(detail);
   picture.show(detail, samples, frames.resolution.fixed !== null);
@@ -230,6 +243,7 @@ function showWaiting() {
 function animate() {
   requestAnimationFrame(animate);
   if (!hasControl() || !view || scene === 0) return;
+  gestures.step();
   flight.step();
   const gliding = glide.step();
   if (gliding) {
