@@ -180,14 +180,19 @@ def _start_upload(message: dict[str, Any]) -> StartUpload:
     if not isinstance(files, list) or not 1 <= len(files) <= _FILES:
         raise Refused(f"files is not a list of 1 to {_FILES} files")
     check_only = _truth("check_only", message.pop("check_only", False))
-    return StartUpload(tuple(_file(entry) for entry in files), check_only)
+    read = tuple(_file(entry) for entry in files)
+    names = [file.name.casefold() for file in read]
+    for file in read:
+        if names.count(file.name.casefold()) > 1:
+            raise Refused(f"two files have the name {file.name}; rename one of them")
+    return StartUpload(read, check_only)
 
 
 def _file(entry: object) -> UploadedFile:
     if not isinstance(entry, dict) or entry.keys() != {"name", "size", "crc32"}:
         raise Refused("a file of an upload is not {name, size, crc32}")
     return UploadedFile(
-        _name("name", entry["name"]),
+        _file_name(entry["name"]),
         _whole("size", entry["size"], 1, 1 << 40),
         _whole("crc32", entry["crc32"], 0, 0xFFFFFFFF),
     )
@@ -263,9 +268,17 @@ def _truth(name: str, value: object) -> bool:
 
 
 def _name(name: str, value: object) -> str:
-    if not isinstance(value, str) or not value.isprintable() or not 1 <= len(value) <= _NAME:
-        raise Refused(f"{name} {_shown(value)} is not a name of 1 to {_NAME} printable characters")
+    # isprintable() excludes control characters and those that change the direction of text.
+    if not isinstance(value, str) or not value.isprintable() or not 1 <= len(value.encode()) <= _NAME:
+        raise Refused(f"{name} {_shown(value)} is not a name of 1 to {_NAME} bytes of printable characters")
     return value
+
+
+def _file_name(value: object) -> str:
+    name = _name("name", value)
+    if name in {".", ".."} or "/" in name or "\\" in name:
+        raise Refused(f"{name}: is no plain file name; upload the files without their folders")
+    return name
 
 
 def _shown(value: object) -> str:

@@ -133,7 +133,9 @@ connection.addEventListener("state", ({ detail }) => {
   panels.light.show(detail);
   panels.advanced.show(detail);
   panels.advanced.showCamera(view);
-  if (detail.trouble) notice("error", "The device has failed", detail.trouble);
+  $("connection").dataset.state = detail.trouble ? "disconnected" : "connected";
+  $("connection").textContent = detail.trouble ? "no frames" : connection.hello.device.name;
+  if (detail.trouble) notice("error", "There are no frames", detail.trouble);
 });
 
 connection.addEventListener("refused", ({ detail }) => {

@@ -7,7 +7,7 @@ export async function askForReason(path, query) {
   const fields = new URLSearchParams(query);
   fields.set("origin", location.origin);
   try {
-    const answer = await fetch(`${path}?${fields}`, { cache: "no-store" });
+    const answer = await fetch(`${path}?${fields}`, { cache: "no-store", signal: AbortSignal.timeout(5000) });
     return { reason: REASONS[answer.status] ?? "lost", text: (await answer.text()).trim() };
   } catch {
     return { reason: "gone" };

@@ -4,7 +4,7 @@ import { $, makeButton, makeToolbar, pressed } from "./elements.js";
 import { dismiss, notice } from "./notices.js";
 import { uploadFiles } from "./upload.js";
 
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the device", verify: "Verifying",
+const STAGES = { send: "Sending", read: "Reading", write: "Writing to the device", verify: "Verifying", render: "Rendering the first frame",
   load: "Loading the file", fit: "Fitting the grid", colour: "Choosing colours", voxelize: "Voxelizing", octree: "Building the octree" };
 const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene files refer to
 

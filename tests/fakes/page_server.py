@@ -8,10 +8,11 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
+from fakes.scene_reader import ReadyScenes
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import AssetReader, board_scene
+from voxrt.board_scenes import asset_reader, board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
 from voxrt.serve.scene_library import SceneLibrary
@@ -48,7 +49,8 @@ def serving(
 
     async def serve() -> None:
         kept["stop"] = asyncio.Event()
-        library = SceneLibrary(AssetReader(depth=4), {scene.name: lambda: scene})
+        own = ReadyScenes(**{scene.name: scene})
+        library = SceneLibrary(asset_reader(depth=4), own.files, own)
         options = ServerOptions(port=port, token=token)
         async with FrameServer(device or ModelDevice(), library, options) as server:
             if shown:

@@ -12,7 +12,7 @@ from fakes.device import scene
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting
 from voxrt.serve.blob import read_blob
-from voxrt.serve.scene_files import MemoryReader
+from voxrt.serve.scene_files import read_memory
 
 MADE = scene("föhn", blocks=3)
 SECTIONS = {
@@ -37,8 +37,9 @@ def encode(sections):
     return struct.pack("<8sIIII", b"VOXRTBLB", 1, len(sections), start + len(body), zlib.crc32(table)) + table + body
 
 
-def test_blob():
-    read = MemoryReader()({"any.name": encode(SECTIONS)}, lambda *_: None)
+def test_blob(tmp_path):
+    (tmp_path / "any.name").write_bytes(encode(SECTIONS))
+    read = read_memory([tmp_path / "any.name"], lambda *_: None)
     assert (read.name, read.depth, read.background) == ("föhn", 3, (1, 2, 3))
     assert (read.words == MADE.words).all()
     assert read.colours[1].tolist() == [200, 100, 50]
