@@ -22,7 +22,7 @@ from .solid_bounds import solid_bounds
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..board.device import Device, Frame
+    from ..board.device import Device, Frame, Identity
     from ..board.scene_memory import Progress
     from ..board.view import Triple
     from .clients import Clients
@@ -31,7 +31,10 @@ if TYPE_CHECKING:
     Result = TypeVar("Result")
 
 DEFAULT_SIZE = (640, 480)
-"""Columns and rows of the frames until a client changes the size."""
+"""Columns and rows of the frames until a client changes the size. Cameras of scenes are made for it."""
+
+_PATIENCE = 60.0  # seconds
+_SMALLER = 4  # a device whose frames may take longer begins with frames that have this part of columns and rows
 
 EMPTY_SCENE = Scene(
     "nothing",
@@ -63,8 +66,7 @@ class Renderer:
     """
 
     def __init__(self, device: Device) -> None:
-        columns, rows = device.identity.size
-        size = min(DEFAULT_SIZE[0], columns), min(DEFAULT_SIZE[1], rows)
+        size = _first_size(device.identity)
         self.device = device
         self.scene = EMPTY_SCENE
         self.scene_number = 0
@@ -230,6 +232,12 @@ class Renderer:
                 bounces=lighting.bounces if "mirrors" in built_in else 0,
             ),
         )
+
+
+def _first_size(identity: Identity) -> tuple[int, int]:
+    part = _SMALLER if identity.frame_seconds(DEFAULT_SIZE) > _PATIENCE else 1
+    columns, rows = (min(side // part, most) for side, most in zip(DEFAULT_SIZE, identity.size, strict=True))
+    return columns, rows
 
 
 def _retrieve_error(work: asyncio.Future[Any]) -> None:

@@ -78,7 +78,7 @@ def place_eye_around(
     points: NDArray[np.float64],
     towards_eye: tuple[float, float, float],
 ) -> None:
-    """Stand where `middle` (shape (3,)) is in the middle of the picture, all points are in it, and as near as possible."""
+    """Stand where `middle` (shape (3,)) is in the middle of the picture, and as near as all points are in it."""
     look, right, up, tangents = _axes(plotter, towards_eye)
     from_middle = points - middle
     needed = [

@@ -1,4 +1,4 @@
-"""A ray drawn by PyVista: the pixel that it belongs to, the table of its words, and the octants that it goes through."""
+"""A ray drawn by PyVista: its pixel, the table of its words, and the octants that it goes through."""
 
 from __future__ import annotations
 

@@ -90,7 +90,10 @@ class Browser:
     def mouse(
         self, path: list[tuple[float, float]], button: str = "left", *, clicks: int = 1, modifiers: int = 0
     ) -> None:
-        """Press a button at the first place, move through the others, and let it go at the last; Shift is modifier 8."""
+        """Press a button at the first place, move through the others, and let it go at the last.
+
+        Shift is modifier 8.
+        """
         held = {"left": 1, "right": 2, "middle": 4}[button]
         (x, y), (end_x, end_y) = path[0], path[-1]
         common = {"button": button, "modifiers": modifiers}

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
+    from voxrt.serve.scene_files import SceneReader
 
 
 def rom_of(name: str, world: NDArray[np.uint8], depth: int) -> Rom:
@@ -41,16 +42,22 @@ def scene_of(name: str, world: NDArray[np.uint8], depth: int) -> Scene:
 
 @contextmanager
 def serving(
-    scene: Scene, port: int = 0, *, device: Device | None = None, token: str | None = None, shown: bool = True
+    scene: Scene,
+    port: int = 0,
+    *,
+    device: Device | None = None,
+    token: str | None = None,
+    shown: bool = True,
+    reader: SceneReader | None = None,
 ) -> Iterator[FrameServer]:
-    """Serve a scene; with `shown` it is loaded at once, else the page lists it."""
+    """Serve a scene; with `shown` it is loaded at once, else the page lists it. `reader` reads uploads."""
     ready, loop = threading.Event(), asyncio.new_event_loop()
     kept = {}
 
     async def serve() -> None:
         kept["stop"] = asyncio.Event()
         own = ReadyScenes(**{scene.name: scene})
-        library = SceneLibrary(asset_reader(depth=4), own.files, own)
+        library = SceneLibrary(reader or asset_reader(depth=4), own.files, own)
         options = ServerOptions(port=port, token=token)
         async with FrameServer(device or ModelDevice(), library, options) as server:
             if shown:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
+
 import numpy as np
 import pytest
 from fakes.browser import chromium
 from fakes.page_server import rom_of, scene_of, serving
 from oracles import worlds
 
+from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.export import write_rom
 from voxrt.sim import look_at, pixel_directions
@@ -111,7 +115,7 @@ def test_page(tmp_path):
         assert browser.faults() == []
 
 
-def test_light(tmp_path):
+def test_light():
     with chromium() as browser, serving(scene_of("ball", worlds.ball(4), 4)) as server:
         browser.open(server.url)
         assert browser.until(RESTS)
@@ -125,7 +129,11 @@ def test_light(tmp_path):
         assert browser.run("return document.querySelector('#light').hidden")
         browser.run("document.querySelector('[data-feature=light]').click()")
         assert browser.until("!document.querySelector('#light').hidden")
-        set_slider = "const s = document.querySelector(`#light [aria-label=${arguments[0]}]`); s.value = arguments[1]; s.dispatchEvent(new Event('input'))"
+        set_slider = """
+            const slider = document.querySelector(`#light [aria-label=${arguments[0]}]`);
+            slider.value = arguments[1];
+            slider.dispatchEvent(new Event("input"));
+        """
         for name, value in (("Direction", 90), ("Height", 0), ("Ambient", 200)):
             browser.run(set_slider, name, value)
         assert browser.until(f"document.querySelector('#light [aria-label=Ambient]').value === '200' && {RESTS}")
@@ -156,6 +164,54 @@ def test_an_empty_server_shows_where_to_drop_and_what_to_open(tmp_path):
         x, y = browser.middle("#empty [data-scene=first]")
         browser.mouse([(x, y)])
         assert browser.until("document.querySelector('#scene').innerText === 'first'")
+
+
+class EndlessReader:
+    """Reads files without end."""
+
+    suffixes = (".obj",)
+
+    def __init__(self):
+        self.cancelled = threading.Event()
+
+    async def read(self, _paths, progress):
+        progress("voxelize", 1, 2)
+        try:
+            await asyncio.Event().wait()
+        except asyncio.CancelledError:
+            self.cancelled.set()
+            raise
+
+
+def test_an_upload_shows_its_progress_and_can_be_cancelled(tmp_path):
+    (tmp_path / "cube.obj").write_text(CUBE)
+    reader = EndlessReader()
+    with chromium() as browser, serving(scene_of("first", worlds.ball(4), 4), reader=reader) as server:
+        browser.open(server.url)
+        assert browser.until(RESTS)
+        for _ in range(2):  # the server accepts another upload afterwards
+            browser.give_files("#files", [str(tmp_path / "cube.obj")])
+            assert browser.until("document.querySelector('#notice p').innerText === 'Voxelizing'")
+            assert browser.run("return document.querySelector('#notice progress').value") == 0.5
+            browser.mouse([browser.middle("#cancel")])
+            assert browser.until("document.querySelector('#notice').hidden")
+            assert reader.cancelled.wait(30)
+            reader.cancelled.clear()
+        assert browser.run("return document.querySelector('#scene').innerText") == "first"
+        assert server.session.renderer.scene_number == 1
+
+
+def test_a_slow_device_shows_coarse_pictures_first():
+    scene = scene_of("first", worlds.boxes(4, 9, 3), 4)
+    with chromium() as browser, serving(scene, device=open_rtl("lit")) as server:
+        browser.open(server.url)
+        assert browser.until("document.querySelector('#rendering').innerText.startsWith('rendering, about')", 60)
+        width, stage = browser.run(
+            "return [document.querySelector('#picture').width, document.querySelector('#stage').clientWidth]"
+        )
+        assert width <= stage / 2  # a coarse picture is shown meanwhile
+        seconds = browser.run("return Number(document.querySelector('#rendering').innerText.match(/[0-9]+/)[0])")
+        assert 1 <= seconds <= 60
 
 
 def test_the_connection_is_lost_and_restored():

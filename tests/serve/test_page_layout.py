@@ -26,7 +26,8 @@ return [...document.querySelectorAll("button, input:not([type=file]), select, su
 CONTRASTS = """
 const parse = (colour) => { const n = colour.match(/[\\d.]+/g).map(Number); return [...n.slice(0, 3), n[3] ?? 1]; };
 const over = ([r, g, b, a], back) => [r, g, b].map((part, i) => part * a + back[i] * (1 - a));
-const light = (rgb) => rgb.map((part) => part / 255).map((p) => (p <= 0.04045 ? p / 12.92 : ((p + 0.055) / 1.055) ** 2.4))
+const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+const light = (rgb) => rgb.map((part) => linear(part / 255))
   .reduce((sum, part, i) => sum + part * [0.2126, 0.7152, 0.0722][i], 0);
 const behind = (element) => {
   if (!element) return [0, 0, 0];
