@@ -5,6 +5,7 @@ import { toRegisters } from "./camera.js";
 import { Resolution } from "./resolution.js";
 
 const REST = 180; // milliseconds without a change, until finer frames are asked for
+const LONG_REST = 1200; // before frames that are announced: no change can be shown while they are rendered
 const SLOW = 0.3; // seconds
 const SAID = 1; // seconds: longer frames are announced
 
@@ -56,6 +57,8 @@ export class FrameRequests {
       if (waiting < (slow ? 1 : 2)) this.send(view, this.resolution.moving(this.stage, this.device));
     } else if (waiting === 0 && performance.now() - this.changedAt > REST) {
       const next = this.resolution.next(this.stage, this.device, this.shown.size);
+      const long = this.resolution.seconds(next.size) > SAID;
+      if (long && performance.now() - this.changedAt < LONG_REST) return false;
       const finer = next.size[0] * next.samples > this.shown.size[0] * this.shown.samples;
       const reshaped = this.shape !== this.size.join();
       if (!finer && !reshaped) return true;

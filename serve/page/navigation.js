@@ -6,7 +6,7 @@ import { add, clamp, dot, scale, subtract } from "./vectors.js";
 
 const UPRIGHT = Math.PI / 2;
 const NEAREST = 0.5; // voxels from the eye to the target
-const MARGIN = 0.86; // part of the frame that a framed scene takes
+const REACH = { side: 0.9, top: 0.92, bottom: 0.8 }; // of a framed scene, in halves of the frame; tools stand at the bottom
 
 // Turn around the target: `right` and `down` are how far the front of the scene turns.
 export function orbit(view, right, down) {
@@ -47,18 +47,19 @@ export function fly(view, [sideways, upwards, forwards], limit) {
 }
 
 // Stand as near as all corners of a box (lowest and highest) stay in the frame, without turning. A point is in the frame
-// when its distance aside is at most `half` times its depth: linear in where the eye stands.
+// when its distance aside is at most a part of its depth, on both sides: linear in where the eye stands.
 export function frame(view, [low, high], [width, height], limit) {
   const { look: ahead, right, up } = axes(view);
   const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? high : low)[axis]));
-  const half = MARGIN / (2 * focal(view.fov, [width, height]));
-  const stands = [[right, half * width], [up, half * height]].map(([axis, slope]) => {
-    const first = Math.min(...corners.map((corner) => slope * dot(corner, ahead) - dot(corner, axis)));
-    const last = Math.min(...corners.map((corner) => slope * dot(corner, ahead) + dot(corner, axis)));
-    return { depth: (first + last) / (2 * slope), aside: scale(axis, (last - first) / 2) };
+  const pixel = 1 / (2 * focal(view.fov, [width, height]));
+  const stands = [[right, width, REACH.side, REACH.side], [up, height, REACH.bottom, REACH.top]].map(([axis, side, before, after]) => {
+    const [low, high] = [-before * side * pixel, after * side * pixel];
+    const first = Math.max(...corners.map((corner) => dot(corner, axis) - high * dot(corner, ahead)));
+    const last = Math.min(...corners.map((corner) => dot(corner, axis) - low * dot(corner, ahead)));
+    return { axis, depth: (last - first) / (high - low), aside: (depth) => (first + last + (low + high) * depth) / 2 };
   });
   const depth = Math.min(...stands.map((stand) => stand.depth));
-  const eye = stands.reduce((place, stand) => add(place, stand.aside), scale(ahead, depth));
+  const eye = stands.reduce((place, stand) => add(place, stand.axis, stand.aside(depth)), scale(ahead, depth));
   const centre = scale(add(low, high), 0.5);
   return within({ ...view, distance: Math.max(NEAREST, dot(centre, ahead) - depth) }, eye, limit);
 }
