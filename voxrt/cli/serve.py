@@ -98,11 +98,11 @@ def serve(
 
 
 def _examples() -> list[Path]:
-    """Return the example scenes that are installed with voxrt."""
+    """Return the example scenes that are installed with voxrt; in a checkout they are links."""
     from voxrt.board_scenes import ASSET_READER_SUFFIXES  # noqa: PLC0415 - it imports NumPy
 
     folder = Path(voxrt.__file__).with_name("example_scenes")
-    return sorted(path for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
+    return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
 
 
 def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
