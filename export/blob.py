@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.provenance import Provenance
 from voxrt.export.word_file import read_bytes
 from voxrt.octree import Rom, RomError, census, decode
 from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
@@ -48,6 +50,8 @@ class Blob:
         The memory. The colour of material 0 is the background.
     view, lighting
         The camera and the lighting to start with; None leaves them to the board.
+    provenance
+        What the manifest says of the build. A blob keeps all of it but the seconds: equal memories give equal blobs.
 
     Examples
     --------
@@ -60,6 +64,7 @@ class Blob:
     rom: Rom
     view: Camera | None = None
     lighting: Lighting | None = None
+    provenance: Provenance = field(default_factory=Provenance)
 
 
 def blob_bytes(blob: Blob) -> bytes:
@@ -85,6 +90,9 @@ def blob_bytes(blob: Blob) -> bytes:
         sections[b"LITE"] = _LIGHT.pack(*light.position, light.ambient, flags, light.bounces, 0)
         if light.faces not in (None, FACES):
             sections[b"FACE"] = _FACES.pack(*light.faces)
+    told = msgspec.structs.replace(blob.provenance, seconds={})
+    if told != Provenance():
+        sections[b"PROV"] = msgspec.json.encode(told)
     offset = _HEADER.size + _ENTRY.size * len(sections)
     table, body = b"", b""
     for name, data in sections.items():
@@ -152,6 +160,7 @@ def read_blob(path: Path) -> Blob:
         Rom(title, octree, materials, _grid(path, depth, place) if known else None),
         None if view is None else Camera(view[:3], view[3:6], view[6:9], view[9:]),
         None if light is None else _lighting(light, faces),
+        _provenance(path, sections[b"PROV"]) if b"PROV" in sections else Provenance(),
     )
 
 
@@ -205,6 +214,14 @@ def _materials(path: Path, section: bytes) -> tuple[Material, ...]:
     except (struct.error, UnicodeDecodeError):
         raise _damaged(path, "section MATL", "is cut short or no text") from None
     return tuple(entries)
+
+
+def _provenance(path: Path, section: bytes) -> Provenance:
+    try:
+        str(section, "utf-8")  # the decoder looks only at the strings it needs
+        return msgspec.json.decode(section, type=Provenance)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        raise _damaged(path, "section PROV", f"is no account of a build ({error})") from None
 
 
 def _grid(path: Path, depth: int, place: list[float]) -> Grid:

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from .server_options import Limits
     from .strangers import Strangers
 
-_PIECE = 1 << 12  # bytes that are read before the limits are looked at
+_PIECE, _LARGE_PIECE = 1 << 12, 1 << 16  # bytes that are read before the limits are looked at
+_FEW_FRAMES = 4  # in a piece: the next one may be larger
 _BUFFER_LIMIT = 1 << 20  # bytes to be sent; messages wait above 32 KiB, so that only answers to pings come so far
 
 
@@ -102,6 +103,7 @@ class LimitedConnection(ServerConnection):
         self._frames = RateLimiter(guard.limits.frames_per_second, time.monotonic)
         self._new_frames = self._fragments = 0
         self._unread = bytearray()
+        self._piece = _PIECE
         self._address: str | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -145,12 +147,13 @@ class LimitedConnection(ServerConnection):
 
     def _read_on(self) -> None:
         while self._unread and not self._gate.closed and not self.transport.is_closing():
-            piece = bytes(self._unread[:_PIECE])
-            del self._unread[:_PIECE]
+            piece = bytes(self._unread[: self._piece])
+            del self._unread[: self._piece]
             super().data_received(piece)
             if self.transport.get_write_buffer_size() > _BUFFER_LIMIT:
                 self.transport.abort()
             wait = max(self._bytes.charge(len(piece)), self._frames.charge(self._new_frames))
+            self._piece = min(2 * self._piece, _LARGE_PIECE) if self._new_frames <= _FEW_FRAMES else _PIECE
             self._new_frames = 0
             if wait > 0:
                 self._gate.hold(wait)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
+import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -45,6 +47,7 @@ EMPTY_SCENE = Scene(
 )
 """The scene until another one is loaded: empty space, dark grey."""
 
+_REGISTERS_SECONDS = 0.05
 _LOG = logging.getLogger("voxrt.serve")
 
 
@@ -82,6 +85,8 @@ class Renderer:
         self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
         self._changed = asyncio.Event()
         self._newest_request = (0, 0)
+        self._registers: Mapping[str, int] = {}
+        self._registers_time = -math.inf
         self._first_frame: tuple[View, Frame] | None = None  # of a scene that was loaded
 
     def change_view(self, change: ChangeView, client: int, request: int) -> None:
@@ -146,9 +151,13 @@ class Renderer:
         self._changed.set()
 
     async def read_registers(self) -> Mapping[str, int]:
-        """Read the registers of the device between two frames."""
+        """Read the registers of the device between two frames; they may have been read a moment ago for another."""
         async with self._device_lock:
-            return await self._on_device(self.device.registers)
+            now = time.monotonic()
+            if now - self._registers_time > _REGISTERS_SECONDS:
+                self._registers = await self._on_device(self.device.registers)
+                self._registers_time = now
+            return self._registers
 
     async def render_view(self, view: View) -> Frame:
         """Render one frame of another view; the view of the session stays."""

@@ -87,7 +87,7 @@ class ChildReader:
         try:
             with tempfile.TemporaryDirectory(prefix="voxrt-scene-") as scratch:
                 return await asyncio.wait_for(self._read(paths, progress, scratch), self.seconds)
-        except TimeoutError:  # Python 3.10 has two of this name
+        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
             raise Refused(
                 f"the scene takes more than {self.seconds:.0f} s to build; build it before: voxrt build"
             ) from None

@@ -182,9 +182,9 @@ class FrameServer:
             return Response(200, "OK", headers, file.data)
         origin = request.headers.get("Origin")
         if "Upgrade" not in request.headers and "Host" in request.headers:
-            origin = (
-                f"http://{request.headers['Host']}"  # the page asks why it was refused, which browsers do not tell it
-            )
+            # The page asks why it was refused, which browsers do not tell it.
+            host = request.headers["Host"]
+            origin = f"https://{host}" if f"https://{host}" in self._access.origins else f"http://{host}"
         refusal = self._access.check(
             request.path, request.headers.get("Authorization"), origin, connection.local_address
         )

@@ -37,11 +37,11 @@ class Limits:
 
     clients: int = 64
     connections: int = 256
-    new_clients_per_second: float = 50
+    new_clients_per_second: float = 20
     strangers_per_address: int = 64
-    new_connections_per_address_and_second: float = 100
+    new_connections_per_address_and_second: float = 50
     frames_per_second: float = 400
-    bytes_per_second: float = 1 << 25
+    bytes_per_second: float = 1 << 24
     fragments: int = 64
     handshake_seconds: float = 5
     send_seconds: float = 20

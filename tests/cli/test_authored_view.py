@@ -77,7 +77,7 @@ def test_camera_and_light_stand_in_manifest_blob_and_board(yard, tmp_path):
 
 
 def test_what_cannot_be_seen_is_counted(yard, tmp_path):
-    yard.write_text(YARD.replace("[6, 5, 7]", "[0, 9, 0]").replace("[4, 6, 1]", "[1e9, 0, 0]"))
+    yard.write_text(YARD.replace("[6, 5, 7]", "[1e9, 5, 7]").replace("[4, 6, 1]", "[1e9, 0, 0]"))
     built = voxrt.build(yard, tmp_path, depth=5)
     assert [one.kind for one in built.warnings] == ["camera", "light"]
     assert (built.view, built.lighting) == (None, None)
