@@ -38,7 +38,7 @@ def render(
     ] = None,
     ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
-    shading: Literal["faces", "report", "flat"] | None = None,
+    shading: Annotated[Literal["faces", "report", "flat"] | None, Parameter(converter=choice)] = None,
     samples: Literal[1, 2, 4] = 1,
     background: Backdrop = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.arguments import Reporting, UsageError, choice, whole
 from voxrt.cli.board_results import ServeResult
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
@@ -28,7 +28,7 @@ _port = Parameter(converter=whole, metavar="PORT")
 
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
-    device: Literal["model", "sim", "pynq"] = "model",
+    device: Annotated[Literal["model", "sim", "pynq"], Parameter(converter=choice)] = "model",
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
