@@ -47,3 +47,12 @@ def test_a_budget_is_weighed_against_colours(tmp_path):
 def test_wrong_light_is_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         voxrt.BuildOptions(bake=True, **wrong)
+
+
+def test_conversion_keeps_what_was_baked(tmp_path):
+    built = voxrt.build(HOUSE, tmp_path, depth=4, bake=True)
+    blob, _ = voxrt.read_any(built.outputs["mem"])
+    voxrt.convert(blob, tmp_path / "house.blob")
+    there, _ = voxrt.read_any(tmp_path / "house.blob")
+    voxrt.convert(there, tmp_path / "other" / "house.coe")
+    assert read_manifest(tmp_path / "other" / "house.json").baked == built.baked
