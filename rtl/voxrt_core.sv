@@ -23,7 +23,9 @@ module voxrt_core
   // Features of the shader, 0 = not built in: flat colours, a point light with shadows, mirrors.
   parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
+  parameter string       OctreeFile   = ""
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -152,7 +154,8 @@ module voxrt_core
     .Banked      (Banked),
     .Flat        (Flat),
     .Light       (Light),
-    .Mirrors     (Mirrors)
+    .Mirrors     (Mirrors),
+    .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,
     .rst_ni          (rst_n),

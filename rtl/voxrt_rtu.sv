@@ -19,7 +19,8 @@ module voxrt_rtu
   parameter bit          Banked       = 1'b0,
   parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  parameter string       OctreeFile   = ""
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
@@ -96,7 +97,8 @@ module voxrt_rtu
   voxrt_octree_memory #(
     .Lanes    (Lanes),
     .BlockBits(BlockBits),
-    .Banked   (Banked)
+    .Banked   (Banked),
+    .File     (OctreeFile)
   ) u_memory (
     .clk_i,
     .rst_ni,
