@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 _ROWS, _HALF_BITS = 1024, 9
 _SECTION = re.compile(r"^\.bram_init (\d+)\n((?:[0-9a-f]{3}[ \n]+)+)", re.MULTILINE)
 # Bits per word of a block RAM: where a word's bits are in a row of 18 bits, by the word's number in the row.
-_PLACES = {
-    bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4)
-}
+_PLACES = {bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4)}
 _PLACES[9] = [0, 9]
 _PLACES[18] = [0]
 
@@ -111,7 +109,12 @@ def find_slices(config: str, memories: Mapping[str, tuple[int, int]]) -> dict[st
             piece = candidates.get(section.tobytes())
             if piece is not None:
                 slices.append(Slice(wid, piece.row, piece.rows, piece.bit, piece.bits))
-        held = {(row, bit) for s in slices for row in range(s.row, min(s.row + s.rows, rows), 256) for bit in range(s.bit, min(s.bit + s.bits, bits))}
+        held = {
+            (row, bit)
+            for s in slices
+            for row in range(s.row, min(s.row + s.rows, rows), 256)
+            for bit in range(s.bit, min(s.bit + s.bits, bits))
+        }
         if len(held) != -(-rows // 256) * bits:
             raise ValueError(f"memory {name}: a part of it is in no block RAM of the placed design")
         found[name] = slices
@@ -137,7 +140,11 @@ def patch_config(
     str
         The text; nothing else differs.
     """
-    sections = {piece.wid: _write_section(_encode(contents[name], piece)) for name, slices in memories.items() for piece in slices}
+    sections = {
+        piece.wid: _write_section(_encode(contents[name], piece))
+        for name, slices in memories.items()
+        for piece in slices
+    }
 
     def replace(match: re.Match[str]) -> str:
         wid = int(match[1])

