@@ -54,16 +54,16 @@ def register_decode(text: str) -> str:
     registers += ["    end", ""]
     kept = part[: part.index("    always_comb begin")]
     joined = kept + declarations + "\n" + decode + pending + passed[:passed_end]
-    joined += "\n    // A clock for the wires from the decode to all registers.\n" + "\n".join(registers) + passed[passed_end:]
-    text = text[:begin] + joined + text[end:]
+    joined += "\n    // A clock for the wires from the decode to all registers.\n" + "\n".join(registers)
+    text = text[:begin] + joined + passed[passed_end:] + text[end:]
     for kind in ("rd", "wr"):
         stall = re.search(rf"    assign cpuif_req_stall_{kind} = (.*);\n", text)
         if stall is None:
             raise ValueError("PeakRDL's block stalls in another way; look at register_decode")
         text = text.replace(stall[0], f"    assign cpuif_req_stall_{kind} = {stall[1]} | decoded_req;\n")
-    return text.replace("    logic external_pending;\n", "    logic external_pending;\n    logic decoded_req;\n", 1).replace(
-        "    logic decoded_req;\n    logic decoded_req_is_wr;", "    logic decoded_req_is_wr;", 1
-    )
+    # It is used before the decode.
+    text = text.replace("    logic decoded_req;\n", "", 1)
+    return text.replace("    logic external_pending;\n", "    logic external_pending;\n    logic decoded_req;\n", 1)
 
 
 def main() -> None:

@@ -39,7 +39,7 @@ def config_of(contents):
 
 
 def section(bits):
-    """Give a section's lines of bits, each a row, its place in the row of 18 bits, and a number whose lowest bit it is."""
+    """Give a section's lines of bits: of each its row, its place there, and a number whose lowest bit it is."""
     rows = np.zeros(1024, dtype=int)
     for row, place, number in bits:
         rows[row] |= (int(number) & 1) << place

@@ -15,7 +15,12 @@ import pytest
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents, find_slices, patch_config
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources, compile_verilog
-from voxrt.board.designs.simulation.placed_netlist import UnknownCellError, placed_verilog, write_block_rams
+from voxrt.board.designs.simulation.placed_netlist import (
+    MODELS,
+    UnknownCellError,
+    placed_verilog,
+    write_block_rams,
+)
 
 pytestmark = [
     pytest.mark.skipif(
@@ -82,8 +87,7 @@ def test_the_placed_netlist_answers_as_the_sources_do(base, contents, patched, t
     netlist = json.loads((base / "placed.json").read_text())
     (tmp_path / "placed.v").write_text(placed_verilog(netlist))
     write_block_rams(patched, tmp_path)
-    models = Path(build.__file__).parent / "simulation" / "ecp5_models.sv"
-    placed = compile_verilog([models, tmp_path / "placed.v"], tmp_path / "placed", [], top="top")
+    placed = compile_verilog([*MODELS, tmp_path / "placed.v"], tmp_path / "placed", [], top="top")
     sources = compile_sources(BOARD, tmp_path / "sources", extra=[SMALL], top="small_design")
     with (
         BoardSimulation(placed, tmp_path) as board,

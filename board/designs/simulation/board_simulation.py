@@ -40,10 +40,15 @@ class Timing:
     front_rows: int
     worst_balance: int
     """Most ones less zeros, or zeros less ones, of a channel between two control words."""
+    mixed_words: int
+    """Pixels of some channels with control words of others."""
 
-
-VGA = (420_000, 480, 2, (800, 800), (640, 640), (96, 96), 16, 10)
-"""640 x 480 as VESA has it: `Timing` from `clocks` to `front_rows`."""
+    @property
+    def is_vga(self) -> bool:
+        """The timing is that of 640 x 480, as VESA has it."""
+        rows = (self.clocks, self.visible_rows, self.sync_rows, self.front_rows) == (420_000, 480, 2, 10)
+        columns = (self.row_clocks, self.row_pixels, self.sync_clocks) == ((800, 800), (640, 640), (96, 96))
+        return rows and columns and self.front_columns == 16 and self.mixed_words == 0
 
 
 def compile_sources(
@@ -135,8 +140,21 @@ class BoardSimulation:
             if line == "none":
                 raise RuntimeError("the monitor finds no picture")
             size, clocks, visible, sync, *rest = (int(part) for part in line.split())
-            pairs = [(rest[2 * i], rest[2 * i + 1]) for i in range(3)]
-            timing = Timing(size // 3, clocks, visible, sync, *pairs, *rest[6:])
+            row, pixels_of_row, sync_clocks = ((rest[2 * i], rest[2 * i + 1]) for i in range(3))
+            front_columns, front_rows, balance, mixed = rest[6:]
+            timing = Timing(
+                size // 3,
+                clocks,
+                visible,
+                sync,
+                row,
+                pixels_of_row,
+                sync_clocks,
+                front_columns,
+                front_rows,
+                balance,
+                mixed,
+            )
             assert self._process.stdout is not None
             data = self._process.stdout.read(size)
             pixels = np.frombuffer(data, dtype=np.uint8)

@@ -1,19 +1,23 @@
 """The netlist that nextpnr-ecp5 writes after place and route (``--write``), as plain Verilog for a simulation.
 
-It is written cell by cell as the hardware works: an unconnected input of a lookup table, a block RAM or a multiplier is
-1; a parameter ``<PIN>MUX`` ties a pin to 0 or 1, or inverts it. What block RAMs hold is read when the simulation starts,
-from the files ``bram_WID.hex``: 1,024 rows of 18 bits, as `write_block_rams` takes them from a ``.config``.
+It is written cell by cell as the hardware works: an unconnected input of a lookup table, a block RAM or a multiplier
+is 1; a parameter ``<PIN>MUX`` ties a pin to 0 or 1, or inverts it. What block RAMs hold is read when the simulation
+starts, from the files ``bram_WID.hex``: 1,024 rows of 18 bits, as `write_block_rams` takes them from a ``.config``.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base_design import read_block_rams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from pathlib import Path
+
+_HERE = Path(__file__).resolve().parent
+MODELS = (_HERE / "ecp5_models.sv", _HERE / "placed_ram.v")
+"""The models of PLL, output register and block RAM that the Verilog needs."""
 
 _PIN_WIDTHS = {"AD": 14, "DI": 18, "DO": 18}
 
@@ -39,8 +43,7 @@ def placed_verilog(netlist: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        Module `top` with the ports of the design, and models of block RAM, multiplier and output register.
-        ``EHXPLLL`` is an instance of the model in ``ecp5_models.sv``.
+        Module `top` with the ports of the design. MODELS has what it instantiates.
 
     Raises
     ------
@@ -75,16 +78,16 @@ class _Writer:
         undriven = [f"  assign n{bit} = 1'b1;" for bit in sorted(self._used - self._driven)]
         head = "module top (\n" + ",\n".join(ports) + "\n);\n"
         body = "\n".join([*wires, *self._declarations, *undriven, *self._lines])
-        return head + body + "\nendmodule\n" + _MODELS
+        return head + body + "\nendmodule\n"
 
     def net(self, cell: Mapping[str, Any], pin: str) -> int | str | None:
-        """The net of a pin: a number, "0" or "1", or None where there is none."""
+        """Give the net of a pin: a number, "0" or "1", or None where there is none."""
         bits = cell["connections"].get(pin) or [None]
         bit: int | str | None = bits[0]
         return bit
 
     def value(self, cell: Mapping[str, Any], pin: str, default: str = "1'b1") -> str:
-        """What comes in at a pin, as an expression."""
+        """Give what comes in at a pin, as an expression."""
         chosen = cell["parameters"].get(f"{pin}MUX", pin).strip()
         if chosen in {"0", "1"}:
             return f"1'b{chosen}"
@@ -106,7 +109,7 @@ class _Writer:
             self._lines.append(f"  assign n{bit} = {expression};")
 
     def output(self, cell: Mapping[str, Any], pin: str) -> str:
-        """The net that an instance drives."""
+        """Give the net that an instance drives."""
         bit = self.net(cell, pin)
         if not isinstance(bit, int):
             return ""
@@ -122,10 +125,9 @@ class _Writer:
         a, b, c, d = (self.value(cell, pin) for pin in "ABCD")
         if mode == "DPRAM":
             self._declarations.append(f"  reg [15:0] ram{number} = 16'd{initial};")
-            self._lines.append(
-                f"  always @(posedge {self.value(cell, 'WCK')}) if ({self.value(cell, 'WRE')}) "
-                f"ram{number}[{{{', '.join(self.value(cell, f'WAD{i}') for i in (3, 2, 1, 0))}}}] <= {self.value(cell, 'WD')};"
-            )
+            clock, enable, data = (self.value(cell, pin) for pin in ("WCK", "WRE", "WD"))
+            place = ", ".join(self.value(cell, f"WAD{i}") for i in (3, 2, 1, 0))
+            self._lines.append(f"  always @(posedge {clock}) if ({enable}) ram{number}[{{{place}}}] <= {data};")
             f = f"ram{number}[{{{a}, {c}, {b}, {d}}}]"
         else:
             f = _lookup(initial, (a, b, c, d))
@@ -261,7 +263,7 @@ _CELLS: dict[str, Callable[[_Writer, int, Mapping[str, Any]], None]] = {
 
 
 def _lookup(table: int, inputs: tuple[str, ...]) -> str:
-    """The function of a table as an expression; the last input is the highest bit of the index."""
+    """Give the function of a table as an expression; the last input is the highest bit of the index."""
     if not inputs:
         return f"1'b{table & 1}"
     *rest, last = inputs
@@ -272,21 +274,12 @@ def _lookup(table: int, inputs: tuple[str, ...]) -> str:
     if last == "1'b1":
         return _lookup(high, tuple(rest))
     ones = (1 << half) - 1
-    if low == 0 and high == ones:
-        return last
-    if low == ones and high == 0:
-        return f"~{last}"
     if low == high ^ ones:
         return _xor(_lookup(low, tuple(rest)), last)
-    if low == 0:
-        return f"({last} & {_lookup(high, tuple(rest))})"
-    if low == ones:
-        return f"(~{last} | {_lookup(high, tuple(rest))})"
-    if high == 0:
-        return f"(~{last} & {_lookup(low, tuple(rest))})"
-    if high == ones:
-        return f"({last} | {_lookup(low, tuple(rest))})"
-    return f"({last} ? {_lookup(high, tuple(rest))} : {_lookup(low, tuple(rest))})"
+    zero, one = _lookup(low, tuple(rest)), _lookup(high, tuple(rest))
+    forms = {low == 0: f"({last} & {one})", low == ones: f"(~{last} | {one})"}
+    forms |= {high == 0: f"(~{last} & {zero})", high == ones: f"({last} | {zero})"}
+    return forms.get(True, f"({last} ? {one} : {zero})")
 
 
 def _xor(first: str, second: str) -> str:
@@ -294,63 +287,3 @@ def _xor(first: str, second: str) -> str:
         constant, other = (first, second) if first in {"1'b0", "1'b1"} else (second, first)
         return other if constant == "1'b0" else f"~{other}"
     return f"({first} ^ {second})"
-
-
-_MODELS = """
-module placed_ram #(
-  parameter WIDTH_A = 18, parameter WIDTH_B = 18, parameter FILE = ""
-) (
-  input CLKA, input CEA, input WEA, input RSTA, input [13:0] ADA, input [17:0] DIA, output [17:0] DOA,
-  input CLKB, input CEB, input WEB, input RSTB, input [13:0] ADB, input [17:0] DIB, output [17:0] DOB
-);
-  reg [17:0] rows [0:1023];
-  reg [17:0] a_q, b_q;
-  initial $readmemh(FILE, rows);
-  assign DOA = a_q;
-  assign DOB = b_q;
-
-  // Where the bits of an access are in a row, and where they are at the pins.
-  function [4:0] place(input integer width, input [13:0] address);
-    case (width)
-      1: place = {1'b0, address[3:0]} + {4'd0, address[3]};
-      2: place = {1'b0, address[3:1], 1'b0} + {4'd0, address[3]};
-      4: place = {1'b0, address[3:2], 2'b00} + {4'd0, address[3]};
-      9: place = address[3] ? 5'd9 : 5'd0;
-      default: place = 5'd0;
-    endcase
-  endfunction
-
-  function [17:0] mask(input integer width, input [13:0] address);
-    case (width)
-      1, 2, 4, 9: mask = 18'((1 << width) - 1);
-      default: mask = {{9{address[1]}}, {9{address[0]}}};
-    endcase
-  endfunction
-
-  generate
-    if (WIDTH_A == 36 || WIDTH_B == 36) begin : g_wide
-      // Port A writes, port B reads; the low half is at DIA and DOA.
-      if (WIDTH_A != 36 || WIDTH_B != 36) initial $error("two widths of one block RAM");
-      always @(posedge CLKA) if (CEA && WEA) begin
-        rows[{ADA[13:5], 1'b0}] <= (rows[{ADA[13:5], 1'b0}] & ~{{9{ADA[1]}}, {9{ADA[0]}}}) | (DIA & {{9{ADA[1]}}, {9{ADA[0]}}});
-        rows[{ADA[13:5], 1'b1}] <= (rows[{ADA[13:5], 1'b1}] & ~{{9{ADA[3]}}, {9{ADA[2]}}}) | (DIB & {{9{ADA[3]}}, {9{ADA[2]}}});
-      end
-      always @(posedge CLKB) if (CEB) begin
-        a_q <= rows[{ADB[13:5], 1'b0}];
-        b_q <= rows[{ADB[13:5], 1'b1}];
-      end
-    end else begin : g_narrow
-      always @(posedge CLKA) if (CEA) begin
-        if (WEA) rows[ADA[13:4]] <= (rows[ADA[13:4]] & ~(mask(WIDTH_A, ADA) << place(WIDTH_A, ADA))) |
-                                    ((DIA & mask(WIDTH_A, ADA)) << place(WIDTH_A, ADA));
-        else a_q <= WIDTH_A == 18 ? rows[ADA[13:4]] : (rows[ADA[13:4]] >> place(WIDTH_A, ADA)) & 18'((1 << WIDTH_A) - 1);
-      end
-      always @(posedge CLKB) if (CEB) begin
-        if (WEB) rows[ADB[13:4]] <= (rows[ADB[13:4]] & ~(mask(WIDTH_B, ADB) << place(WIDTH_B, ADB))) |
-                                    ((DIB & mask(WIDTH_B, ADB)) << place(WIDTH_B, ADB));
-        else b_q <= WIDTH_B == 18 ? rows[ADB[13:4]] : (rows[ADB[13:4]] >> place(WIDTH_B, ADB)) & 18'((1 << WIDTH_B) - 1);
-      end
-    end
-  endgenerate
-endmodule
-"""
