@@ -1,7 +1,7 @@
 """The manifest: what a ``.mem`` file cannot say about itself, as JSON beside it.
 
-Every field is required except the camera and the lighting. No other field is allowed. A reader refuses a schema version
-that it does not know.
+Every field is required except the camera, the lighting and the baked light. No other field is allowed. A reader refuses
+a schema version that it does not know.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.provenance import Provenance, Source
 from voxrt.octree import Dialect, RomError, census
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
@@ -49,17 +50,37 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ]
 
 
-class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the memory was built from: the name of the file, and the options of the build.
+class BakedLight(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The light that was baked into the materials: show the memory flat.
+
+    Attributes
+    ----------
+    sun
+        The direction towards the sun, scene frame; zeros for no sun.
+    sky
+        Linear light of the sky: red, green, blue.
+    samples
+        Rays to the sky per voxel.
+    voxels
+        Voxels with baked colours.
+    colours
+        The most baked colours.
+    words_before, words
+        Words of the memory without and with baked light, before it was fitted to a budget.
 
     Examples
     --------
-    >>> Source("house.obj", {"fill": "solid"}).file
-    'house.obj'
+    >>> BakedLight((1, 3, 2), (0.4, 0.4, 0.4), 64, 1000, 254, 721, 2049).samples
+    64
     """
 
-    file: str
-    settings: dict[str, str | int | float | bool | None]
+    sun: tuple[float, float, float]
+    sky: tuple[float, float, float]
+    samples: int
+    voxels: int
+    colours: int
+    words_before: int
+    words: int
 
 
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -95,6 +116,8 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         What it was built from; null where that is not known.
     view, lighting
         The author's camera and light; null, or absent, where the author gave none.
+    baked
+        The light that was baked into the materials; null, or absent, where none was.
     """
 
     schema: int
@@ -113,11 +136,17 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     source: Source | None
     view: Camera | None = None
     lighting: Lighting | None = None
+    baked: BakedLight | None = None
 
     @property
     def material_table(self) -> tuple[Material, ...]:
         """The materials as the rest of the project passes them, indexed by id."""
         return tuple(Material(entry.name, entry.colour, entry.mirror, entry.authored) for entry in self.materials)
+
+    @property
+    def provenance(self) -> Provenance:
+        """What it says of the build."""
+        return Provenance(self.source, self.objects, self.warnings, self.seconds)
 
     @property
     def grid(self) -> Grid | None:
@@ -136,6 +165,7 @@ def make_manifest(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
+    baked: BakedLight | None = None,
 ) -> Manifest:
     """Return the manifest of a memory and of the bytes of its ``.mem`` file."""
     voxels = census(rom.octree).voxels
@@ -159,6 +189,7 @@ def make_manifest(
         source=source,
         view=view,
         lighting=lighting,
+        baked=baked,
     )
 
 

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MOST_THREADS = 1024
+_MOST_NAMES = 20
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no material per triangle: the part has one
 _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -44,7 +45,7 @@ def voxelize(
     scene: Scene,
     grid: Grid,
     *,
-    fill: Literal["solid", "surface"] = "solid",
+    fill: Literal["solid", "surface", "auto"] = "solid",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,
@@ -58,7 +59,8 @@ def voxelize(
     fill
         ``"solid"`` fills what surfaces enclose, small holes or not and whichever way each closed piece faces. It does
         not fill open pieces: those with an opening larger than 15 % of their area that other pieces do not close.
-        ``"surface"`` keeps the shells alone.
+        ``"surface"`` keeps the shells alone. ``"auto"`` is ``"solid"``, but leaves open also pieces whose openings
+        exceed 5 % of their area together, as those of clothes do.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, and the box of the mesh where the author gave none (with a warning).
@@ -93,14 +95,14 @@ def voxelize(
     """
     arguments.instance("scene", scene, Scene)
     arguments.instance("grid", grid, Grid)
-    arguments.choice("fill", fill, ("solid", "surface"))
+    arguments.choice("fill", fill, ("solid", "surface", "auto"))
     arguments.choice("geometry", geometry, GEOMETRIES)
     arguments.choice("pow2", pow2, POW2_CHOICES)
     threads = arguments.whole("threads", threads, 0, _MOST_THREADS)
     parts = _Parts(grid)
     reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
     try:
-        result = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
+        result = parts.voxelize(fill=fill, threads=threads, objects=len(scene.objects))
     except _native.OutOfRangeError as error:
         raise _unreachable(scene, int(error.args[0])) from None
     objects = tuple(
@@ -108,13 +110,28 @@ def voxelize(
         for item, (source, moved, grown), mode, count in zip(
             scene.objects, reports, result.object_modes, result.object_voxels, strict=True
         )
+        if geometry == "collider" or not item.hidden
     )
+    if without := [report.name for report in objects if not report.voxels]:
+        parts.warn("no-voxels", f"objects got no voxel: {_names(without)}", len(without))
     standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
     if standing_open:
         parts.warn(
             "open-surface",
             "open objects, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
+        )
+    mostly_filled = [
+        item.name for item, mostly in zip(scene.objects, result.object_mostly_filled, strict=True) if mostly
+    ]
+    if mostly_filled:
+        first, *others = mostly_filled
+        more = f" and {len(others)} more" if others else ""
+        parts.warn(
+            "mostly-filled",
+            f"open objects were filled, and are more inside than shell ({first}{more}): build thin sheets, such as "
+            "cloth, with fill auto or surface",
+            len(mostly_filled),
         )
     if pieces := int(result.object_flipped.sum()):
         parts.warn(
@@ -134,6 +151,12 @@ def voxelize(
         octant_materials=result.octant_materials,
     )
     return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
+
+
+def _names(names: list[str]) -> str:
+    """Return names as a message lists them; the reports of the objects list all."""
+    shown = ", ".join(names[:_MOST_NAMES])
+    return shown + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
 
 
 class _Parts:
@@ -198,7 +221,7 @@ class _Parts:
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Voxelized:
+    def voxelize(self, *, fill: str, threads: int, objects: int) -> _native.Voxelized:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from voxrt.export import Blob, Provenance
 from voxrt.octree import census, to_dense, to_points
 
 if TYPE_CHECKING:
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voxrt.baking import Bake
+    from voxrt.export import Source
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
@@ -44,11 +47,15 @@ class BuildResult:
         What fitting the budget took; None if there was none.
     seconds
         Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
-        ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
+        ``"bake"``, ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
-        The author's camera and light; None if the author gave none.
+        The author's camera and light; None if the author gave none. A memory with baked light is shown flat.
+    source
+        The name of the asset, and the options of the build.
+    bake
+        What was baked; None if no light was.
 
     Examples
     --------
@@ -74,6 +81,8 @@ class BuildResult:
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
     view: Camera | None = None
     lighting: Lighting | None = None
+    source: Source | None = None
+    bake: Bake | None = None
 
     def __repr__(self) -> str:
         words, count = len(self.octree.words), len(self.rom.materials) - 1
@@ -82,6 +91,12 @@ class BuildResult:
             f"<BuildResult {self.rom.name!r}: depth {self.octree.depth}, {words:,} words, {self.solid_voxels:,} solid "
             f"voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
         )
+
+    @property
+    def blob(self) -> Blob:
+        """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
+        told = Provenance(self.source, self.objects, self.warnings, self.seconds)
+        return Blob(self.rom, self.view, self.lighting, told)
 
     @property
     def octree(self) -> Octree:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.octree.camera import THREE_QUARTER
+from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree, Rom
-    from voxrt.voxelize import Scene
+    from voxrt.octree.camera import Lighting
+    from voxrt.voxelize import Material
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -34,12 +35,16 @@ class BudgetFit:
     psnr, ssim
         How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
         1 for equal pictures.
+    lossless
+        Where more than a tenth of the surface was given up: the greatest depth at which the asset fits the budget
+        without loss, and its words there. None if little was given up, or no depth fits.
     """
 
     words: int
     fit: octree.Fit
     psnr: float
     ssim: float
+    lossless: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,21 +66,21 @@ class InteriorFit:
     words_before: int
 
 
-def find_material(asset: object, scene: Scene, wanted: int | str) -> int:
-    """Find the id of a material that is asked for by name or by id.
+def find_material(asset: object, materials: Sequence[Material], wanted: int | str) -> int:
+    """Find the id of a material, one of those of an asset, that is asked for by name or by id.
 
     Raises
     ------
     AssetError
-        The scene has none such.
+        None of them is it.
     """
-    names = [material.name for material in scene.materials]
+    names = [material.name for material in materials]
     if wanted in names[1:]:
         return 1 + names[1:].index(str(wanted))
     number = int(wanted) if isinstance(wanted, int) or wanted.isdecimal() else 0
     if 1 <= number < len(names):
         return number
-    there = ", ".join(f"{number} {name}" for number, name in enumerate(names[1:9], 1)) + ", ..." * (len(names) > 9)
+    there = ", ".join(f"{number} {name}" for number, name in enumerate(names[1:], 1))
     raise AssetError(
         asset, f"has no material {wanted!r} for its interior", fix=f"name one of: {there or 'it has none'}"
     )
@@ -89,14 +94,18 @@ def fit_interior(rom: Rom, material: int | None) -> tuple[Rom, InteriorFit]:
     return replace(rom, octree=tree), InteriorFit(material, found, len(whole.words))
 
 
-def fit_budget(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
+def fit_budget(
+    rom: Rom, words: int, size: tuple[int, int], threads: int, *, lighting: Lighting = PLAIN_LIGHTING
+) -> tuple[Rom, BudgetFit]:
     """Fit `rom` to a memory of so many words; pictures of `size` pixels tell how like it is to what it was."""
     colours = np.array([material.colour for material in rom.materials], np.uint8)
-    views = Views(rom, threads)
+    views = Views(rom, threads, lighting)
     fit = octree.fit(rom.octree, words, colours=colours, choose=views.choose)
     fitted = replace(rom, octree=fit.octree)
     camera = aim_camera(rom, size)
-    before, after = (sim.render(r, camera, size, engine="model", threads=threads).colour for r in (rom, fitted))
+    before, after = (
+        sim.render(r, camera, size, engine="model", lighting=lighting, threads=threads).colour for r in (rom, fitted)
+    )
     psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
     return fitted, BudgetFit(words, fit, psnr, ssim)
 
@@ -107,9 +116,10 @@ class Views:
     size = (320, 240)
     """Pixels."""
 
-    def __init__(self, rom: Rom, threads: int = 0) -> None:
+    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = PLAIN_LIGHTING) -> None:
         self._rom = rom
         self._threads = threads
+        self._lighting = lighting
         self._cameras = [aim_camera(rom, self.size, look=look) for look in _looks()]
         self._pictures = self._render(rom)
 
@@ -136,7 +146,8 @@ class Views:
 
     def _render(self, rom: Rom) -> list[NDArray[np.uint8]]:
         return [
-            sim.render(rom, camera, self.size, engine="model", threads=self._threads).colour for camera in self._cameras
+            sim.render(rom, camera, self.size, engine="model", lighting=self._lighting, threads=self._threads).colour
+            for camera in self._cameras
         ]
 
 

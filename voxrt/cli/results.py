@@ -6,13 +6,12 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
-import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from voxrt.cli.messages import name_file
-from voxrt.outputs import OutputError
+from voxrt.cli.messages import name_file, print_answer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -91,6 +90,8 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     psnr: float | None
     """Of the scene's picture against that without a budget, decibel; null where they are equal."""
     ssim: float
+    lossless: tuple[int, int] | None = None
+    """The greatest depth that fits without loss, and its words there, where much was given up."""
 
 
 class InteriorEntry(msgspec.Struct, frozen=True):
@@ -102,6 +103,25 @@ class InteriorEntry(msgspec.Struct, frozen=True):
     """How many they are."""
     words_before: int
     """What the memory takes when they keep their materials."""
+
+
+class BakedEntry(msgspec.Struct, frozen=True):
+    """The light that was baked."""
+
+    sun: tuple[float, float, float]
+    """The direction towards the sun, scene frame."""
+    sky: tuple[float, float, float]
+    """Linear light of the sky: red, green, blue."""
+    samples: int
+    """Rays to the sky per voxel."""
+    voxels: int
+    """Voxels with baked colours."""
+    colours: int
+    """The most baked colours."""
+    words_before: int
+    """What the memory takes without baked light."""
+    words: int
+    """What it takes with it, before a budget."""
 
 
 class BuildReport(msgspec.Struct, frozen=True):
@@ -123,6 +143,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when there was none."""
     interior: InteriorEntry | None = None
     """Null when they keep their materials."""
+    baked: BakedEntry | None = None
+    """Null when no light was baked."""
 
 
 def build_report(result: BuildResult) -> BuildReport:
@@ -143,6 +165,7 @@ def build_report(result: BuildResult) -> BuildReport:
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
+        baked=None if result.bake is None else BakedEntry(**asdict(result.bake)),
     )
 
 
@@ -160,6 +183,7 @@ def _budget_entry(budget: BudgetFit) -> BudgetEntry:
         recoloured=fit.recoloured,
         psnr=budget.psnr if math.isfinite(budget.psnr) else None,
         ssim=budget.ssim,
+        lossless=budget.lossless,
     )
 
 
@@ -193,7 +217,7 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct) -> None:
+def print_json(result: msgspec.Struct | list[BuildReport]) -> None:
     """Print a result on standard output.
 
     Raises
@@ -201,11 +225,4 @@ def print_json(result: msgspec.Struct) -> None:
     OutputError
         Standard output cannot be written to, other than because nobody reads it any more.
     """
-    text = msgspec.json.format(msgspec.json.encode(result), indent=2)
-    try:
-        sys.stdout.buffer.write(text + b"\n")
-        sys.stdout.buffer.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        raise OutputError(f"standard output: {error.strerror}") from error
+    print_answer(msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError
+from voxrt.cli.arguments import Reporting, UsageError, choice
 from voxrt.cli.board_results import UploadResult
-from voxrt.cli.messages import summarize, transfer_bar
+from voxrt.cli.messages import summarize
+from voxrt.cli.progress import transfer_bar
 from voxrt.cli.results import print_json
 from voxrt.cli.serve import open_device
 
@@ -26,7 +27,7 @@ def upload(
     /,
     *,
     to: Annotated[str | None, Parameter(metavar="URL")] = None,
-    device: Literal["model", "sim"] | None = None,
+    device: Annotated[Literal["model", "sim"] | None, Parameter(converter=choice)] = None,
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     dry_run: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
@@ -80,11 +81,14 @@ async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_r
     from voxrt.serve.frame_client import open_client  # noqa: PLC0415 - it imports websockets
 
     try:
+        manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
+        files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
+    except OSError as error:
+        raise voxrt.RomError(f"{path}: {error}") from error
+    try:
         async with open_client(url) as client:
             _check_fit(scene, client.hello["device"])
             await client.take_control()
-            manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
-            files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
             await client.upload(files, progress, check_only=dry_run)
     except Refused as refusal:
         raise voxrt.SimulatorError(str(refusal)) from refusal
