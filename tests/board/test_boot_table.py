@@ -46,13 +46,15 @@ def camera(number):
 
 
 def test_the_boot_list_writes_all_that_a_picture_needs(scene):
-    lighting = Lighting((-1, 2, 3), 77, on=True, bounces=3)
+    lighting = Lighting((-1, 2, 3), 77, on=True, bounces=3, faces=(1, 2, 3, 4, 5, 6))
     table = boot_table(scene, [camera(i) for i in range(CAMERAS)], lighting, scale=1, control=3, period=9)
     written = play(table, 0)
     assert written[REGISTERS["size"][0]] == 240 << 16 | 320
     assert written[REGISTERS["depth"][0]] == 1
     assert written[REGISTERS["root"][0]] == 0
-    assert written[REGISTERS["shading"][0]] == 3 << 16 | 77 << 8 | 2
+    assert written[REGISTERS["shading"][0]] == 3 << 16 | 77 << 8 | 4 | 2
+    assert written[REGISTERS["lower_faces"][0]] == 5 << 16 | 3 << 8 | 1
+    assert written[REGISTERS["upper_faces"][0]] == 6 << 16 | 4 << 8 | 2
     assert [written[REGISTERS[f"light[{a}]"][0]] for a in range(3)] == [0xFFFFFFFF, 2, 3]
     assert written[OCTREE_MEMORY] == 1
     for material in range(256):
