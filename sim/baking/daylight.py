@@ -145,13 +145,16 @@ def _primitive(most: int) -> NDArray[np.float64]:
     side = np.arange(-most, most + 1)
     found = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
     primitive = (np.gcd.reduce(found, axis=1) == 1) & (found[:, 1:] != 0).any(axis=1)
-    return found[primitive].astype(np.float64)
+    kept: NDArray[np.float64] = found[primitive].astype(np.float64)
+    return kept
 
 
 def _nearest(wanted: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray[np.float64]:
     units = steps / np.linalg.norm(steps, axis=1, keepdims=True)
     # Rounded, so that ties fall alike on every machine.
-    return steps[np.concatenate([np.round(some @ units.T, 9).argmax(axis=1) for some in np.array_split(wanted, 16)])]
+    rows = [np.round(some @ units.T, 9).argmax(axis=1) for some in np.array_split(wanted, 16)]
+    nearest: NDArray[np.float64] = steps[np.concatenate(rows)]
+    return nearest
 
 
 def _directions(steps: NDArray[np.float64], weights: NDArray[np.float64]) -> Directions:

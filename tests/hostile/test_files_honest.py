@@ -48,7 +48,7 @@ def picture(tmp_path):
 def test_ply_texture_of_vertices(tmp_path, picture, names):
     said = ply(
         "".join(f"property float {name}\n" for name in names),
-        ("0 0 0 0.5 0.9", "1 0 0 0.5 0.9", "0 1 0 0.5 0.9"),
+        ("0 0 0 0.5 0.75", "1 0 0 0.5 0.75", "0 1 0 0.5 0.75"),
         comments=picture,
     )
     scene = voxelize.load(written(tmp_path, said, "a.ply"))
@@ -61,7 +61,7 @@ def test_ply_texture_of_corners(tmp_path, picture):
     said = ply(
         comments=picture,
         of_face="property list uchar float texcoord\n",
-        face="3 0 1 2 6 0.5 0.1 0.5 0.1 0.5 0.1",
+        face="3 0 1 2 6 0.5 0.25 0.5 0.25 0.5 0.25",
     )
     surface = voxelize.load(written(tmp_path, said, "a.ply")).objects[0].mesh.appearance
     assert sample(surface, np.array([0]), np.full((1, 3), 1 / 3))[0].tolist() == [0, 1, 0, 1]

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -208,8 +209,8 @@ def test_ctrl_c_ends_the_child_and_leaves_nothing(tmp_path):
     )
 
     def children():
-        tasks = f"/proc/{command.pid}/task/{command.pid}/children"
-        return open(tasks).read().split()  # noqa: PTH123
+        tasks = Path(f"/proc/{command.pid}/task").glob("*/children")
+        return [pid for task in tasks for pid in task.read_text(encoding="ascii").split()]
 
     end = time.monotonic() + 60
     while not (found := children()) and time.monotonic() < end:
@@ -218,5 +219,5 @@ def test_ctrl_c_ends_the_child_and_leaves_nothing(tmp_path):
     command.communicate(timeout=60)
     assert command.returncode == 130
     assert found
-    assert not any(os.path.exists(f"/proc/{pid}") for pid in found)  # noqa: PTH110
+    assert not any(Path("/proc", pid).exists() for pid in found)
     assert not list(temporary.iterdir())

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <iterator>
 #include <random>
-#include <sanitizer/common_interface_defs.h>
 #include <string>
 #include <unistd.h>
 
@@ -33,6 +32,12 @@ void keep(const std::string& name, std::span<const uint8_t> data) {
 }
 
 void keep_finding() { keep("finding", current); }
+
+/// The sanitizers end the program by SIGABRT.
+void aborted(int) {
+    keep_finding();
+    _exit(1);
+}
 
 void too_slow(int) {
     std::fprintf(stderr, "an input takes more than %u seconds\n", kSecondsPerRun);
@@ -107,6 +112,9 @@ void mutate(std::vector<uint8_t>& data, const std::vector<std::vector<uint8_t>>&
 
 } // namespace
 
+extern "C" const char* __asan_default_options() { return "abort_on_error=1:handle_abort=0"; }
+extern "C" const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
+
 /// The compiler calls it at every branch of the code under test.
 extern "C" void __sanitizer_cov_trace_pc() {
     const auto place = reinterpret_cast<uintptr_t>(__builtin_return_address(0));
@@ -135,7 +143,7 @@ int main(int count, char** arguments) {
             corpus.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
         }
     }
-    __sanitizer_set_death_callback(keep_finding);
+    std::signal(SIGABRT, aborted);
     std::signal(SIGALRM, too_slow);
     std::set_terminate([] { fuzz_fail("an exception that nobody caught"); });
     std::random_device entropy;

@@ -107,7 +107,8 @@ std::vector<uint8_t> fuzz_seed() {
 void fuzz_one(std::span<const uint8_t> data) {
     FuzzBytes bytes(data);
     const int depth = 1 + int(bytes.upto(5));
-    const bool fill = bytes.upto(3) != 0, twice = bytes.upto(31) == 0;
+    const Fill fill = static_cast<Fill>(bytes.upto(2));
+    const bool twice = bytes.upto(31) == 0;
     std::vector<FuzzMesh> meshes;
     for (unsigned count = 1 + bytes.upto(2); count > 0; --count)
         meshes.push_back(mesh(bytes));
