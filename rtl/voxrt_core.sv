@@ -22,7 +22,9 @@ module voxrt_core
   parameter bit          Banked       = 1'b0,
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
+  parameter string       OctreeFile   = ""
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -156,7 +158,8 @@ module voxrt_core
     .BlockBits   (BlockBits),
     .Banked      (Banked),
     .Light       (Light),
-    .Mirrors     (Mirrors)
+    .Mirrors     (Mirrors),
+    .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,
     .rst_ni          (rst_n),

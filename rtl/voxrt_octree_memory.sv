@@ -11,7 +11,9 @@ module voxrt_octree_memory
 #(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned BlockBits = 12,
-  parameter bit          Banked    = 1'b0
+  parameter bit          Banked    = 1'b0,
+  // What private copies hold from the beginning, for $readmemh: row a has word 1 + a, as voxrt_word_encoder encodes it.
+  parameter string       File      = ""
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -32,6 +34,10 @@ module voxrt_octree_memory
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Clocks = memory_clocks(Banked);
+
+  if (Banked && File != "") begin : gen_bad_file
+    $error("voxrt_octree_memory: only private copies can hold words from the beginning");
+  end
 
   logic [PayloadBits:0] encoded, read_back;
   logic [         31:0] offset;
@@ -76,7 +82,8 @@ module voxrt_octree_memory
     voxrt_private_memory #(
       .Lanes      (Lanes),
       .AddressBits(AddressBits),
-      .PayloadBits(PayloadBits)
+      .PayloadBits(PayloadBits),
+      .File       (File)
     ) u_memory (
       .clk_i,
       .rst_ni,
