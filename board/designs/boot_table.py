@@ -112,14 +112,14 @@ def scene_writes(scene: Scene, lighting: Lighting, size: tuple[int, int], root: 
     root
         The word of the octree memory where the scene's word 0 is.
     """
-    rows = [
-        bool(mirror) << 24 | red << 16 | green << 8 | blue
-        for (red, green, blue), mirror in zip(scene.colours.tolist(), scene.mirrors.tolist(), strict=True)
-    ]
     writes = register_writes("size", width=size[0], height=size[1])
-    writes += register_writes("depth", scene.depth)
-    writes += register_writes("root", root)
-    writes += register_writes(
+    writes += register_writes("depth", scene.depth) + register_writes("root", root) + lighting_writes(lighting)
+    return [*writes, (MATERIALS, material_rows(scene.colours, scene.mirrors))]
+
+
+def lighting_writes(lighting: Lighting) -> Writes:
+    """Give the writes that make the next frame use a lighting."""
+    writes = register_writes(
         "shading",
         flat=lighting.flat,
         light=lighting.on,
@@ -128,7 +128,15 @@ def scene_writes(scene: Scene, lighting: Lighting, size: tuple[int, int], root: 
     )
     for axis, value in enumerate(lighting.position):
         writes += register_writes(f"light[{axis}]", value)
-    return [*writes, (MATERIALS, rows)]
+    return writes
+
+
+def material_rows(colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> list[int]:
+    """Give the 256 words of the material table."""
+    return [
+        bool(mirror) << 24 | red << 16 | green << 8 | blue
+        for (red, green, blue), mirror in zip(colours.tolist(), mirrors.tolist(), strict=True)
+    ]
 
 
 def boot_table(
