@@ -81,6 +81,13 @@ class SerialDevice:
     ------
     DeviceError
         The board does not answer, or its design is not supported.
+
+    Attributes
+    ----------
+    lanes
+        Of the ray tracer.
+    clock_hz
+        Of the ray tracer.
     """
 
     def __init__(self, link: SerialLink, model: Device) -> None:
@@ -95,7 +102,8 @@ class SerialDevice:
         if version >> 8 & 0xFF != _MAJOR:
             raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
         configuration = self._core("configuration")
-        lanes = configuration["lanes"]
+        self.lanes = lanes = configuration["lanes"]
+        self.clock_hz = self._board("clock")
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
             version=f"{version >> 8 & 0xFF}.{version & 0xFF}",
@@ -104,15 +112,9 @@ class SerialDevice:
             size=SCREEN,
             position_limit=1 << (configuration["position_bits"] - 1),
             features=frozenset(name for name, built_in in self._core("features").items() if built_in),
-            clock=self._board("clock"),
+            clock=self.clock_hz,
         )
-        self._lanes = lanes
         self._repeated = self._board("underruns"), self._board("late")
-
-    @property
-    def lanes(self) -> int:
-        """Lanes of the ray tracer."""
-        return self._lanes
 
     def loaded(self) -> LoadedScene | None:
         """Read the scene that the board shows, and where it is; None if its words are no octree."""

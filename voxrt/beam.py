@@ -29,8 +29,12 @@ LINES = 525
 """With the vertical blanking."""
 LARGEST_SCALE = 2
 
-_BANDS = 8
+BUFFER_LINES = 16
+"""Rows of a picture that the boards' line buffers hold."""
+
+_BANDS = 12
 _VIEWS = 8
+_SAFETY = 1.05  # for what lies between the views
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +47,16 @@ class BeamFit:
         0: pictures of 640 x 480 pixels; 1: 320 x 240; 2: 160 x 120.
     cycles_per_pixel
         The mean of the view that takes longest.
-    band_cycles_per_pixel
-        The mean of the slowest band of rows, an eighth of a picture.
-    granted_cycles_per_pixel
-        What the screen leaves for each pixel of a row.
+    lead
+        How many lines of the screen each row is complete before it is shown, at least. Negative where rows are
+        repeated because the next one is not complete, even in the smallest pictures.
     frames_per_second
         New pictures per second in the view that takes longest.
     """
 
     scale: int
     cycles_per_pixel: float
-    band_cycles_per_pixel: float
-    granted_cycles_per_pixel: float
+    lead: float
     frames_per_second: float
 
     @property
@@ -98,26 +100,68 @@ def fit_beam(
     """
     config = _configuration(lanes, lighting)
     views = [cameras[i * len(cameras) // _VIEWS] for i in range(min(_VIEWS, len(cameras)))]
-    size = SCREEN[0] >> 1, SCREEN[1] >> 1
+    line = clock_hz * LINE_PIXELS / PIXEL_HZ
+
+    def measure(view: Camera, scale: int) -> list[float]:
+        size = SCREEN[0] >> scale, SCREEN[1] >> scale
+        return _row_cycles(rom, refit(view, SCREEN, size), size, lighting, config)
+
     costs = []
     for number, view in enumerate(views):
         progress(number, len(views) + 1)
-        costs.append(_band_cycles(rom, refit(view, SCREEN, size), size, lighting, config))
-    slowest = int(np.argmax([max(cost) for cost in costs]))
-    for scale in range(LARGEST_SCALE + 1):
-        progress(len(views), len(views) + 1)
-        size = SCREEN[0] >> scale, SCREEN[1] >> scale
-        granted = clock_hz * LINE_PIXELS / PIXEL_HZ / SCREEN[0] * 4**scale
-        cost = costs[slowest]
-        if scale != 1 and (scale == LARGEST_SCALE or max(cost) <= 2 * granted):
-            cost = _band_cycles(rom, refit(views[slowest], SCREEN, size), size, lighting, config)
-        if max(cost) <= granted or scale == LARGEST_SCALE:
-            break
-    mean = float(np.mean(cost))
-    screen = clock_hz * LINE_PIXELS * LINES / PIXEL_HZ  # cycles
-    screens = max(1, int(np.ceil(mean * size[0] * size[1] / screen)))
+        costs.append(measure(view, 1))
+    leads = [beam_lead(cost, line, 1) for cost in costs]
+    slowest = int(np.argmin(leads))
+    progress(len(views), len(views) + 1)
+    scale, cost, lead = 1, costs[slowest], leads[slowest]
+    # Pictures of twice the side take nearly twice as long per row, and rows have half the time.
+    trials = ((0, [2 * row for row in cost for _ in range(2)]),) if lead >= 0 else ((2, None),)
+    for trial, estimate in trials:
+        if estimate is None or beam_lead(estimate, line, trial) >= 0:
+            tried = measure(views[slowest], trial)
+            if trial == LARGEST_SCALE or beam_lead(tried, line, trial) >= 0:
+                scale, cost, lead = trial, tried, beam_lead(tried, line, trial)
+    screens = max(1, int(np.ceil(sum(cost) / (line * LINES))))
     progress(len(views) + 1, len(views) + 1)
-    return BeamFit(scale, mean, max(cost), granted, PIXEL_HZ / (LINE_PIXELS * LINES * screens))
+    return BeamFit(
+        scale,
+        sum(cost) / ((SCREEN[0] >> scale) * (SCREEN[1] >> scale)),
+        lead,
+        PIXEL_HZ / (LINE_PIXELS * LINES * screens),
+    )
+
+
+def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
+    """Tell by how many lines of the screen each row of a picture is early, at least.
+
+    Parameters
+    ----------
+    rows
+        Cycles that each row takes.
+    line
+        Cycles of a line of the screen.
+    scale
+        A row is shown on 2**scale lines.
+
+    Returns
+    -------
+    float
+        Negative where a row is late.
+
+    Examples
+    --------
+    >>> beam_lead([1000.0] * 480, 2400, 0) > 0, beam_lead([2500.0] * 480, 2400, 0) > 0
+    (True, False)
+    """
+    shown = 2**scale * line
+    blanking = (LINES - SCREEN[1]) * line
+    end, lead = 0.0, np.inf
+    for number, row in enumerate(rows):
+        # A row needs a free place in the line buffer: that of the row which has just been shown to its end.
+        begin = max(end, blanking + (number - BUFFER_LINES + 1) * shown) if number >= BUFFER_LINES else end
+        end = begin + _SAFETY * row
+        lead = min(lead, (blanking + number * shown - end) / line)
+    return float(lead)
 
 
 def _configuration(lanes: int, lighting: Lighting) -> str:
@@ -129,18 +173,17 @@ def _configuration(lanes: int, lighting: Lighting) -> str:
     raise sim.SimulatorError(f"no simulated ray tracer has {lanes} lanes and {', '.join(sorted(lighting.features))}")
 
 
-def _band_cycles(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> list[float]:
-    """Give the cycles per pixel of each band of rows, rendered as a picture of its own."""
+def _row_cycles(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> list[float]:
+    """Give the cycles of each row: the mean of its band, which is rendered as a picture of its own."""
     width, height = size
     rows = height // _BANDS
-    cycles = []
+    cycles: list[float] = []
     for band in range(_BANDS):
         # direction = look + right (column - W / 2) + up (H / 2 - row): a band is a picture with another look.
         shift = height // 2 - band * rows - rows // 2
-        look = np.array(camera.look) + shift * np.array(camera.up)
-        x, y, z = (int(value) for value in look)
+        x, y, z = (a + shift * b for a, b in zip(camera.look, camera.up, strict=True))
         # refit finds the largest registers that hold this look. They are rounded anew: some directions move by 1 %.
         seen = refit(replace(camera, look=(x, y, z)), (rows, rows), (width, rows))
         frame = sim.render(rom, seen, (width, rows), engine="rtl", config=config, lighting=lighting)
-        cycles.append((frame.cost.cycles or 0) / (width * rows))
+        cycles += [(frame.cost.cycles or 0) / rows] * rows
     return cycles

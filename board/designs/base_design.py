@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _ROWS, _HALF_BITS = 1024, 9
-_SECTION = re.compile(r"^\.bram_init (\d+)\n((?:[0-9a-f]{3}[ \n]+)+)", re.MULTILINE)
+_SECTION = re.compile(r"^\.bram_init (\d+)\n((?:[0-9a-f]{3}[ \n])+)", re.MULTILINE)
 # Bits per word of a block RAM: where a word's bits are in a row of 18 bits, by the word's number in the row.
 _PLACES = {bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4)}
 _PLACES[9] = [0, 9]

@@ -145,10 +145,11 @@ def _rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
     width, height = result.size
     squares = f", each pixel as {640 // width} x {640 // width}" if width < 640 else ""
     lanes = f"{result.lanes} lane{'' if result.lanes == 1 else 's'}"
-    cycles = (
-        f"{result.cycles_per_pixel:.2f} per pixel, {result.band_cycles_per_pixel:.2f} in the slowest rows; "
-        f"the screen leaves {result.granted_cycles_per_pixel:.2f}"
-    )
+    cycles = f"{result.cycles_per_pixel:.2f} per pixel in the slowest view; "
+    if result.lead_lines >= 0:
+        cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
+    else:
+        cycles += "some rows are repeated, because the next ones are late"
     return [
         ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
         ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),

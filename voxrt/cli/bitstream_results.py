@@ -40,9 +40,8 @@ class BitstreamResult(msgspec.Struct, frozen=True):
     """Columns and rows of the pictures; the screen has 640 x 480."""
     cycles_per_pixel: float
     """Of the slowest of eight views of the orbit."""
-    band_cycles_per_pixel: float
-    """Of the slowest eighth of its rows."""
-    granted_cycles_per_pixel: float
+    lead_lines: float
+    """How many lines of the screen each row is complete before it is shown, at least; negative: rows are repeated."""
     frames_per_second: float
     """New pictures; the screen repeats them at 59.5 Hz."""
 
@@ -65,7 +64,6 @@ def bitstream_result(rom: Rom, placed: PlacedBoard, beam: BeamFit, file: Path) -
         seed=design.seed,
         size=beam.size,
         cycles_per_pixel=round(beam.cycles_per_pixel, 4),
-        band_cycles_per_pixel=round(beam.band_cycles_per_pixel, 4),
-        granted_cycles_per_pixel=round(beam.granted_cycles_per_pixel, 4),
+        lead_lines=round(beam.lead, 2),
         frames_per_second=round(beam.frames_per_second, 3),
     )

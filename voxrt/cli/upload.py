@@ -113,19 +113,19 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
     try:
         device = open_serial_device(port)
         try:
+            _write(scene, device, progress, dry_run=True)
             if not dry_run:
                 lighting = supported(scene.lighting or voxrt.Lighting(), device.identity.features)
-                clock = device.identity.clock or 1
                 beam = fit_beam(
                     rom,
                     orbit(rom, SCREEN),
                     lighting,
                     lanes=device.lanes,
-                    clock_hz=clock,
+                    clock_hz=device.clock_hz,
                     progress=lambda done, total: progress("count cycles", done, total),
                 )
                 device.prepare_orbit(orbit(rom, beam.size), lighting, beam.scale)
-            _write(scene, device, progress, dry_run=dry_run, loaded=None if dry_run else device.loaded())
+                _write(scene, device, progress, dry_run=False, loaded=device.loaded())
         finally:
             device.close()
     except DeviceError as error:
