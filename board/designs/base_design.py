@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _ROWS, _HALF_BITS = 1024, 9
-_SECTION = re.compile(r"^\.bram_init (\d+)\n((?:[0-9a-f]{3}[ \n])+)", re.MULTILINE)
+_STEP = 512  # rows of a memory that are in the same block RAMs
+_SECTION = re.compile(r"^\.bram_init (\d+)\n((?:(?:[0-9a-f]{3} ?){8}\n)+)", re.MULTILINE)
 # Bits per word of a block RAM: where a word's bits are in a row of 18 bits, by the word's number in the row.
 _PLACES = {bits: [9 * (word * bits // 8) + word * bits % 8 for word in range(16 // bits)] for bits in (1, 2, 4)}
 _PLACES[9] = [0, 9]
@@ -73,6 +74,11 @@ def base_contents(memory: str, rows: int, bits: int) -> NDArray[np.uint32]:
     return contents
 
 
+def read_block_rams(config: str) -> dict[int, NDArray[np.uint32]]:
+    """Read what the block RAMs of a ``.config`` hold: 1,024 rows of 18 bits, uint32, by ``WID``."""
+    return {int(wid): _read_section(text) for wid, text in _SECTION.findall(config)}
+
+
 def find_slices(config: str, memories: Mapping[str, tuple[int, int]]) -> dict[str, list[Slice]]:
     """Find where nextpnr put the memories of a base design, by what they hold.
 
@@ -94,7 +100,7 @@ def find_slices(config: str, memories: Mapping[str, tuple[int, int]]) -> dict[st
         A part of a memory is in no block RAM.
     """
     found: dict[str, list[Slice]] = {}
-    sections = {int(wid): _read_section(text) for wid, text in _SECTION.findall(config)}
+    sections = read_block_rams(config)
     for name, (rows, bits) in memories.items():
         contents = base_contents(name, rows, bits)
         candidates = {
@@ -111,11 +117,11 @@ def find_slices(config: str, memories: Mapping[str, tuple[int, int]]) -> dict[st
                 slices.append(Slice(wid, piece.row, piece.rows, piece.bit, piece.bits))
         held = {
             (row, bit)
-            for s in slices
-            for row in range(s.row, min(s.row + s.rows, rows), 256)
-            for bit in range(s.bit, min(s.bit + s.bits, bits))
+            for piece in slices
+            for row in range(piece.row, min(piece.row + piece.rows, rows), _STEP)
+            for bit in range(piece.bit, min(piece.bit + piece.bits, bits))
         }
-        if len(held) != -(-rows // 256) * bits:
+        if len(held) != -(-rows // _STEP) * bits:
             raise ValueError(f"memory {name}: a part of it is in no block RAM of the placed design")
         found[name] = slices
     return found

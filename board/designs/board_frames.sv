@@ -157,7 +157,7 @@ module board_frames
       underrun_led_q   <= underrun_frame_q;
     end
     if (new_frame_o) drain_o <= 1'b0;
-    if (row_event_i && row_i.underrun && control_q.run) begin
+    if (row_event_i && row_i.underrun && !drain_o) begin
       underruns_q      <= underruns_q + 1'b1;
       underrun_frame_q <= 1'b1;
     end
