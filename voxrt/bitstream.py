@@ -178,8 +178,8 @@ def make_bitstream(
             check=False,
         )
         if finished.returncode:
-            said = (finished.stderr or finished.stdout).strip().splitlines()
-            raise ToolError(f"ecppack has failed: {said[-1] if said else f'exit code {finished.returncode}'}")
+            # It says nothing of use: YoWASP shows a trap in place of the exception.
+            raise ToolError(f"ecppack refuses the design of {board.name}; install voxrt again, or give --rebuild")
         return Path(folder, "scene.bit").read_bytes()
 
 
