@@ -6,6 +6,8 @@ and renders the same camera.
 
 from __future__ import annotations
 
+import math
+import threading
 import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -34,7 +36,7 @@ from .errors import DeviceError, Refused
 from .registers import MATERIALS, REGISTERS
 from .scene import Scene, check_memory
 from .scene_memory import LoadedScene
-from .view import refit
+from .view import FEATURES, refit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -96,6 +98,7 @@ class SerialDevice:
         self._materials: tuple[NDArray[np.uint8], NDArray[np.bool_]] | None = None
         self._orbit: tuple[NDArray[np.uint32], Writes] | None = None
         self._next_list = 0
+        self._stopped = threading.Event()
         if self._board("identity") != _BOARD or self._core("identity")["value"] != _CORE:
             raise DeviceError(f"{link.name}: this is no board of voxrt; load a bitstream of voxrt bitstream")
         version = self._board("version")
@@ -111,7 +114,7 @@ class SerialDevice:
             depth=configuration["max_depth"],
             size=SCREEN,
             position_limit=1 << (configuration["position_bits"] - 1),
-            features=frozenset(name for name, built_in in self._core("features").items() if built_in),
+            features=frozenset(name for name in FEATURES if self._core("features")[name]),
             clock=self.clock_hz,
         )
         self._repeated = self._board("underruns"), self._board("late")
@@ -193,9 +196,10 @@ class SerialDevice:
         self._model.select_scene(root, depth)
         self._materials = None
 
-    def frame(self, view: View) -> Frame:
-        """Show a view on the monitor, and return the model's picture of it."""
+    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+        """Render a view by the model, and show it on the monitor; the model's picture is returned."""
         started = time.perf_counter()
+        picture = self._model.frame(view, seconds)
         control = self._board("control")
         scale = self._choose_scale(control >> 4 & 3)
         size = SCREEN[0] >> scale, SCREEN[1] >> scale
@@ -213,9 +217,13 @@ class SerialDevice:
             raise DeviceError(
                 f"the ray tracer reports {' and '.join(problems)}; upload the scene again, or move the camera"
             )
-        picture = self._model.frame(view)
         counters = Counters(picture.counters.rays, None, None, time.perf_counter() - started)
         return replace(picture, counters=counters)
+
+    def stop(self) -> None:
+        """End what is in progress; further frames and writes fail."""
+        self._stopped.set()
+        self._model.stop()
 
     def close(self) -> None:
         """Close the line; the board goes on showing the last frame."""
@@ -259,6 +267,8 @@ class SerialDevice:
     def _wait_until(self, reached: Callable[[], bool], problem: str) -> None:
         end = time.monotonic() + _WAIT_SECONDS
         while not reached():
+            if self._stopped.is_set():
+                raise DeviceError("the frame was stopped")
             if time.monotonic() > end:
                 raise DeviceError(
                     f"{self._link.name}: {problem} within {_WAIT_SECONDS:.0f} s; load the bitstream again"

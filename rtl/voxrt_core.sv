@@ -20,8 +20,7 @@ module voxrt_core
   parameter int unsigned BlockBits    = 12,
   // The form of the octree memory: 0 = private copies, one per two lanes; 1 = one memory in banks, for all lanes.
   parameter bit          Banked       = 1'b0,
-  // Features of the shader, 0 = not built in: flat colours, a point light with shadows, mirrors.
-  parameter bit          Flat         = 1'b0,
+  // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
@@ -132,9 +131,15 @@ module voxrt_core
   assign frame.depth           = control.depth.depth.value;
   assign frame.root            = control.root.address.value;
   assign frame.shading.flat    = control.shading.flat.value;
+  assign frame.shading.faces   = control.shading.faces.value;
   assign frame.shading.light   = control.shading.light.value;
   assign frame.shading.ambient = control.shading.ambient.value;
   assign frame.shading.bounces = control.shading.bounces.value;
+
+  assign frame.shading.brightness[0] = {control.lower_faces.z.value, control.lower_faces.y.value,
+                                        control.lower_faces.x.value};
+  assign frame.shading.brightness[1] = {control.upper_faces.z.value, control.upper_faces.y.value,
+                                        control.upper_faces.x.value};
 
   material_write_t material_write;
 
@@ -152,7 +157,6 @@ module voxrt_core
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
     .Banked      (Banked),
-    .Flat        (Flat),
     .Light       (Light),
     .Mirrors     (Mirrors),
     .OctreeFile  (OctreeFile)
@@ -197,7 +201,6 @@ module voxrt_core
   assign status.configuration.position_bits.next = 6'(PositionBits);
   assign status.configuration.block_bits.next    = 5'(BlockBits);
   assign status.configuration.banked.next        = Banked;
-  assign status.features.flat.next               = Flat;
   assign status.features.light.next              = Light;
   assign status.features.mirrors.next            = Mirrors;
   assign status.status.busy.next                 = busy;

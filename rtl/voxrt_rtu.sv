@@ -11,7 +11,7 @@
 // words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started
 // before its pixels can be accepted: pixel_ready_i may be low at any time.
 //
-// Flat, Light and Mirrors build the shader's features in: docs/shading.md.
+// Light and Mirrors build the shader's features in: docs/shading.md.
 module voxrt_rtu
   import voxrt_pkg::*;
 #(
@@ -20,7 +20,6 @@ module voxrt_rtu
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
   parameter bit          Banked       = 1'b0,
-  parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter string       OctreeFile   = ""
@@ -71,7 +70,6 @@ module voxrt_rtu
   voxrt_frame #(
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Flat        (Flat),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_frame (
@@ -327,7 +325,6 @@ module voxrt_rtu
   voxrt_pixels #(
     .Lanes   (Lanes),
     .MaxDepth(MaxDepth),
-    .Flat    (Flat),
     .Light   (Light),
     .Mirrors (Mirrors)
   ) u_pixels (

@@ -7,7 +7,6 @@ module board_system
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
   parameter bit          Banked       = 1'b0,
-  parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter int unsigned ClockHz      = 75_000_000,
@@ -63,7 +62,6 @@ module board_system
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
     .Banked      (Banked),
-    .Flat        (Flat),
     .Light       (Light),
     .Mirrors     (Mirrors),
     .OctreeFile  (OctreeFile)

@@ -122,10 +122,14 @@ def lighting_writes(lighting: Lighting) -> Writes:
     writes = register_writes(
         "shading",
         flat=lighting.flat,
+        faces=lighting.faces is not None,
         light=lighting.on,
         ambient=lighting.ambient,
         bounces=lighting.bounces,
     )
+    if lighting.faces is not None:
+        for name, brightness in (("lower_faces", lighting.faces[::2]), ("upper_faces", lighting.faces[1::2])):
+            writes += register_writes(name, **dict(zip("xyz", brightness, strict=True)))
     for axis, value in enumerate(lighting.position):
         writes += register_writes(f"light[{axis}]", value)
     return writes

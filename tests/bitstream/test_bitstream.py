@@ -54,7 +54,7 @@ def board():
     memories = find_slices(config, {"octree": (ROWS, BITS), "table": (TABLE_ROWS, 32)})
     design = BaseDesign(
         "bare",
-        {"Lanes": 1, "MaxDepth": 10, "BlockBits": BLOCK_BITS, "Flat": 0, "Light": 0, "Mirrors": 0},
+        {"Lanes": 1, "MaxDepth": 10, "BlockBits": BLOCK_BITS, "Light": 0, "Mirrors": 0},
         75_000_000,
         1,
         {"system": 80.0},

@@ -99,6 +99,9 @@ def test_an_octree_beyond_the_memory_is_refused():
 
 def test_the_board_starts_frames_by_the_registers_of_the_core():
     # localparams of board_frames.sv
-    assert REGISTERS["control"] == (0x00C, {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1)})
+    assert REGISTERS["control"] == (
+        0x00C,
+        {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1)},
+    )
     assert REGISTERS["status"][0] == 0x010
     assert REGISTERS["status"][1]["busy"] == (0, 1)

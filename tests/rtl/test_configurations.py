@@ -15,7 +15,6 @@ DEFAULTS = {
     "PositionBits": 17,
     "BlockBits": 12,
     "Banked": 0,
-    "Flat": 0,
     "Light": 0,
     "Mirrors": 0,
     "SimulationBlockBits": 17,

@@ -13,7 +13,8 @@ import voxrt
 from voxrt.cli.arguments import Reporting, UsageError, levels, whole
 from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
 from voxrt.cli.lighting import supported
-from voxrt.cli.messages import stage_bar, summarize, transfer_bar, warn
+from voxrt.cli.messages import summarize, warn
+from voxrt.cli.progress import build_bar, stage_bar, transfer_bar
 from voxrt.cli.results import print_json
 from voxrt.outputs import check_folder, writing
 
@@ -71,7 +72,7 @@ def bitstream(
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
     blob = _read(source, depth, placed)
-    features = {name for name in ("flat", "light", "mirrors") if design.core[name.capitalize()]}
+    features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     cameras = orbit(blob.rom, SCREEN)
     with transfer_bar() as progress:
@@ -113,8 +114,8 @@ def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
 
     capacity, most = placed.design.capacity, placed.design.core["MaxDepth"]
     if source.suffix.lower() in SUFFIXES:
-        with stage_bar(8) as begin:
-            built = voxrt.build(source, depth=depth, budget=capacity, progress=begin)
+        with build_bar() as bar:
+            built = voxrt.build(source, depth=depth, budget=capacity, progress=bar.begin, estimated=bar.estimate)
         warn(built.warnings)
         return Blob(built.rom, built.view, built.lighting)
     if depth is not None:

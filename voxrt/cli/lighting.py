@@ -20,7 +20,6 @@ def supported(lighting: voxrt.Lighting, features: AbstractSet[str]) -> voxrt.Lig
     warn((voxrt.SceneWarning("light", f"left out, since the board has no hardware for it: {', '.join(missing)}"),))
     return replace(
         lighting,
-        flat=lighting.flat and "flat" in features,
         on=lighting.on and "light" in features,
         bounces=lighting.bounces if "mirrors" in features else 0,
     )

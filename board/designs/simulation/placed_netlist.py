@@ -202,9 +202,7 @@ class _Writer:
         for pin in ("SIGNEDA", "SIGNEDB", "SOURCEA", "SOURCEB"):
             if not self._is_zero(cell, pin):
                 raise UnknownCellError(f"a multiplier whose pin {pin} is used is not known")
-        a, b = (
-            "{" + ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18))) + "}" for side in "AB"
-        )
+        a, b = ("{" + ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18))) + "}" for side in "AB")
         self._declarations.append(f"  wire [35:0] p{number};")
         self._lines.append(f"  assign p{number} = {a} * {b};")
         for i in range(36):
