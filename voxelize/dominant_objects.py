@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 _MOST = 8
-_NARROW = 0.5
-"""Part of the scene's width from which the others gain nothing worth a word if the large objects are left out."""
+_NARROW = 1 / 16
+"""Wider parts of the scene are no details beside the large objects: a coarse grid is coarse for all."""
 
 _FEWEST_VOXELS = 8
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER
+from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER, Lighting
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree, Rom
-    from voxrt.octree.camera import Lighting
     from voxrt.voxelize import Material
+
+_BY_ANGLE = Lighting(faces=None)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -98,8 +99,9 @@ def fit_budget(
     rom: Rom, words: int, size: tuple[int, int], threads: int, *, lighting: Lighting = PLAIN_LIGHTING
 ) -> tuple[Rom, BudgetFit]:
     """Fit `rom` to a memory of so many words; pictures of `size` pixels tell how like it is to what it was."""
+    # What is given up is chosen in pictures by the angle: they show every change of the surface.
     colours = np.array([material.colour for material in rom.materials], np.uint8)
-    views = Views(rom, threads, lighting)
+    views = Views(rom, threads, lighting if lighting.flat else _BY_ANGLE)
     fit = octree.fit(rom.octree, words, colours=colours, choose=views.choose)
     fitted = replace(rom, octree=fit.octree)
     camera = aim_camera(rom, size)
@@ -116,7 +118,7 @@ class Views:
     size = (320, 240)
     """Pixels."""
 
-    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = PLAIN_LIGHTING) -> None:
+    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = _BY_ANGLE) -> None:
         self._rom = rom
         self._threads = threads
         self._lighting = lighting
