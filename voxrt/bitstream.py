@@ -51,6 +51,7 @@ class BaseDesign(msgspec.Struct, frozen=True):
     seed: int
     fmax_mhz: dict[str, float]
     utilisation: dict[str, tuple[int, int]]
+    sources: str
     tools: dict[str, str]
     memories: dict[str, Memory]
 

