@@ -7,12 +7,13 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint lint-workflows hardware boards docs bench soak sanitize fuzz clean
+.PHONY: help demo test slow lint lint-workflows hardware boards docs bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make demo    set up $(VENV), build the example scene and ray-trace its preview"
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
+	@echo "make slow    run the tests that take minutes: the board designs in simulation, every attack on the server"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
@@ -29,6 +30,9 @@ demo: $(VENV)/.installed
 # pytest leaves the repository's root off the path, so that the wheel is what is tested; tests/conftest.py checks it.
 test: $(VENV)/.installed $(VENV)/.tools
 	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest --numprocesses=auto
+
+slow: $(VENV)/.installed $(VENV)/.tools
+	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest -m slow
 
 lint: $(VENV)/.installed $(VENV)/.tools lint-workflows
 	$(BIN)/ruff check .

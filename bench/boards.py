@@ -41,7 +41,7 @@ from voxrt.board.designs.simulation.board_simulation import BoardSimulation, com
 from voxrt.board.designs.simulation.placed_netlist import MODELS, placed_verilog, write_block_rams
 from voxrt.board.scene import relocate
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import CAMERA_LIGHT, View
+from voxrt.board.view import Lighting, View
 from voxrt.board_scenes import load_scene
 from voxrt.octree.camera import look_at
 
@@ -74,7 +74,7 @@ def picture(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
     model.write_memory(0, scene.words)
     model.write_materials(scene.colours, scene.mirrors)
     model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, SIZE, scene.background, CAMERA_LIGHT)).colour
+    frame = model.frame(View(camera, SIZE, scene.background, Lighting())).colour
     return frame.repeat(1 << SCALE, 0).repeat(1 << SCALE, 1)
 
 
@@ -82,7 +82,7 @@ def contents_of(scene: Scene, board: dict[str, Any]) -> dict[str, NDArray[np.uin
     """Give what the memories hold for a scene."""
     return {
         "octree": encode_octree(scene.words, board["core"]["BlockBits"]),
-        "table": boot_table(scene, orbit(scene), CAMERA_LIGHT, scale=SCALE, control=RUN | TURN, period=1),
+        "table": boot_table(scene, orbit(scene), Lighting(), scale=SCALE, control=RUN | TURN, period=1),
     }
 
 
@@ -126,7 +126,7 @@ def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[
             new = scenes["planet.glb"]
             base = -(-(len(scene.words) - 1) // 8) * 8
             control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
-            swap = [*scene_writes(new, CAMERA_LIGHT, SIZE, base), *camera_writes(orbit(new)[9]), control]
+            swap = [*scene_writes(new, Lighting(), SIZE, base), *camera_writes(orbit(new)[9]), control]
             done = send(simulation, OCTREE_MEMORY + 4 * base, relocate(new.words, base).tolist())
             done &= send(simulation, TABLE + 4 * FREE_LIST, encode_list(swap))
             done &= send(simulation, BOARD_REGISTERS["play"], [FREE_LIST])

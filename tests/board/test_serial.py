@@ -12,13 +12,13 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.designs.boot_table import CAMERAS, RUN, SCREEN, STEERED, TURN
+from voxrt.board.designs.serial_device import SerialDevice
+from voxrt.board.designs.serial_link import SerialLink
 from voxrt.board.errors import DeviceError
 from voxrt.board.scene import Scene
 from voxrt.board.scene_memory import SceneMemory
-from voxrt.board.serial_device import SerialDevice
-from voxrt.board.serial_link import SerialLink
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board.view import CAMERA_LIGHT, View, frame_world, refit
+from voxrt.board.view import Lighting, View, frame_world, refit
 
 FAULTS = ("lose request", "damage request", "lose answer", "cut answer", "damage answer", "noise")
 CONTROL = 0x1008
@@ -53,7 +53,7 @@ def picture_of(scene, camera, size):
 def show(board, scene):
     """Upload a scene as the command does."""
     device = opened(board)
-    device.prepare_orbit(orbit_of(scene), CAMERA_LIGHT, SCALE)
+    device.prepare_orbit(orbit_of(scene), Lighting(), SCALE)
     SceneMemory(device, device.loaded()).load(scene, quiet)
 
 

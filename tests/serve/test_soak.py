@@ -12,6 +12,7 @@ import pytest
 BENCH = Path(__file__).parents[2] / "bench"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads a process's memory from /proc")
 def test_every_attack_once():
     attacks = len(re.findall(r'^    "[^"]+": \w+,$', (BENCH / "attacks.py").read_text(), re.MULTILINE))

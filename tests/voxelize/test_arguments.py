@@ -172,7 +172,7 @@ def mesh_with(appearance):
         (lambda: fit_grid(SCENE, depth=3, pow2="x"), ValueError, "pow2 must be 'box' or 'none', not 'x'"),
         (lambda: fit_grid(MESH, depth=3), TypeError, "scene must be a Scene, not Mesh"),
         (lambda: voxelize(SCENE, 3), TypeError, "grid must be a Grid, not int"),
-        (lambda: voxelize(SCENE, GRID, fill="x"), ValueError, "fill must be 'solid' or 'surface', not 'x'"),
+        (lambda: voxelize(SCENE, GRID, fill="x"), ValueError, "fill must be 'solid', 'surface' or 'auto', not 'x'"),
         (lambda: voxelize(SCENE, GRID, geometry="x"), ValueError, "geometry must be 'auto', 'render' or 'collider'"),
         (lambda: voxelize(SCENE, GRID, pow2=True), ValueError, "pow2 must be 'box' or 'none', not True"),
         (lambda: voxelize(SCENE, GRID, threads=-1), ValueError, "threads must be an integer 0 … 1024, not -1"),

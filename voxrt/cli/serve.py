@@ -17,9 +17,9 @@ from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
 
 if TYPE_CHECKING:
+    from voxrt.board.designs.serial_device import SerialDevice
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.board.serial_device import SerialDevice
     from voxrt.serve.scene_library import SceneLibrary
     from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions
@@ -142,8 +142,8 @@ def open_serial_device(port: str) -> SerialDevice:
     DeviceError
         There is no port of this name, or no board of voxrt at it.
     """
-    from voxrt.board.serial_device import SerialDevice  # noqa: PLC0415
-    from voxrt.board.serial_link import open_serial  # noqa: PLC0415
+    from voxrt.board.designs.serial_device import SerialDevice  # noqa: PLC0415
+    from voxrt.board.designs.serial_link import open_serial  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
 
     return SerialDevice(open_serial(port), ModelDevice())

@@ -162,7 +162,7 @@ def test_what_is_not_drawn_is_counted(usd):
         def Points "dots" {}
     """
     scene = usd(mesh() + body)
-    assert [one.name for one in scene.objects] == ["/cube", "/render"]
+    assert [(one.name, one.hidden) for one in scene.objects] == [("/cube", False), ("/render", False), ("/guide", True)]
     assert [(one.kind, one.count) for one in scene.warnings] == [
         ("default-material", 7),
         ("invisible", 1),

@@ -14,7 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .designs.boot_table import (
+from ..device import Counters, Frame, Identity
+from ..errors import DeviceError, Refused
+from ..registers import MATERIALS, REGISTERS
+from ..scene import Scene, check_memory
+from ..scene_memory import LoadedScene
+from ..view import FEATURES, refit
+from .boot_table import (
     BOARD_REGISTERS,
     CAMERA_WORDS,
     CAMERAS,
@@ -31,22 +37,16 @@ from .designs.boot_table import (
     material_rows,
     register_writes,
 )
-from .device import Counters, Frame, Identity
-from .errors import DeviceError, Refused
-from .registers import MATERIALS, REGISTERS
-from .scene import Scene, check_memory
-from .scene_memory import LoadedScene
-from .view import FEATURES, refit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from .designs.boot_table import Writes
-    from .device import Device
+    from ..device import Device
+    from ..view import Camera, Lighting, View
+    from .boot_table import Writes
     from .serial_link import SerialLink
-    from .view import Camera, Lighting, View
 
 _BOARD = int.from_bytes(b"VXBD", "big")
 _CORE = int.from_bytes(b"VXRT", "big")
