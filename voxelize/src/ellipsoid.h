@@ -138,7 +138,8 @@ private:
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
             for (const int64_t d : {low[i], high[i]})
-                if (int128(d) * d < square_[i][i] && lies_on_side(d, i, j, low, high) && lies_on_side(d, i, k, low, high))
+                if (int128(d) * d < square_[i][i] && lies_on_side(d, i, j, low, high) &&
+                    lies_on_side(d, i, k, low, high))
                     return true;
             for (const int64_t a : {low[i], high[i]})
                 for (const int64_t b : {low[j], high[j]})
