@@ -199,7 +199,7 @@ bool can_be_interrupted(const Scene& scene, int least) {
     const auto run = [&](int threads, std::function<void()> check) {
         checks = 0;
         const InterruptScope scope(std::move(check));
-        return fingerprint(voxelize(depth, parts, parts.size(), true, threads));
+        return fingerprint(voxelize(depth, parts, parts.size(), Fill::solid, threads));
     };
     const uint64_t whole = run(1, [&checks] { ++checks; });
     const int all = checks;
