@@ -19,6 +19,7 @@ from voxrt.board.designs.boot_table import CAMERAS
 from voxrt.board_scenes import board_scene, load_scene
 from voxrt.errors import ToolError
 from voxrt.export import Blob
+from voxrt.octree import BOARDS
 from voxrt.orbit import orbit
 
 BLOCK_BITS = 8
@@ -125,6 +126,7 @@ def test_the_placed_designs_are_of_the_present_sources(name):
     board, described = read_board(name), build.read_board(name)
     assert board.design.sources == build.sources_digest(described)
     assert board.design.core == described["core"]
+    assert BOARDS[name] == board.design.capacity
     assert board.design.fmax_mhz["system"] * 1e6 > board.design.clock_hz
     assert board.design.fmax_mhz["pixel"] > 25
     assert board.design.fmax_mhz["bit"] > 125

@@ -177,4 +177,4 @@ def test_info():
         (1, "red", 2),
         (2, MATERIALS[2].name, 64),
     ]
-    assert [(board.name, board.fits) for board in info.boards] == [("pynq-z1", True)]
+    assert [(board.name, board.fits) for board in info.boards] == [("pynq-z1", True), ("ulx3s-85f", True)]

@@ -10,7 +10,7 @@ import msgspec
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, levels, whole
+from voxrt.cli.arguments import Reporting, UsageError, board_name, levels, whole
 from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
 from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize, warn
@@ -27,7 +27,7 @@ def bitstream(
     source: Annotated[Path, Parameter(metavar="ASSET|ROM")],
     /,
     *,
-    board: Annotated[str, Parameter(metavar="NAME")],
+    board: Annotated[str, Parameter(converter=board_name, metavar="NAME")],
     output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
     depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     load: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
@@ -49,7 +49,7 @@ def bitstream(
     output
         Folder for the files. It is made if it is missing.
     depth
-        Levels of the octree of an asset. The default is the deepest that loses nothing, up to 8.
+        Levels of the octree of an asset. [default: 7]
     load
         Load the bitstream into the board that is plugged in, by openFPGALoader.
     rebuild
@@ -113,6 +113,8 @@ def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
     from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
 
     capacity, most = placed.design.capacity, placed.design.core["MaxDepth"]
+    if depth is not None and depth > most:
+        raise voxrt.DoesNotFitError(f"--depth {depth}: {placed.name} traces up to {most} levels; give --depth {most}")
     if source.suffix.lower() in SUFFIXES:
         with build_bar() as bar:
             built = voxrt.build(source, depth=depth, budget=capacity, progress=bar.begin, estimated=bar.estimate)

@@ -1,0 +1,38 @@
+"""``voxrt bitstream``: what it refuses, in one line and before any work."""
+
+import pytest
+
+import voxrt as package
+
+
+@pytest.fixture(scope="module")
+def deep(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("deep")
+    package.build("examples/house.obj", folder, depth=11)
+    return folder / "house.mem"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["house.obj", "--depth", "11"], 4, "ulx3s-85f traces up to 10 levels; give --depth 10"),
+        (["house.obj", "--seed", "2"], 2, "--seed is of the placement, which --rebuild makes; give both"),
+        (["missing.glb"], 3, "missing.glb"),
+    ],
+)
+def test_refused(voxrt, arguments, code, message):
+    finished = voxrt("bitstream", *arguments, "--board", "ULX3S_85F")
+    assert finished.code == code
+    assert message in finished.err
+    assert len(finished.err.splitlines()) == 1
+
+
+def test_other_boards_are_refused(voxrt):
+    assert "there are ulx3s-85f" in voxrt("bitstream", "house.obj", "--board", "pynq-z1").err
+    assert voxrt("bitstream", "house.obj", "--board", "pynq-z1").code == 2
+
+
+def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
+    finished = voxrt("bitstream", deep, "--board", "ulx3s-85f")
+    assert finished.code == 4
+    assert "and ulx3s-85f holds 32,769 words and 10 levels; build it with --depth " in finished.err
