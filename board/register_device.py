@@ -15,6 +15,16 @@ import numpy as np
 
 from .device import Counters, Frame, Identity
 from .errors import DeviceError, TooSlow
+from .register_writes import (
+    PROBLEMS,
+    camera_writes,
+    decode_fields,
+    encode_fields,
+    lighting_writes,
+    material_rows,
+    register_writes,
+    tell_problems,
+)
 from .registers import MATERIALS, REGISTERS
 from .scene import EMPTY_LEAF
 from .view import FEATURES
@@ -24,17 +34,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from .view import Triple, View
+    from .register_writes import Writes
+    from .view import View
 
 _MINOR = 3
 _IDENTITY = int.from_bytes(b"VXRT", "big")
 _STUCK_SECONDS = 30.0
-_ERRORS = {
-    "direction_overflow": "a direction overflow",
-    "bad_pointer": "a bad pointer",
-    "step_limit": "an octree deeper than its depth",
-}
-_MIRROR = 1 << 24
 _TO_RED_GREEN_BLUE = (2, 0, 1)  # the stream's bytes are green, blue, red
 
 
@@ -179,9 +184,7 @@ class RegisterDevice:
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
         """Write the material table, while no frame can start."""
         self.hold()
-        for material, (red, green, blue) in enumerate(colours.tolist()):
-            row = _MIRROR * bool(mirrors[material]) | red << 16 | green << 8 | blue
-            self._registers.write(MATERIALS + 4 * material, row)
+        self._write_all([(MATERIALS, material_rows(colours, mirrors))])
 
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at word `root` from the next frame on."""
@@ -194,36 +197,17 @@ class RegisterDevice:
         """Start a frame, wait for the frame-done bit, and return the frame."""
         started = time.perf_counter()
         columns, rows = view.size
-        self._write_fields("size", width=columns, height=rows)
-        for name in ("position", "look", "right", "up"):
-            self._write_triple(name, getattr(view.camera, name))
-        self._write_triple("light", view.lighting.position)
-        self._write_fields(
-            "shading",
-            flat=view.lighting.flat,
-            faces=view.lighting.faces is not None,
-            light=view.lighting.on,
-            ambient=view.lighting.ambient,
-            bounces=view.lighting.bounces,
-        )
-        if view.lighting.faces is not None:
-            for name, brightness in (
-                ("lower_faces", view.lighting.faces[::2]),
-                ("upper_faces", view.lighting.faces[1::2]),
-            ):
-                self._write_fields(name, **dict(zip("xyz", brightness, strict=True)))
+        self._write_all(register_writes("size", width=columns, height=rows))
+        self._write_all(camera_writes(view.camera) + lighting_writes(view.lighting))
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
-        self._write("status", self._bits("status", "frame_done", *_ERRORS))  # writing 1 clears
+        self._write("status", self._bits("status", "frame_done", *PROBLEMS))  # writing 1 clears
         self._video.expect(view.size)
         self._write("control", self._bits("control", "start"))
         self._wait("frame_done", 1, "the frame does not end", seconds)
-        status = self._fields("status")
-        errors = [problem for field, problem in _ERRORS.items() if status[field]]
-        if errors:
-            raise DeviceError(
-                f"the ray tracer reports {' and '.join(errors)}; upload the scene again, or move the camera"
-            )
+        problem = tell_problems(self._fields("status"))
+        if problem:
+            raise DeviceError(problem)
         colour = np.ascontiguousarray(self._video.take()[..., _TO_RED_GREEN_BLUE])
         if colour.shape != (rows, columns, 3):
             raise DeviceError(
@@ -272,19 +256,13 @@ class RegisterDevice:
     def _write(self, name: str, value: int) -> None:
         self._registers.write(REGISTERS[name][0], value)
 
-    def _write_triple(self, name: str, values: Triple) -> None:
-        for axis, value in enumerate(values):
-            self._write_fields(f"{name}[{axis}]", value=value)
-
-    def _write_fields(self, name: str, **values: int) -> None:
-        fields = REGISTERS[name][1]
-        self._write(
-            name, sum((value & ((1 << fields[field][1]) - 1)) << fields[field][0] for field, value in values.items())
-        )
+    def _write_all(self, writes: Writes) -> None:
+        for address, values in writes:
+            for number, value in enumerate(values):
+                self._registers.write(address + 4 * number, value)
 
     def _fields(self, name: str) -> dict[str, int]:
-        value = self._read(name)
-        return {field: value >> low & ((1 << width) - 1) for field, (low, width) in REGISTERS[name][1].items()}
+        return decode_fields(name, self._read(name))
 
     def _bits(self, name: str, *fields: str) -> int:
-        return sum(1 << REGISTERS[name][1][field][0] for field in fields)
+        return encode_fields(name, **dict.fromkeys(fields, 1))

@@ -88,6 +88,29 @@ def check_memory(words: NDArray[np.uint32], depth: int) -> None:
         addresses = (np.unique(pointers)[:, None] + np.arange(8)).ravel()
 
 
+def octree_end(words: NDArray[np.uint32], root: int, depth: int) -> int:
+    """Find the end of the last block that an octree in a memory leads to; pointers out of the memory end there.
+
+    Parameters
+    ----------
+    words
+        uint32, shape (N,): the memory.
+    root
+        The word where the octree's root is.
+    depth
+        Its levels.
+    """
+    addresses, end = np.array([root]), root + 1
+    for _ in range(depth):
+        reached = words[addresses[addresses < len(words)]]
+        pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
+        if len(pointers) == 0:
+            break
+        end = max(end, int(pointers[-1]) + 8)
+        addresses = (pointers[:, None] + np.arange(8)).ravel()
+    return end
+
+
 def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:
     """Return the words of a memory for a root at word `base`, a multiple of 8."""
     return np.where(words >> 31 == 0, words + np.uint32(base), words)

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..registers import MATERIALS, REGISTERS
+from ..register_writes import camera_writes, lighting_writes, material_rows, register_writes
+from ..registers import MATERIALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
+    from ..register_writes import Writes
     from ..scene import Scene
     from ..view import Camera, Lighting
 
@@ -54,9 +56,6 @@ SCREEN = (640, 480)
 
 _BURST = 255
 
-Writes = list[tuple[int, list[int]]]
-"""Words by the address of the first of them."""
-
 
 def encode_list(writes: Iterable[tuple[int, Sequence[int]]], *, end: bool = True) -> list[int]:
     """Give the words of a list.
@@ -81,23 +80,6 @@ def encode_list(writes: Iterable[tuple[int, Sequence[int]]], *, end: bool = True
     return [*words, 0] if end else words
 
 
-def register_writes(name: str, *values: int, **fields: int) -> Writes:
-    """Give the write of a register of the core: of its value, or of its fields."""
-    address, known = REGISTERS[name]
-    value = sum((content & ((1 << known[field][1]) - 1)) << known[field][0] for field, content in fields.items())
-    return [(address, [values[0] & 0xFFFFFFFF] if values else [value])]
-
-
-def camera_writes(camera: Camera) -> Writes:
-    """Give the writes that make the next frame show what a camera sees: four headers and twelve words."""
-    writes = []
-    for name in ("position", "look", "right", "up"):
-        ((low, width),) = REGISTERS[f"{name}[0]"][1].values()
-        mask = ((1 << width) - 1) << low
-        writes.append((REGISTERS[f"{name}[0]"][0], [value << low & mask for value in getattr(camera, name)]))
-    return writes
-
-
 def scene_writes(scene: Scene, lighting: Lighting, size: tuple[int, int], root: int = 0) -> Writes:
     """Give the writes that make the next frame show a scene, all but its octree and its camera.
 
@@ -113,34 +95,10 @@ def scene_writes(scene: Scene, lighting: Lighting, size: tuple[int, int], root: 
         The word of the octree memory where the scene's word 0 is.
     """
     writes = register_writes("size", width=size[0], height=size[1])
-    writes += register_writes("depth", scene.depth) + register_writes("root", root) + lighting_writes(lighting)
-    return [*writes, (MATERIALS, material_rows(scene.colours, scene.mirrors))]
-
-
-def lighting_writes(lighting: Lighting) -> Writes:
-    """Give the writes that make the next frame use a lighting."""
-    writes = register_writes(
-        "shading",
-        flat=lighting.flat,
-        faces=lighting.faces is not None,
-        light=lighting.on,
-        ambient=lighting.ambient,
-        bounces=lighting.bounces,
+    writes += (
+        register_writes("depth", depth=scene.depth) + register_writes("root", address=root) + lighting_writes(lighting)
     )
-    if lighting.faces is not None:
-        for name, brightness in (("lower_faces", lighting.faces[::2]), ("upper_faces", lighting.faces[1::2])):
-            writes += register_writes(name, **dict(zip("xyz", brightness, strict=True)))
-    for axis, value in enumerate(lighting.position):
-        writes += register_writes(f"light[{axis}]", value)
-    return writes
-
-
-def material_rows(colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> list[int]:
-    """Give the 256 words of the material table."""
-    return [
-        bool(mirror) << 24 | red << 16 | green << 8 | blue
-        for (red, green, blue), mirror in zip(colours.tolist(), mirrors.tolist(), strict=True)
-    ]
+    return [*writes, (MATERIALS, material_rows(scene.colours, scene.mirrors))]
 
 
 def boot_table(

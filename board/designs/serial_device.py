@@ -16,8 +16,18 @@ import numpy as np
 
 from ..device import Counters, Frame, Identity
 from ..errors import DeviceError, Refused
+from ..register_writes import (
+    PROBLEMS,
+    camera_writes,
+    decode_fields,
+    encode_fields,
+    lighting_writes,
+    material_rows,
+    register_writes,
+    tell_problems,
+)
 from ..registers import MATERIALS, REGISTERS
-from ..scene import Scene, check_memory
+from ..scene import Scene, check_memory, octree_end
 from ..scene_memory import LoadedScene
 from ..view import FEATURES, refit
 from .boot_table import (
@@ -31,11 +41,7 @@ from .boot_table import (
     STEERED,
     TABLE,
     TURN,
-    camera_writes,
     encode_list,
-    lighting_writes,
-    material_rows,
-    register_writes,
 )
 
 if TYPE_CHECKING:
@@ -44,8 +50,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..device import Device
+    from ..register_writes import Writes
     from ..view import Camera, Lighting, View
-    from .boot_table import Writes
     from .serial_link import SerialLink
 
 _BOARD = int.from_bytes(b"VXBD", "big")
@@ -59,11 +65,6 @@ _SCENE_WORD = 0
 """Where the list of the present scene is in the table: that of power-on, or the last one that changed the scene."""
 _FREE_WORDS = (1024, 1536)
 """Parts of the table where other lists of the host are written, in turn."""
-_PROBLEMS = {
-    "direction_overflow": "a direction overflow",
-    "bad_pointer": "a bad pointer",
-    "step_limit": "an octree deeper than its depth",
-}
 
 
 class SerialDevice:
@@ -121,14 +122,14 @@ class SerialDevice:
 
     def loaded(self) -> LoadedScene | None:
         """Read the scene that the board shows, and where it is; None if its words are no octree."""
-        root, depth = (int(self._link.read(REGISTERS[name][0], 1)[0]) for name in ("root", "depth"))
+        root, depth = self._core("root")["address"], self._core("depth")["depth"]
         words = self.read_memory(0, self.identity.capacity)[root:]
         pointers = words >> 31 == 0
         words = np.where(pointers, words - np.uint32(root), words)
         try:
-            words = words[: _octree_end(words, depth)]
+            words = words[: octree_end(words, 0, depth)]
             check_memory(words, depth)
-        except (Refused, IndexError):
+        except Refused:
             return None
         rows = _material_rows(self._link.read(TABLE + 4 * _SCENE_WORD, CAMERAS_WORD))
         colours = np.stack([rows >> 16 & 0xFF, rows >> 8 & 0xFF, rows & 0xFF], axis=1).astype(np.uint8)
@@ -183,7 +184,7 @@ class SerialDevice:
 
     def select_scene(self, root: int, depth: int) -> None:
         """Show the octree at word `root` from the next frame on, with the materials that were written last."""
-        writes = register_writes("depth", depth) + register_writes("root", root)
+        writes = register_writes("depth", depth=depth) + register_writes("root", address=root)
         if self._materials is not None:
             writes += [(MATERIALS, material_rows(*self._materials))]
         orbit, self._orbit = self._orbit, None
@@ -210,13 +211,11 @@ class SerialDevice:
         writes += [(BOARD_REGISTERS["control"], [control & _PERIOD_BITS | scale << 4 | STEERED | RUN])]
         self._play(writes, _FREE_WORDS[self._next_list])
         self._next_list = (self._next_list + 1) % len(_FREE_WORDS)
-        status = self._core("status")
-        problems = [text for name, text in _PROBLEMS.items() if status[name]]
-        if problems:
-            self._link.write(REGISTERS["status"][0], [sum(1 << REGISTERS["status"][1][name][0] for name in _PROBLEMS)])
-            raise DeviceError(
-                f"the ray tracer reports {' and '.join(problems)}; upload the scene again, or move the camera"
-            )
+        problem = tell_problems(self._core("status"))
+        if problem:
+            clear = encode_fields("status", **dict.fromkeys(PROBLEMS, 1))  # writing 1 clears
+            self._link.write(REGISTERS["status"][0], [clear])
+            raise DeviceError(problem)
         counters = Counters(picture.counters.rays, None, None, time.perf_counter() - started)
         return replace(picture, counters=counters)
 
@@ -281,9 +280,7 @@ class SerialDevice:
         self._link.write(BOARD_REGISTERS[name], [value])
 
     def _core(self, name: str) -> dict[str, int]:
-        address, fields = REGISTERS[name]
-        value = int(self._link.read(address, 1)[0])
-        return {field: value >> low & ((1 << width) - 1) for field, (low, width) in fields.items()}
+        return decode_fields(name, int(self._link.read(REGISTERS[name][0], 1)[0]))
 
 
 def _material_rows(table: NDArray[np.uint32]) -> NDArray[np.uint32]:
@@ -297,18 +294,3 @@ def _material_rows(table: NDArray[np.uint32]) -> NDArray[np.uint32]:
             rows[first : first + count] = data[: len(rows) - first]
         word += 1 + count
     return rows
-
-
-def _octree_end(words: NDArray[np.uint32], depth: int) -> int:
-    """Find the end of the last block that word 0 leads to; IndexError if a pointer leads out of the memory."""
-    addresses, end = np.array([0]), 1
-    for _ in range(depth):
-        reached = words[addresses]
-        blocks = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
-        if len(blocks) == 0:
-            break
-        end = max(end, int(blocks[-1]) + 8)
-        addresses = (blocks[:, None] + np.arange(8)).ravel()
-    if end > len(words):
-        raise IndexError
-    return end

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, TooSlow
-from voxrt.board.scene import EMPTY_LEAF
+from voxrt.board.scene import EMPTY_LEAF, octree_end
 from voxrt.board.view import FEATURES
 from voxrt.sim import _model
 
@@ -50,20 +50,8 @@ class _Memory:
 
     def octree(self) -> NDArray[np.uint32]:
         """Return the selected octree, moved so that its root is word 0."""
-        words = self._words[self.root : self._octree_end()]
+        words = self._words[self.root : octree_end(self._words, self.root, self.depth)]
         return words if self.root == 0 else np.where(words >> 31 == 0, words - np.uint32(self.root), words)
-
-    def _octree_end(self) -> int:
-        """Find the end of the last block that the root leads to, so that the model copies no other scenes."""
-        addresses, end = np.array([self.root]), self.root + 1
-        for _ in range(self.depth):
-            reached = self._words[addresses[addresses < len(self._words)]]
-            pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
-            if len(pointers) == 0:
-                break
-            end = max(end, int(pointers[-1]) + 8)
-            addresses = (pointers[:, None] + np.arange(8)).ravel()
-        return end
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:

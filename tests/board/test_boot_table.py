@@ -10,10 +10,10 @@ from voxrt.board.designs.boot_table import (
     CAMERAS,
     OCTREE_MEMORY,
     boot_table,
-    camera_writes,
     encode_list,
     encode_octree,
 )
+from voxrt.board.register_writes import camera_writes
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
 from voxrt.board.view import Camera, Lighting

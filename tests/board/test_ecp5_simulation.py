@@ -22,13 +22,13 @@ from voxrt.board.designs.boot_table import (
     TABLE,
     TURN,
     boot_table,
-    camera_writes,
     encode_list,
     encode_octree,
     scene_writes,
 )
 from voxrt.board.designs.build import clock_hz, read_board
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
+from voxrt.board.register_writes import camera_writes
 from voxrt.board.scene import relocate
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting, View
