@@ -62,6 +62,11 @@ class Browser:
         """
         return self._call("POST", f"{self._session}/execute/async", {"script": script, "args": []})
 
+    def draws(self) -> None:
+        """Wait until the page has drawn twice: by then it knows every event that was sent before."""
+        script = "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done(null)));"
+        self._call("POST", f"{self._session}/execute/async", {"script": script, "args": []})
+
     def keys(self, down: list[str], seconds: float) -> None:
         """Press keys together for some seconds."""
         press = [{"type": "keyDown", "value": key} for key in down]

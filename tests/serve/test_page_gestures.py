@@ -29,6 +29,7 @@ class Page:
         self.shape = np.array([width, height])
 
     def rest(self):
+        self.browser.draws()  # only then the stage may say that it is busy
         assert self.browser.until(f"({RESTS}) && !document.querySelector('#rendering').checkVisibility()")
         return self.server.session.renderer.view
 
