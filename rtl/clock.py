@@ -23,8 +23,8 @@ CORE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What is placed: a lane; a core of one lane without its registers and packer; the whole.
 PARTS = {
     "one lane": ("voxrt_lane", CORE),
-    "ray tracing unit of one lane": ("voxrt_rtu", {**CORE, "Lanes": 1, "Banked": 0}),
-    "core of one lane": (TOP, {**CORE, "Lanes": 1, "Banked": 0}),
+    "ray tracing unit of one lane": ("voxrt_rtu", {**CORE, "Lanes": 1, "MemoryForm": 0}),
+    "core of one lane": (TOP, {**CORE, "Lanes": 1, "MemoryForm": 0}),
 }
 TARGET_MHZ = 150
 
