@@ -42,6 +42,9 @@ voxrt_rtu.sv
 voxrt_scan.sv
 voxrt_shader.sv
 voxrt_stream_register.sv
+voxrt_strip_buffer.sv
+voxrt_strip_generator.sv
+voxrt_strip_place.sv
 voxrt_buffered_lane.sv
 voxrt_word_decoder.sv
 voxrt_word_encoder.sv

@@ -374,4 +374,21 @@ package voxrt_pkg;
     logic       lines_read;
   } memory_events_t;
 
+  // Strips of lines, in which rays of a core with caches are issued. A strip has 2**StripBits pixels at most.
+  localparam int unsigned StripBits = 13;
+  localparam int unsigned StripLineBits = 3;
+
+  function automatic logic [1:0] strip_line_bits(logic [SizeBits-1:0] width);
+    return width <= SizeBits'(2 ** (StripBits - 3)) ? 2'd3 : width <= SizeBits'(2 ** (StripBits - 2)) ? 2'd2 : 2'd1;
+  endfunction
+
+  // A pixel's place in a strip.
+  typedef struct packed {
+    logic                 last_line;     // Of the strip.
+    logic                 first_column;
+    logic                 last_column;
+    logic                 last_strip;    // Of the frame.
+    logic [StripBits-1:0] address;
+  } strip_place_t;
+
 endpackage

@@ -54,6 +54,8 @@ module voxrt_rtu
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
+  // Rays that are neighbours find lines in the caches. A pixel's detail is too wide for a buffer of strips.
+  localparam bit Strips = MemoryForm == CachedForm && !Light && !Mirrors;
   localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
 
   // Frame.
@@ -191,7 +193,8 @@ module voxrt_rtu
     .Lanes       (Lanes),
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Light       (Light)
+    .Light       (Light),
+    .Strips      (Strips)
   ) u_rays (
     .clk_i,
     .rst_ni,
@@ -296,7 +299,8 @@ module voxrt_rtu
     .MaxDepth(MaxDepth),
     .Flat    (Flat),
     .Light   (Light),
-    .Mirrors (Mirrors)
+    .Mirrors (Mirrors),
+    .Strips  (Strips)
   ) u_pixels (
     .clk_i,
     .rst_ni,
