@@ -12,6 +12,7 @@ from voxrt.octree import Rom
 from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
 from voxrt.sim import _model
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.verilated import import_verilated
 from voxrt.voxelize.arguments import choice, instance, text, whole, whole_array
@@ -25,6 +26,7 @@ Engine: TypeAlias = Literal["rtl", "model"]
 
 _FRAME_LIMIT = 1 << 14
 _RTL_FRAME_LIMIT = (1 << 12) - 1
+_CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -58,6 +60,7 @@ def render(
     lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
+    dram: Dram | None = None,
 ) -> Frame:
     """Render a frame.
 
@@ -78,6 +81,8 @@ def render(
         Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
         The configuration of the ray tracer for ``"rtl"``.
+    dram
+        The external memory of a configuration that has caches; None takes ``Dram()``.
 
     Returns
     -------
@@ -111,8 +116,10 @@ def render(
     _check_directions(camera, (width, height))
     _check_lighting(lighting)
     if engine == "model":
+        if dram is not None:
+            raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
         return _render_model(rom, camera, (width, height), lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, (width, height), lighting, text("config", config))
+    return _render_rtl(rom, camera, (width, height), lighting, text("config", config), dram)
 
 
 def check(
@@ -123,12 +130,13 @@ def check(
     lighting: Lighting = CAMERA_LIGHT,
     threads: int = 0,
     config: str = "tiny",
+    dram: Dram | None = None,
 ) -> EngineCheck:
     """Render with both engines and compare every pixel.
 
     Parameters
     ----------
-    rom, camera, size, lighting, threads, config
+    rom, camera, size, lighting, threads, config, dram
         As for :func:`render`.
 
     Returns
@@ -150,7 +158,7 @@ def check(
     >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
     0
     """
-    rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config)
+    rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config, dram=dram)
     model = render(rom, camera, size, engine="model", lighting=lighting, threads=threads)
     wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
     return EngineCheck(rtl=rtl, model=model, wrong=wrong)
@@ -209,7 +217,9 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
     return _rtl
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> Frame:
+def _render_rtl(
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str, dram: Dram | None
+) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
@@ -236,9 +246,24 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Light
             raise SimulatorError(
                 f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
             )
+    if dram is not None and not tracer.cached:
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} has its memory on the chip, without latency or interval; "
+            "take one with caches, such as 'cached4'"
+        )
+    memory = Dram() if dram is None else dram
     tracer.load(rom.octree.words)
     pixels = tracer.render(
-        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading_of(rom, lighting)
+        _registers(camera),
+        size[0],
+        size[1],
+        rom.octree.depth,
+        palette_of(rom),
+        **_shading_of(rom, lighting),
+        latency=memory.latency,
+        interval=memory.interval,
+        jitter=memory.jitter,
+        dram_seed=memory.seed,
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(
@@ -251,7 +276,13 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Light
         colour=pixels["colour"],
         material=pixels["material"],
         face=pixels["face"],
-        cost=RenderCost(size[0] * size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started),
+        cost=RenderCost(
+            size[0] * size[1],
+            pixels["words_read"],
+            pixels["cycles"],
+            time.perf_counter() - started,
+            CacheCost.of(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
+        ),
     )
 
 

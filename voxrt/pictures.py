@@ -62,6 +62,7 @@ def render(
     config: str = "tiny",
     lighting: Lighting | None = None,
     threads: int = 0,
+    dram: Dram | None = None,
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -83,6 +84,8 @@ def render(
         the camera.
     threads
         Threads of the model; 0 takes one per core.
+    dram
+        The external memory of a configuration that has caches. None takes the default of :class:`voxrt.sim.Dram`.
 
     Returns
     -------
@@ -113,6 +116,7 @@ def render(
         lighting=lighting or CAMERA_LIGHT,
         config=config,
         threads=threads,
+        dram=dram,
     )
 
 

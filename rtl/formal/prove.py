@@ -21,10 +21,16 @@ PROOFS = {
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
+    "voxrt_axi_read_master": ("bmc", 14),
+    "voxrt_miss_list": ("bmc", 14),
+    "voxrt_l1_cache": ("bmc", 32),
 }
 
 # What a module is made of.
-PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",)}
+PARTS = {
+    "voxrt_pixel_buffer": ("voxrt_fifo",),
+    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram"),
+}
 
 JOB = """
 [options]

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, place, png, whole
-from voxrt.cli.messages import picture_cost, summarize, warn
+from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, UsageError, place, png, whole
+from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import aim
 
 if TYPE_CHECKING:
     from voxrt import Lighting
+    from voxrt.sim import Dram
 
 Triple = tuple[int, int, int]
 
@@ -37,6 +38,9 @@ def render(
     ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     flat: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    latency: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
+    interval: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
+    jitter: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -72,6 +76,13 @@ def render(
         that of the memory, or 0.
     flat
         Show materials in their own colour, whatever the angle.
+    latency
+        Of the external memory of a configuration with caches, such as cached16: clocks from an address to the first
+        word. [default: 50]
+    interval
+        Of the external memory: clocks from one line of 32 bytes to the next. [default: 3]
+    jitter
+        Of the external memory: up to so many clocks more for each line, at random. [default: 0]
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
@@ -90,17 +101,21 @@ def render(
     ):
         warn((voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),))
         lighting = None
+    dram = _dram(latency, interval, jitter)
     wrong_pixels = None
     if check:
-        checked = voxrt.check(memory, camera, size, lighting=lighting or voxrt.Lighting(), config=config)
+        checked = voxrt.check(memory, camera, size, lighting=lighting or voxrt.Lighting(), config=config, dram=dram)
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
-        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting)
+        frame = voxrt.render(memory, camera, size=size, engine=engine, config=config, lighting=lighting, dram=dram)
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:
-        rows = [("picture", picture_cost(frame, engine)), ("wrote", str(file))]
+        rows = [("picture", picture_cost(frame, engine))]
+        if frame.cost.cache is not None:
+            rows.append(("caches", cache_cost(frame.cost.cache, frame.cost.rays)))
+        rows.append(("wrote", str(file)))
         if check:
             rows.append(("check", f"{wrong_pixels} pixels differ between the hardware and its model"))
         summarize(f"{rom.name}:", rows)
@@ -108,6 +123,16 @@ def render(
         raise voxrt.SimulatorError(
             f"{rom}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+def _dram(latency: int | None, interval: int | None, jitter: int | None) -> Dram | None:
+    """Give the external memory that the command line describes; None where it says nothing of one."""
+    said = {"latency": latency, "interval": interval, "jitter": jitter}
+    known = {name: value for name, value in said.items() if value is not None}
+    try:
+        return voxrt.sim.Dram(**known, seed=1 if jitter else 0) if known else None
+    except ValueError as error:
+        raise UsageError(f"--{error}") from error
 
 
 def _lighting(

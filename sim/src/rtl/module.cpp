@@ -4,6 +4,7 @@
 //   FEATURES: dict[str, list[str]]  which of "flat", "light" and "mirrors" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
+//     .cached                 whether its memory is external, behind caches
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
 //     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
@@ -116,6 +117,7 @@ public:
     }
 
     std::size_t memory_words() const { return design_->limits().memory_words(); }
+    bool cached() const { return design_->limits().form == MemoryForm::cached; }
     unsigned max_depth() const { return design_->limits().max_depth; }
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
     int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
@@ -127,7 +129,7 @@ public:
         if (through_port)
             check_port();
         OneCall call(busy_);
-        loaded_ = design_->limits().form == MemoryForm::cached ? words : Words();
+        loaded_ = cached() ? words : Words();
         nb::gil_scoped_release released;
         design_->load({words.data(), words.size()}, through_port);
     }
@@ -190,7 +192,7 @@ public:
                         .interval = static_cast<unsigned>(interval),
                         .jitter = static_cast<unsigned>(jitter),
                         .seed = dram_seed};
-        if (limits.form == MemoryForm::cached && !loaded_.is_valid())
+        if (cached() && !loaded_.is_valid())
             throw std::invalid_argument("this configuration's memory is external: load words first");
 
         FrameImage image{};
@@ -232,7 +234,7 @@ public:
 
 private:
     void check_port() const {
-        if (design_->limits().form == MemoryForm::cached)
+        if (cached())
             throw std::invalid_argument("the memory of this configuration is external: it has no access port");
     }
 
@@ -259,6 +261,7 @@ NB_MODULE(_rtl, m) {
     nb::class_<Tracer>(m, "Tracer")
         .def(nb::init<const std::string&>(), "config"_a)
         .def_prop_ro("memory_words", &Tracer::memory_words)
+        .def_prop_ro("cached", &Tracer::cached)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def_prop_ro("light_limit", &Tracer::light_limit)
