@@ -8,14 +8,15 @@
 // line takes stage 0 of both pipes: it is written into tags and data and goes to the lanes that wait. So what a lookup
 // sees of tags, list and data is always of one order, that of stage 0.
 //
-// A line replaces one of its set: an empty way, or one of the four in turn.
+// A line replaces one of its set: an empty way, or one that was not used lately, by a tree of three bits. Of two lookups at
+// a clock, one counts as use.
 module voxrt_l2_cache
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes     = 16,
   parameter int unsigned BlockBits = 12,
   parameter int unsigned SetBits   = 9,   // Sets of four lines; less than BlockBits.
-  parameter int unsigned Misses    = 16   // A power of two.
+  parameter int unsigned Misses    = 32   // A power of two.
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
@@ -161,7 +162,7 @@ module voxrt_l2_cache
 
   // 3 hit or miss.
   logic [Ways-1:0] same [Pipes], empty[Pipes];
-  logic [     1:0] hit_way[Pipes], new_way[Pipes], turn_q;
+  logic [     1:0] hit_way[Pipes], new_way[Pipes];
   logic [Pipes-1:0] hit, misses, missed;
   line_t            line3[Pipes];
 
@@ -170,7 +171,7 @@ module voxrt_l2_cache
     for (int unsigned p = 0; p < Pipes; p++) begin
       line3[p]   = line_q[p][3];
       hit_way[p] = '0;
-      new_way[p] = turn_q;
+      new_way[p] = older_way(used_q[line_q[p][3][SetBits-1:0]]);
       for (int unsigned w = 0; w < Ways; w++) begin
         same[p][w]  = tag[p][w] == {1'b1, line_q[p][3][LineBits-1:SetBits]};
         empty[p][w] = !tag[p][w][StoredBits];
@@ -195,7 +196,30 @@ module voxrt_l2_cache
     end
   end
 
-  always_ff @(posedge clk_i) turn_q <= rst_ni ? turn_q + 2'(missed != '0) : '0;
+  // Use: bit 0 is the half used last, bits 1 and 2 the way used last of each half. All orders are legal: no reset.
+  logic [2:0] used_q[2**SetBits];
+  logic       second_first_q, counts_second;
+  logic [SetBits-1:0] used_set;
+  logic [1:0] used_way;
+
+  function automatic logic [1:0] older_way(logic [2:0] used);
+    return {!used[0], used[0] ? !used[1] : !used[2]};
+  endfunction
+
+  assign counts_second = Pipes == 2 && lanes_q[Pipes-1][3] != '0 && (second_first_q || lanes_q[0][3] == '0);
+  assign used_set      = line3[counts_second?Pipes-1 : 0][SetBits-1:0];
+  assign used_way      = counts_second ? (hit[Pipes-1] ? hit_way[Pipes-1] : new_way[Pipes-1]) :
+      hit[0] ? hit_way[0] : new_way[0];
+
+  always_ff @(posedge clk_i) begin
+    second_first_q <= !second_first_q;
+    if (counts_second ? hit[Pipes-1] || missed[Pipes-1] : hit[0] || missed[0]) begin
+      used_q[used_set][0] <= used_way[1];
+      if (used_way[1]) used_q[used_set][2] <= used_way[0];
+      else used_q[used_set][1] <= used_way[0];
+    end
+    if (!rst_ni) second_first_q <= 1'b0;
+  end
 
   logic [PipeLanes-1:0] lanes3[Pipes];
   always_comb for (int unsigned p = 0; p < Pipes; p++) lanes3[p] = lanes_q[p][3];

@@ -57,6 +57,7 @@ module voxrt_pixels
 
   if (Strips) begin : gen_strips
     voxrt_strip_buffer #(
+      .Lanes(Lanes),
       .Width(MergeBits)
     ) u_strips (
       .clk_i,

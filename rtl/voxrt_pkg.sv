@@ -374,21 +374,27 @@ package voxrt_pkg;
     logic       lines_read;
   } memory_events_t;
 
-  // Strips of lines, in which rays of a core with caches are issued. A strip has 2**StripBits pixels at most.
-  localparam int unsigned StripBits = 13;
-  localparam int unsigned StripLineBits = 3;
+  // Strips of lines, in which rays of a core with caches are issued: 16 lines, or 8 for up to 8 lanes, so that a lane's
+  // rays are side by side. Pictures wider than 1024 or 2048 pixels have strips of a half or a quarter of that: so a strip
+  // has 2**strip_bits(lanes) pixels at most.
+  localparam int unsigned StripLineLimit = 4;
+  localparam int unsigned StripLimit = 10 + StripLineLimit;
 
-  function automatic logic [1:0] strip_line_bits(logic [SizeBits-1:0] width);
-    return width <= SizeBits'(2 ** (StripBits - 3)) ? 2'd3 : width <= SizeBits'(2 ** (StripBits - 2)) ? 2'd2 : 2'd1;
+  function automatic int strip_bits(int lanes);
+    return lanes > 8 ? 14 : 13;
+  endfunction
+
+  function automatic logic [2:0] strip_line_bits(int lanes, logic [SizeBits-1:0] width);
+    return 3'(strip_bits(lanes) - (width <= SizeBits'(1024) ? 10 : width <= SizeBits'(2048) ? 11 : 12));
   endfunction
 
   // A pixel's place in a strip.
   typedef struct packed {
-    logic                 last_line;     // Of the strip.
-    logic                 first_column;
-    logic                 last_column;
-    logic                 last_strip;    // Of the frame.
-    logic [StripBits-1:0] address;
+    logic                  last_line;     // Of the strip.
+    logic                  first_column;
+    logic                  last_column;
+    logic                  last_strip;    // Of the frame.
+    logic [StripLimit-1:0] address;
   } strip_place_t;
 
 endpackage

@@ -49,7 +49,9 @@ module voxrt_rays
   end
 
   if (Strips) begin : gen_strips
-    voxrt_strip_generator u_ray_generator (
+    voxrt_strip_generator #(
+      .Lanes(Lanes)
+    ) u_ray_generator (
       .clk_i,
       .rst_ni,
       .raster_i,

@@ -1,8 +1,9 @@
 // Pixels that come in strips, as voxrt_strip_generator orders them, go out line by line. While one strip is written, the
-// one before is read: two strips of at most 2**StripBits pixels.
+// one before is read: two strips of at most 2**strip_bits(Lanes) pixels.
 module voxrt_strip_buffer
   import voxrt_pkg::*;
 #(
+  parameter int unsigned Lanes = 1,
   parameter int unsigned Width = 10
 ) (
   input  logic                clk_i,
@@ -18,6 +19,7 @@ module voxrt_strip_buffer
   input  logic                ready_i,
   output logic [   Width-1:0] pixel_o
 );
+  localparam int unsigned StripBits = strip_bits(Lanes);
   localparam int unsigned QueueDepth = 8;
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
 
@@ -31,7 +33,9 @@ module voxrt_strip_buffer
   assign writes  = valid_i && ready_o;
   assign reads   = full_q[read_strip_q] && read_q != CountBits'(QueueDepth);
 
-  voxrt_strip_place u_to (
+  voxrt_strip_place #(
+    .Lanes(Lanes)
+  ) u_to (
     .clk_i,
     .start_i,
     .width_i,
@@ -41,7 +45,9 @@ module voxrt_strip_buffer
     .place_o   (to)
   );
 
-  voxrt_strip_place u_from (
+  voxrt_strip_place #(
+    .Lanes(Lanes)
+  ) u_from (
     .clk_i,
     .start_i,
     .width_i,
@@ -78,11 +84,11 @@ module voxrt_strip_buffer
     .clk_i,
     .a_read_i (1'b0),
     .a_write_i(writes),
-    .a_row_i  ({write_strip_q, to.address}),
+    .a_row_i  ({write_strip_q, to.address[StripBits-1:0]}),
     .a_data_i (pixel_i),
     .a_data_o (unused_pixel),
     .b_read_i (reads),
-    .b_row_i  ({read_strip_q, from.address}),
+    .b_row_i  ({read_strip_q, from.address[StripBits-1:0]}),
     .b_data_o (pixel)
   );
 

@@ -1,11 +1,13 @@
-// Directions of a frame's pixels in strips, by additions alone: strips of 8, 4 or 2 lines (voxrt_pkg::strip_line_bits)
+// Directions of a frame's pixels in strips, by additions alone: strips of 16 lines or fewer (voxrt_pkg::strip_line_bits)
 // from the top; in each, columns from the left, from the top down. The last strip may have fewer lines. Neighbours in
 // this order are neighbours in the picture, and read the same parts of the octree.
 //
 // It is used as voxrt_ray_generator is.
 module voxrt_strip_generator
   import voxrt_pkg::*;
-(
+#(
+  parameter int unsigned Lanes = 1
+) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
   input  raster_t                    raster_i,
@@ -18,7 +20,9 @@ module voxrt_strip_generator
   logic                       new_column, new_strip, last;
   strip_place_t               place;
 
-  voxrt_strip_place u_place (
+  voxrt_strip_place #(
+    .Lanes(Lanes)
+  ) u_place (
     .clk_i,
     .start_i     (raster_i.start),
     .width_i     (raster_i.width),

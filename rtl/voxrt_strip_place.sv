@@ -1,8 +1,10 @@
 // Walks the pixels of a frame strip by strip: in columns from the top down (by_lines_i low), or line by line. Strips have
-// 2**strip_line_bits(width) lines, the last one what is left.
+// 2**strip_line_bits(Lanes, width) lines, the last one what is left.
 module voxrt_strip_place
   import voxrt_pkg::*;
-(
+#(
+  parameter int unsigned Lanes = 1
+) (
   input  logic                clk_i,
   input  logic                start_i,    // To the first pixel. Width and height are held from here on.
   input  logic [SizeBits-1:0] width_i,
@@ -11,16 +13,18 @@ module voxrt_strip_place
   input  logic                by_lines_i, // Held.
   output strip_place_t        place_o
 );
-  logic [StripLineBits-1:0] line_q;                 // In the strip.
+  logic [StripLineLimit-1:0] line_q;                // In the strip.
   logic [     SizeBits-1:0] column_q, first_line_q; // From 0 on; of the strip, in the frame.
-  logic [StripLineBits-1:0] strip_end;
+  logic [StripLineLimit-1:0] strip_end;
   logic [     SizeBits-1:0] lines_left;
   logic                     last_line, last_column, last_strip;
 
-  assign strip_end   = StripLineBits'((1 << strip_line_bits(width_i)) - 1);
+  logic [2:0] line_bits;
+  assign line_bits   = strip_line_bits(Lanes, width_i);
+  assign strip_end   = StripLineLimit'((1 << line_bits) - 1);
   assign lines_left  = height_i - first_line_q;
   assign last_strip  = lines_left <= SizeBits'(strip_end) + 1'b1;
-  assign last_line   = line_q == (last_strip ? StripLineBits'(lines_left - 1'b1) : strip_end);
+  assign last_line   = line_q == (last_strip ? StripLineLimit'(lines_left - 1'b1) : strip_end);
   assign last_column = column_q == width_i - 1'b1;
 
   always_ff @(posedge clk_i) begin
@@ -46,6 +50,6 @@ module voxrt_strip_place
       first_column: column_q == '0,
       last_column: last_column,
       last_strip: last_strip,
-      address: (StripBits'(column_q) << strip_line_bits(width_i)) | StripBits'(line_q)
+      address: (StripLimit'(column_q) << line_bits) | StripLimit'(line_q)
   };
 endmodule

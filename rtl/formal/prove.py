@@ -21,9 +21,9 @@ PROOFS = {
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
-    "voxrt_axi_read_master": ("bmc", 14),
-    "voxrt_miss_list": ("bmc", 14),
-    "voxrt_l1_cache": ("bmc", 32),
+    "voxrt_axi_read_master": ("bmc", 12),
+    "voxrt_miss_list": ("bmc", 10),
+    "voxrt_l1_cache": ("bmc", 26),
 }
 
 # What a module is made of.

@@ -1,7 +1,7 @@
 // Every lane whose miss is accepted gets its line once, when its entry ends; none else gets it. A line that is waited for
 // is fetched once. The environment has one lane per pipe; it does not ask for a line that it waits for.
 module voxrt_miss_list_properties #(
-  parameter int unsigned LineBits = 3,
+  parameter int unsigned LineBits = 2,
   parameter int unsigned Entries  = 2
 ) (
   input logic                clk_i,
