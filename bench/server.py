@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import AssetReader, load_scene
+from voxrt.board_scenes import asset_reader, load_scene
 from voxrt.serve.frame_client import FrameClient, open_client
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer
@@ -29,7 +29,7 @@ STEPS = 100
 
 async def measure(scene_file: Path, seconds: float) -> None:
     """Print the results for one scene."""
-    async with FrameServer(ModelDevice(), SceneLibrary(AssetReader()), ServerOptions()) as server:
+    async with FrameServer(ModelDevice(), SceneLibrary(asset_reader()), ServerOptions()) as server:
         await server.session.renderer.load(load_scene(scene_file), lambda _stage, _done, _total: None)
         async with open_client(server.url) as client:
             await client.take_control()

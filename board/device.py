@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -36,6 +37,8 @@ class Identity:
         The width of a frame is a multiple of this number of columns.
     clock
         Clock frequency, hertz; None for a device without a clock.
+    pixel_seconds
+        Seconds that a pixel may take, on average over a frame: many times what it takes in large scenes.
     """
 
     name: str
@@ -47,6 +50,11 @@ class Identity:
     features: frozenset[str] = frozenset()
     width_step: int = 1
     clock: int | None = None
+    pixel_seconds: float = 2e-5
+
+    def frame_seconds(self, size: tuple[int, int]) -> float:
+        """Return the time limit of a frame of `size`, columns and rows, for :meth:`Device.frame`."""
+        return 1 + self.pixel_seconds * size[0] * size[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +109,20 @@ class Device(Protocol):
     def select_scene(self, root: int, depth: int) -> None:
         """Show the octree of `depth` levels whose root is word `root` from the next frame on. Holds the device."""
 
-    def frame(self, view: View) -> Frame:
-        """Render one frame of `view`, and return it when it is complete."""
+    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+        """Render one frame of `view`, and return it when it is complete.
+
+        Raises
+        ------
+        TooSlow
+            The frame took longer than `seconds`.
+        """
+
+    def stop(self) -> None:
+        """End the frame in progress; :meth:`frame` fails from now on.
+
+        It may be called from any thread while another call runs.
+        """
 
     def close(self) -> None:
         """Release the device; nothing is called afterwards."""

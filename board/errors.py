@@ -7,3 +7,7 @@ class Refused(Exception):  # noqa: N818 - the answer to a request, not a fault o
 
 class DeviceError(Exception):
     """A failure of the device."""
+
+
+class TooSlow(DeviceError):  # noqa: N818 - what happened to a frame, and no failure
+    """A frame took longer than it may."""

@@ -6,15 +6,18 @@ A scene is written to a free part of the memory while frames show another one. I
 
 from __future__ import annotations
 
+import math
+import threading
 import time
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from .device import Counters, Frame, Identity
-from .errors import DeviceError
+from .errors import DeviceError, TooSlow
 from .registers import MATERIALS, REGISTERS
 from .scene import EMPTY_LEAF
+from .view import FEATURES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 
     from .view import Triple, View
 
+_MINOR = 3
 _IDENTITY = int.from_bytes(b"VXRT", "big")
 _STUCK_SECONDS = 30.0
 _ERRORS = {
@@ -101,6 +105,8 @@ class RegisterDevice:
         The receiver of the frames.
     pause
         Called between two reads of the status register.
+    pixel_seconds
+        As :class:`~.device.Identity` has it.
 
     Raises
     ------
@@ -109,17 +115,30 @@ class RegisterDevice:
     """
 
     def __init__(
-        self, name: str, registers: Registers, memory: Memory, video: Video, pause: Callable[[], None]
+        self,
+        name: str,
+        registers: Registers,
+        memory: Memory,
+        video: Video,
+        pause: Callable[[], None],
+        *,
+        pixel_seconds: float = 2e-5,
     ) -> None:
         self._registers = registers
         self._memory = memory
         self._video = video
         self._pause = pause
+        self._stopped = threading.Event()
         if self._read("identity") != _IDENTITY:
             raise DeviceError(f"{name}: the ray tracer does not answer; load the bitstream of voxrt")
         version = self._fields("version")
         if version["major"] != 0:
             raise DeviceError(f"{name}: register version {version['major']} is not supported; upgrade voxrt-board")
+        if version["minor"] < _MINOR:
+            raise DeviceError(
+                f"{name}: register version 0.{version['minor']} is older than 0.{_MINOR}, which has the brightness of "
+                "faces; load the bitstream of this release"
+            )
         configuration = self._fields("configuration")
         words = min(1 + (8 << configuration["block_bits"]), len(memory))
         self.identity = Identity(
@@ -128,9 +147,10 @@ class RegisterDevice:
             capacity=words - (words - 1) % 8,
             depth=configuration["max_depth"],
             size=video.size,
-            features=frozenset(name for name, built_in in self._fields("features").items() if built_in),
+            features=frozenset(name for name in FEATURES if self._fields("features")[name]),
             width_step=video.width_step,
             position_limit=1 << (configuration["position_bits"] - 1),
+            pixel_seconds=pixel_seconds,
         )
         # The registers and the memory may still hold the scene of an earlier program: nothing of it may be traced.
         self.hold()
@@ -148,6 +168,8 @@ class RegisterDevice:
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
         """Write words from word `address` on, at once: the frame in progress, if any, goes on."""
+        if self._stopped.is_set():
+            raise DeviceError("the device was stopped")
         self._memory[address : address + len(words)] = words
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
@@ -168,7 +190,7 @@ class RegisterDevice:
         self._write("depth", depth)
         self._write("root", root)
 
-    def frame(self, view: View) -> Frame:
+    def frame(self, view: View, seconds: float = math.inf) -> Frame:
         """Start a frame, wait for the frame-done bit, and return the frame."""
         started = time.perf_counter()
         columns, rows = view.size
@@ -179,16 +201,23 @@ class RegisterDevice:
         self._write_fields(
             "shading",
             flat=view.lighting.flat,
+            faces=view.lighting.faces is not None,
             light=view.lighting.on,
             ambient=view.lighting.ambient,
             bounces=view.lighting.bounces,
         )
+        if view.lighting.faces is not None:
+            for name, brightness in (
+                ("lower_faces", view.lighting.faces[::2]),
+                ("upper_faces", view.lighting.faces[1::2]),
+            ):
+                self._write_fields(name, **dict(zip("xyz", brightness, strict=True)))
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
         self._write("status", self._bits("status", "frame_done", *_ERRORS))  # writing 1 clears
         self._video.expect(view.size)
         self._write("control", self._bits("control", "start"))
-        self._wait("frame_done", 1, "the frame does not end")
+        self._wait("frame_done", 1, "the frame does not end", seconds)
         status = self._fields("status")
         errors = [problem for field, problem in _ERRORS.items() if status[field]]
         if errors:
@@ -205,23 +234,37 @@ class RegisterDevice:
         )
         return Frame(colour, counters)
 
+    def stop(self) -> None:
+        """End the frame in progress; further frames and writes to the memory fail."""
+        self._stopped.set()
+
     def close(self) -> None:
         """Let no further frame start."""
         self.hold()
         self._video.close()
 
-    def _wait(self, field: str, value: int, problem: str) -> None:
-        pixels, end = -1, 0.0
+    def _wait(self, field: str, value: int, problem: str, seconds: float = math.inf) -> None:
+        pixels, end, last = -1, 0.0, time.monotonic() + seconds
         while self._fields("status")[field] != value:
             before, pixels = pixels, self._read("rays")
+            now = time.monotonic()
+            if self._stopped.is_set():
+                self._drop_frame()
+                raise DeviceError("the frame was stopped")
+            if now > last:
+                self._drop_frame()
+                raise TooSlow(f"the frame took more than {seconds:.1f} s")
             if pixels != before:
-                end = time.monotonic() + _STUCK_SECONDS
-            elif time.monotonic() > end:
-                self._write("control", self._bits("control", "soft_reset", "hold"))
+                end = now + _STUCK_SECONDS
+            elif now > end:
+                self._drop_frame()
                 raise DeviceError(
                     f"{problem}: no pixel came for {_STUCK_SECONDS:.0f} s; the frame was dropped, try again"
                 )
             self._pause()
+
+    def _drop_frame(self) -> None:
+        self._write("control", self._bits("control", "soft_reset", "hold"))
 
     def _read(self, name: str) -> int:
         return int(self._registers.read(REGISTERS[name][0]))

@@ -66,6 +66,7 @@ REGISTERS = {
             "flat": (0, 1),
             "light": (1, 1),
             "mirrors": (2, 1),
+            "faces": (3, 1),
         },
     ),
     "position[0]": (
@@ -175,6 +176,7 @@ REGISTERS = {
         {
             "flat": (0, 1),
             "light": (1, 1),
+            "faces": (2, 1),
             "ambient": (8, 8),
             "bounces": (16, 4),
         },
@@ -201,6 +203,22 @@ REGISTERS = {
         0x088,
         {
             "value": (0, 32),
+        },
+    ),
+    "lower_faces": (
+        0x090,
+        {
+            "x": (0, 8),
+            "y": (8, 8),
+            "z": (16, 8),
+        },
+    ),
+    "upper_faces": (
+        0x094,
+        {
+            "x": (0, 8),
+            "y": (8, 8),
+            "z": (16, 8),
         },
     ),
     "memory_base": (

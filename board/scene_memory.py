@@ -10,7 +10,7 @@ from .errors import DeviceError, Refused
 from .scene import EMPTY_LEAF, check_memory, relocate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from .device import Device
     from .scene import Scene
@@ -84,11 +84,16 @@ class SceneMemory:
         for _ in self.load_in_steps(scene, progress):
             pass
 
-    def load_in_steps(self, scene: Scene, progress: Progress) -> Iterator[None]:
+    def load_in_steps(
+        self, scene: Scene, progress: Progress, try_scene: Callable[[], None] | None = None
+    ) -> Iterator[None]:
         """Do what :meth:`load` does in steps; frames may be rendered between two steps.
 
         These frames show the present scene. The new one is shown after the last step. A caller that stops before it
         leaves the present scene as it is. Where two scenes do not fit there is one step only.
+
+        `try_scene` is called in the last step, when frames show the new scene. If it raises an error, the present
+        scene stays, and the error is raised again.
 
         Raises
         ------
@@ -98,11 +103,11 @@ class SceneMemory:
         self.check(scene)
         base = self._free_base(len(scene.words))
         if base is None:
-            self._overwrite(scene, progress)
+            self._overwrite(scene, progress, try_scene)
             return
         for _ in self._transfer(scene, base, progress):
             yield
-        self._switch(scene, base)
+        self._switch(scene, base, try_scene)
 
     def _free_base(self, count: int) -> int | None:
         """Find where `count` words fit beside the loaded scene: before it, or at the end of the memory.
@@ -137,20 +142,24 @@ class SceneMemory:
             yield
         progress("verify", len(words), len(words))
 
-    def _switch(self, scene: Scene, base: int) -> None:
+    def _switch(self, scene: Scene, base: int, try_scene: Callable[[], None] | None) -> None:
         try:
             self._select(scene, base)
+            if try_scene is not None:
+                try_scene()
         except BaseException as error:
             self._restore(error, overwritten=False)
             raise
         self._loaded, self._base = scene, base
 
-    def _overwrite(self, scene: Scene, progress: Progress) -> None:
+    def _overwrite(self, scene: Scene, progress: Progress, try_scene: Callable[[], None] | None) -> None:
         try:
             self._device.hold()
             for _ in self._transfer(scene, 0, progress):
                 pass
             self._select(scene, 0)
+            if try_scene is not None:
+                try_scene()
         except BaseException as error:
             self._restore(error, overwritten=True)
             raise

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..octree.camera import CAMERA_LIGHT, FEATURES, Camera, Lighting, Triple, frame_world, refit
+from ..octree.camera import (
+    FACES,
+    FEATURES,
+    PLAIN_LIGHTING,
+    Camera,
+    Faces,
+    Lighting,
+    Shading,
+    Triple,
+    frame_world,
+    refit,
+)
 
-__all__ = ["FEATURES", "Camera", "Lighting", "Triple", "View", "frame_world", "refit"]
+__all__ = ["FACES", "FEATURES", "Camera", "Faces", "Lighting", "Shading", "Triple", "View", "frame_world", "refit"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +33,10 @@ class View:
     background
         sRGB of pixels that hit nothing, 0 ... 255 each.
     lighting
-        Light, mirrors, flat colours.
+        Brightness of faces, light, mirrors.
     """
 
     camera: Camera
     size: tuple[int, int]
     background: Triple = (0, 0, 0)
-    lighting: Lighting = CAMERA_LIGHT
+    lighting: Lighting = PLAIN_LIGHTING

@@ -13,7 +13,7 @@ import threading
 from pathlib import Path
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import AssetReader, load_scene
+from voxrt.board_scenes import asset_reader
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions
@@ -31,8 +31,8 @@ from fakes.browser import chromium  # noqa: E402 - the tests' own browser
 
 async def serve(ready: threading.Event, finished: threading.Event, told: dict[str, str]) -> None:
     """Serve until the pictures are taken."""
-    scenes = {name: (lambda path=path: load_scene(path, DEPTH)) for name, path in SCENES.items()}
-    async with FrameServer(ModelDevice(), SceneLibrary(AssetReader(DEPTH), scenes), ServerOptions()) as server:
+    scenes = {name: [path] for name, path in SCENES.items()}
+    async with FrameServer(ModelDevice(), SceneLibrary(asset_reader(DEPTH), scenes), ServerOptions()) as server:
         told["url"] = server.url
         ready.set()
         await asyncio.to_thread(finished.wait)

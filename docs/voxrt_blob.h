@@ -63,6 +63,10 @@ struct voxrt_lighting { /* LITE */
     uint8_t ambient, flags, bounces, zero;
 };
 
+struct voxrt_faces { /* FACE */
+    uint8_t brightness[6]; /* of the faces that look along -x, +x, -y, +y, -z, +z */
+};
+
 /* The section called `name` (4 characters), or NULL; the table must lie within the file. */
 static inline const struct voxrt_section *voxrt_find(const struct voxrt_header *blob, const char *name) {
     const struct voxrt_section *section = (const struct voxrt_section *)(blob + 1);

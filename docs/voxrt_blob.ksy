@@ -44,6 +44,7 @@ types:
             '"WORD"': words
             '"VIEW"': view
             '"LITE"': lighting
+            '"FACE"': faces
   title:
     seq:
       - id: text
@@ -125,3 +126,9 @@ types:
         type: u1
       - id: zero
         type: u1
+  faces:
+    seq:
+      - id: brightness
+        type: u1
+        repeat: expr
+        repeat-expr: 6

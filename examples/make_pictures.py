@@ -27,7 +27,7 @@ def main() -> None:
     mpl.use("Agg")
     for name, size in SCENES.items():
         picture = PICTURES / Path(name).with_suffix(".png")
-        voxrt.build(EXAMPLES / name, preview=picture, size=size)
+        voxrt.build(EXAMPLES / name, preview=picture, size=size, samples=2, background="transparent")
         print(picture)
     show_octants()
     compare()

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.provenance import Provenance
 from voxrt.export.word_file import read_bytes
 from voxrt.octree import Rom, RomError, census, decode
-from voxrt.octree.camera import BOUNCE_LIMIT, Camera, Lighting
+from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
 from voxrt.voxelize import Grid, Material
 
 if TYPE_CHECKING:
@@ -32,9 +34,10 @@ _WORLD = struct.Struct("<II4d")  # depth, 1 where the grid is known, origin, vox
 _MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
 _VIEW = struct.Struct("<12i")  # position, look, right, up
 _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
+_FACES = struct.Struct("<6B")  # brightness of the faces along -x, +x, -y, +y, -z, +z; absent where it is the default
 
 _MIRROR, _AUTHORED = 1, 2
-_LIGHT_ON, _FLAT = 1, 2
+_LIGHT_ON, _FLAT, _BY_ANGLE = 1, 2, 4
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -47,6 +50,8 @@ class Blob:
         The memory. The colour of material 0 is the background.
     view, lighting
         The camera and the lighting to start with; None leaves them to the board.
+    provenance
+        What the manifest says of the build. A blob keeps all of it but the seconds: equal memories give equal blobs.
 
     Examples
     --------
@@ -59,6 +64,7 @@ class Blob:
     rom: Rom
     view: Camera | None = None
     lighting: Lighting | None = None
+    provenance: Provenance = field(default_factory=Provenance)
 
 
 def blob_bytes(blob: Blob) -> bytes:
@@ -80,8 +86,13 @@ def blob_bytes(blob: Blob) -> bytes:
     if view := blob.view:
         sections[b"VIEW"] = _VIEW.pack(*view.position, *view.look, *view.right, *view.up)
     if light := blob.lighting:
-        flags = light.on * _LIGHT_ON | light.flat * _FLAT
+        flags = light.on * _LIGHT_ON | light.flat * _FLAT | (light.faces is None) * _BY_ANGLE
         sections[b"LITE"] = _LIGHT.pack(*light.position, light.ambient, flags, light.bounces, 0)
+        if light.faces not in (None, FACES):
+            sections[b"FACE"] = _FACES.pack(*light.faces)
+    told = msgspec.structs.replace(blob.provenance, seconds={})
+    if told != Provenance():
+        sections[b"PROV"] = msgspec.json.encode(told)
     offset = _HEADER.size + _ENTRY.size * len(sections)
     table, body = b"", b""
     for name, data in sections.items():
@@ -132,9 +143,12 @@ def read_blob(path: Path) -> Blob:
         depth, known, *place = _WORLD.unpack(sections[b"WRLD"])
         view = _VIEW.unpack(sections[b"VIEW"]) if b"VIEW" in sections else None
         light = _LIGHT.unpack(sections[b"LITE"]) if b"LITE" in sections else None
+        faces = _FACES.unpack(sections[b"FACE"]) if b"FACE" in sections else FACES
         title = sections[b"NAME"].decode()
     except (struct.error, UnicodeDecodeError):
-        raise _damaged(path, "section NAME, WRLD, VIEW or LITE", "has another layout than that of version 1") from None
+        raise _damaged(
+            path, "section NAME, WRLD, VIEW, LITE or FACE", "has another layout than that of version 1"
+        ) from None
     words = sections[b"WORD"]
     if len(words) % 4:
         raise _damaged(path, "section WORD", f"{len(words)} bytes are not words of 4")
@@ -145,7 +159,8 @@ def read_blob(path: Path) -> Blob:
     return Blob(
         Rom(title, octree, materials, _grid(path, depth, place) if known else None),
         None if view is None else Camera(view[:3], view[3:6], view[6:9], view[9:]),
-        None if light is None else _lighting(light),
+        None if light is None else _lighting(light, faces),
+        _provenance(path, sections[b"PROV"]) if b"PROV" in sections else Provenance(),
     )
 
 
@@ -201,6 +216,14 @@ def _materials(path: Path, section: bytes) -> tuple[Material, ...]:
     return tuple(entries)
 
 
+def _provenance(path: Path, section: bytes) -> Provenance:
+    try:
+        str(section, "utf-8")  # the decoder looks only at the strings it needs
+        return msgspec.json.decode(section, type=Provenance)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        raise _damaged(path, "section PROV", f"is no account of a build ({error})") from None
+
+
 def _grid(path: Path, depth: int, place: list[float]) -> Grid:
     x, y, z, voxel_size = place
     if not all(map(np.isfinite, place)) or voxel_size <= 0:
@@ -208,6 +231,13 @@ def _grid(path: Path, depth: int, place: list[float]) -> Grid:
     return Grid(depth, (x, y, z), voxel_size)
 
 
-def _lighting(fields: tuple[int, ...]) -> Lighting:
+def _lighting(fields: tuple[int, ...], faces: Faces) -> Lighting:
     x, y, z, ambient, flags, bounces, _ = fields
-    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, BOUNCE_LIMIT))
+    return Lighting(
+        (x, y, z),
+        ambient,
+        on=bool(flags & _LIGHT_ON),
+        flat=bool(flags & _FLAT),
+        bounces=min(bounces, BOUNCE_LIMIT),
+        faces=None if flags & _BY_ANGLE else faces,
+    )

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import errno
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from voxrt.export.atomic import new_folder
 from voxrt.export.blob import Blob, read_blob, write_blob
 from voxrt.export.listing import read_listing
-from voxrt.export.rom_files import WORD_SUFFIXES, read_words, write_rom
+from voxrt.export.manifest import read_manifest
+from voxrt.export.provenance import Provenance
+from voxrt.export.rom_files import WORD_SUFFIXES, other_words, read_words, words_crc32, write_rom
 from voxrt.export.vox import read_vox
 from voxrt.octree import RomError
 
@@ -85,7 +89,8 @@ def read_any(
 def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple[Path, ...]:
     """Write a memory as a file that is read back without loss: words with a manifest, or a blob.
 
-    :func:`voxrt.convert` writes the forms of other programs too.
+    The manifest keeps what is known of the build. If the memory does not say, and the words have a manifest there
+    already, that one stays as it is. :func:`voxrt.convert` writes the forms of other programs too.
 
     Parameters
     ----------
@@ -109,7 +114,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
     DoesNotFitError
         The dialect cannot name a material in use.
     OSError
-        A file cannot be written.
+        A file cannot be written, or its manifest would replace that of a file with other words.
 
     Examples
     --------
@@ -121,10 +126,50 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
     target = Path(target)
     suffix = target.suffix.lower()
     if suffix == BLOB_SUFFIX:
-        write_blob(target, blob)
+        with new_folder(target.parent):
+            write_blob(target, blob)
         return (target,)
     if suffix not in WORD_SUFFIXES:
         raise RomError(f"{target}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
-    rom = replace(blob.rom, name=target.stem)
-    files = write_rom(target.parent, rom, suffix=target.suffix, dialect=dialect, view=blob.view, lighting=blob.lighting)
+    blob = _with_known_provenance(blob, target, dialect)
+    told = blob.provenance
+    files = write_rom(
+        target.parent,
+        replace(blob.rom, name=target.stem),
+        stem=target.stem,
+        suffix=target.suffix,
+        dialect=dialect,
+        objects=told.objects,
+        warnings=told.warnings,
+        seconds=told.seconds,
+        source=told.source,
+        view=blob.view,
+        lighting=blob.lighting,
+    )
     return files.mem, files.manifest
+
+
+def _with_known_provenance(blob: Blob, target: Path, dialect: str) -> Blob:
+    """Complete what is known of a memory by the manifest that its words have where they go.
+
+    Raises
+    ------
+    FileExistsError
+        The manifest there belongs to another file, with other words.
+    """
+    path = target.with_suffix(".json")
+    try:
+        there = read_manifest(path)
+    except RomError:  # none, or a damaged one
+        return blob
+    if there.crc32 != words_crc32(blob.rom, dialect):
+        if other := other_words(target, there):
+            raise FileExistsError(
+                errno.EEXIST, f"{path.name} belongs to {other.name}, which has other words", str(target)
+            )
+        return blob
+    if blob.provenance != Provenance():
+        return blob
+    return replace(
+        blob, view=blob.view or there.view, lighting=blob.lighting or there.lighting, provenance=there.provenance
+    )

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.export.atomic import write_atomically
+from voxrt.export.provenance import Provenance, Source
 from voxrt.octree import Dialect, RomError, census
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
@@ -47,19 +48,6 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         tuple[float, float, float, float],
         tuple[float, float, float, float],
     ]
-
-
-class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the memory was built from: the name of the file, and the options of the build.
-
-    Examples
-    --------
-    >>> Source("house.obj", {"fill": "solid"}).file
-    'house.obj'
-    """
-
-    file: str
-    settings: dict[str, str | int | float | bool | None]
 
 
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -118,6 +106,11 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def material_table(self) -> tuple[Material, ...]:
         """The materials as the rest of the project passes them, indexed by id."""
         return tuple(Material(entry.name, entry.colour, entry.mirror, entry.authored) for entry in self.materials)
+
+    @property
+    def provenance(self) -> Provenance:
+        """What it says of the build."""
+        return Provenance(self.source, self.objects, self.warnings, self.seconds)
 
     @property
     def grid(self) -> Grid | None:

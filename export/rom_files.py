@@ -1,26 +1,27 @@
 """A ROM as the pair NAME.mem and NAME.json, and back; NAME.coe, NAME.mif and NAME.bin in place of the ``.mem`` alike.
 
-The pair changes at one moment, the renaming of the new ``.mem``: before it, the new manifest waits as NAME.json.next;
-after it, that file takes the name NAME.json. A reader takes whichever of the two manifests has the CRC-32 of the
-``.mem``, so an interruption at any point leaves the old pair or the new one, and a ``.mem`` that was exchanged alone is
-noticed.
+The pair changes at one moment, the renaming of the new ``.mem``: before it, the new manifest waits under a temporary
+name; after it, that file takes the name NAME.json. A reader takes whichever manifest has the CRC-32 of the ``.mem``,
+and reads again if files changed meanwhile. So it finds the old pair or the new one at any time, and a ``.mem`` that was
+exchanged alone is noticed.
 """
 
 from __future__ import annotations
 
+import errno
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from voxrt.export.atomic import sync_folder, write_atomically
+from voxrt.export.atomic import new_folder, staged_files, write_together
 from voxrt.export.blob import Blob
 from voxrt.export.coe import coe_bytes, read_coe
-from voxrt.export.manifest import Source, make_manifest, manifest_bytes, read_manifest
+from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
 from voxrt.export.mem import read_mem
 from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import raw_bytes, read_raw
-from voxrt.export.word_file import mem_bytes
+from voxrt.export.word_file import mem_bytes, word_file
 from voxrt.octree import Octree, Rom, RomError, census, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from voxrt.export.manifest import Manifest
+    from voxrt.export.provenance import Source
     from voxrt.export.word_file import WordFile
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport
@@ -54,6 +56,7 @@ def write_rom(
     folder: Path,
     rom: Rom,
     *,
+    stem: str | None = None,
     suffix: str = ".mem",
     dialect: str = "report",
     objects: tuple[ObjectReport, ...] = (),
@@ -62,6 +65,7 @@ def write_rom(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
+    beside: Mapping[Path, bytes | None] | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
 
@@ -70,7 +74,9 @@ def write_rom(
     folder
         The folder. It is made if it is missing.
     rom
-        The memory. Its name names the files.
+        The memory.
+    stem
+        The name of the files without their suffixes; None for the memory's name.
     suffix
         The kind of the file of words, one of :data:`WORD_SUFFIXES`.
     dialect
@@ -79,6 +85,9 @@ def write_rom(
         What the manifest says of the build.
     view, lighting
         The camera and the lighting that the manifest names.
+    beside
+        The bytes of further files that belong to the pair, such as a preview: all of the files change or none. None
+        for the bytes removes a file.
 
     Returns
     -------
@@ -88,11 +97,11 @@ def write_rom(
     Raises
     ------
     TypeError, ValueError
-        The memory is none, its name cannot name a file, or there is no such dialect or suffix.
+        The memory is none, its name or `stem` cannot name a file, or there is no such dialect or suffix.
     DoesNotFitError
         The dialect cannot name a material in use.
     OSError
-        The folder cannot be written to.
+        The folder cannot be written to, or ``NAME.json`` is there and is no manifest.
 
     Examples
     --------
@@ -104,8 +113,9 @@ def write_rom(
     """
     instance("rom", rom, Rom)
     choice("suffix", suffix.lower(), WORD_SUFFIXES)
-    if rom.name in {"", ".", ".."} or any(c in rom.name for c in "/\\\0"):
-        raise ValueError(f"{rom.name!r} cannot name a file")
+    stem = rom.name if stem is None else stem
+    if stem in {"", ".", ".."} or any(c in stem for c in "/\0") or (stem == rom.name and "\\" in stem):
+        raise ValueError(f"{stem!r} cannot name a file")
     words = encode(rom.octree.words, dialect)
     manifest = make_manifest(
         rom,
@@ -118,14 +128,36 @@ def write_rom(
         view=view,
         lighting=lighting,
     )
-    folder.mkdir(parents=True, exist_ok=True)
-    files = RomFiles(folder / f"{rom.name}{suffix}", folder / f"{rom.name}.json")
-    waiting = _waiting(files.manifest)
-    write_atomically(waiting, manifest_bytes(manifest))
-    write_atomically(files.mem, _WRITERS[suffix.lower()](words))
-    waiting.replace(files.manifest)
-    sync_folder(folder)
+    files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
+    with new_folder(folder):
+        _refuse_foreign(files.manifest)
+        write_together(
+            {
+                files.mem: _WRITERS[suffix.lower()](words),
+                files.manifest: manifest_bytes(manifest),
+                **(beside or {}),
+            }
+        )
     return files
+
+
+def words_crc32(rom: Rom, dialect: str) -> str:
+    """Return the CRC-32 by which a manifest knows the words of a memory in a dialect."""
+    return f"{word_file(encode(rom.octree.words, dialect), None).crc32:08X}"
+
+
+def other_words(path: Path, manifest: Manifest) -> Path | None:
+    """Find another file of words, ``NAME`` with another suffix, that a manifest beside `path` describes."""
+    for suffix, read in _READERS.items():
+        other = path.with_suffix(suffix)
+        if suffix == path.suffix.lower() or not other.is_file():
+            continue
+        try:
+            if _fits(manifest, read(other)):
+                return other
+        except RomError:  # damaged: nobody misses its manifest
+            continue
+    return None
 
 
 def read_rom(
@@ -172,8 +204,7 @@ def read_words(
     """Read as :func:`read_rom` does, with the camera and the lighting that the manifest names."""
     if mem_path.suffix.lower() not in _READERS:
         raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
-    mem = _READERS[mem_path.suffix.lower()](mem_path)
-    manifest = _manifest_of(mem_path, mem)
+    mem, manifest = _read_pair(mem_path)
     if manifest is None:
         rom, warnings = _without_manifest(mem_path, mem, depth, dialect)
         return Blob(rom), warnings
@@ -190,27 +221,65 @@ def read_words(
             f"{len(manifest.materials) - 1}; build it again"
         )
     rom = Rom(manifest.name, octree, manifest.material_table, manifest.grid)
-    return Blob(rom, manifest.view, manifest.lighting), ()
+    return Blob(rom, manifest.view, manifest.lighting, manifest.provenance), ()
 
 
-def _manifest_of(mem_path: Path, mem: WordFile) -> Manifest | None:
-    """Find the manifest that belongs to the bytes of the ``.mem``; None where there is no manifest at all."""
+def _read_pair(mem_path: Path) -> tuple[WordFile, Manifest | None]:
+    """Read the words and the manifest that belongs to them; None where there is no manifest at all.
+
+    A writer may put the next pair in place meanwhile: where the two do not fit and have changed, they are read again.
+    """
     path = mem_path.with_suffix(".json")
-    candidates = [candidate for candidate in (path, _waiting(path)) if candidate.is_file()]
-    for candidate in candidates:
-        manifest = read_manifest(candidate)
-        if manifest.crc32 == f"{mem.crc32:08X}" and manifest.words == len(mem.words):
-            return manifest
-    if path in candidates:
+    while True:
+        before = _state(mem_path, path)
+        mem = _READERS[mem_path.suffix.lower()](mem_path)
+        manifest, problem = _manifest_of(path, mem)
+        if manifest is not None:
+            return mem, manifest
+        if _state(mem_path, path) != before:
+            continue
+        if problem is not None:
+            raise problem
+        if before[1] is None:
+            return mem, None
         raise RomError(
             f"{path}: describes another {mem_path.name} (CRC-32 {mem.crc32:08X} is not the one it names); "
             "build both again, or move the manifest away"
         )
-    return None
 
 
-def _waiting(manifest: Path) -> Path:
-    return manifest.with_name(f"{manifest.name}.next")
+def _manifest_of(path: Path, mem: WordFile) -> tuple[Manifest | None, RomError | None]:
+    """Find the manifest of the words, by its name or one that waits for it; else say what is wrong with the former."""
+    problem = None
+    for candidate in (path, *staged_files(path)):
+        try:
+            if candidate.is_file() and _fits(manifest := read_manifest(candidate), mem):
+                return manifest, None
+        except RomError as error:
+            problem = error if candidate == path else problem  # what waits may not be complete yet
+    return None, problem
+
+
+def _fits(manifest: Manifest, mem: WordFile) -> bool:
+    return manifest.crc32 == f"{mem.crc32:08X}" and manifest.words == len(mem.words)
+
+
+def _state(*paths: Path) -> tuple[tuple[int, int, int] | None, ...]:
+    """Tell files from those that take their places."""
+    found: list[tuple[int, int, int] | None] = []
+    for path in paths:
+        try:
+            status = path.stat()
+            found.append((status.st_ino, status.st_mtime_ns, status.st_size))
+        except OSError:
+            found.append(None)
+    return tuple(found)
+
+
+def _refuse_foreign(manifest: Path) -> None:
+    """Refuse to replace a ``.json`` that says nothing of a memory: it is somebody's own."""
+    if manifest.is_file() and (data := manifest.read_bytes()).strip() and b'"crc32"' not in data:
+        raise FileExistsError(errno.EEXIST, f"{manifest.name} is there and is no manifest of a memory", str(manifest))
 
 
 def _without_manifest(

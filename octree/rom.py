@@ -17,7 +17,7 @@ class Rom:
     Attributes
     ----------
     name
-        The name of its files.
+        The name of its files. Bytes of a file's name that are no text become ``_``.
     octree
         The memory.
     materials
@@ -53,7 +53,8 @@ class Rom:
         )
 
     def __post_init__(self) -> None:
-        text("name", self.name)
+        name = "".join("_" if "\ud800" <= c <= "\udfff" else c for c in text("name", self.name))
+        object.__setattr__(self, "name", name)
         instance("octree", self.octree, Octree)
         if self.grid is not None and instance("grid", self.grid, Grid).depth != self.octree.depth:
             raise ValueError(f"grid has depth {self.grid.depth} and the octree depth {self.octree.depth}")

@@ -13,7 +13,7 @@ from typing import Any
 
 RTL = Path(__file__).resolve().parent
 TOP = "voxrt_core"
-PARAMETERS = ("Lanes", "MaxDepth", "PositionBits", "BlockBits", "MemoryForm", "L1SetBits", "L2SetBits", "Flat", "Light", "Mirrors")
+PARAMETERS = ("Lanes", "MaxDepth", "PositionBits", "BlockBits", "MemoryForm", "L1SetBits", "L2SetBits", "Light", "Mirrors")
 _SIMULATION = "SimulationBlockBits"
 
 
@@ -38,8 +38,8 @@ class Configuration:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """What it can shade beside faces: of flat, light, mirrors."""
-        return tuple(name.lower() for name in ("Flat", "Light", "Mirrors") if self.parameters[name])
+        """What it can shade beside faces: of light, mirrors."""
+        return tuple(name.lower() for name in ("Light", "Mirrors") if self.parameters[name])
 
 
 def read_configurations(path: Path = RTL / "configurations.json") -> dict[str, Configuration]:

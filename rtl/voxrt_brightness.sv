@@ -1,10 +1,11 @@
-// The brightness of pixels that are not shaded by the ray's own angle: mirrors' means, light and shadow. For the
-// shader:
+// The brightness of pixels that are not shaded by the ray's own angle: mirrors' means, faces, light and shadow. For
+// the shader, with f the brightness of the face and m the ambient value:
 //
 //   mean                sum of colours * 1 / count
-//   in shadow           colour * ambient / 256, the ambient value being in 1/256
-//   lit                 colour * D_a**2 / |D|**2, or as in shadow where that is brighter
-//   lit, flat           colour * 1 / 1
+//   by face             colour * f / 255, also where it is lit; flat: f = 255
+//   by face, in shadow  colour * f * m / (255 * 256)
+//   by angle, lit       colour * D_a**2 / |D|**2, or as in shadow where that is brighter
+//   by angle, in shadow colour * m / 256
 //
 // The direction D from the hit point to the light is computed again here, so that a hit point travels through the
 // reorder buffer and not three squares. All stages hold while a pixel waits at the end.
@@ -39,11 +40,13 @@ module voxrt_brightness
   localparam int unsigned LightBits = light_bits(MaxDepth);
   localparam int unsigned Stages = Light ? 9 : 1;
   localparam int unsigned WholeBits = SquareBits + 2;
+  localparam int unsigned MirroredBit = Light ? 3 * HitBits : 0;
 
   typedef struct packed {
     pixel_t   pixel;
     shade_e   shade;
     logic     lit;
+    logic     upper;  // The face looks along its axis.
     mirrors_t mirrors;
   } info_t;
 
@@ -56,12 +59,29 @@ module voxrt_brightness
   assign valid_o = valid_q[Stages];
   assign pixel_o = info_q[Stages].pixel;
 
+  shade_e     shade;
+  logic [2:0] mirrored;
+  logic       upper, by_face;
+
+  always_comb begin
+    shade    = shade_e'(detail_i[DetailBits-1-:2]);
+    mirrored = detail_i[MirroredBit+:3];
+    unique case (pixel_i.face)
+      FaceX:   upper = mirrored[0];
+      FaceY:   upper = mirrored[1];
+      default: upper = mirrored[2];
+    endcase
+  end
+
+  assign by_face = shading_i.flat || shading_i.faces;
+
   always_ff @(posedge clk_i) begin
     if (moves) begin
       valid_q[1]         <= valid_i;
       info_q[1].pixel   <= pixel_i;
-      info_q[1].shade   <= shade_e'(detail_i[DetailBits-1-:2]);
+      info_q[1].shade   <= shade;
       info_q[1].lit     <= lit_i;
+      info_q[1].upper   <= upper;
       info_q[1].mirrors <= '0;
       if (Mirrors) info_q[1].mirrors <= mirrors_t'(detail_i[DetailBits-3:0]);
       for (int unsigned s = 2; s <= Stages; s++) begin
@@ -103,11 +123,13 @@ module voxrt_brightness
       .direction_o(direction)
     );
 
-    // 4 sizes, 5 squares, 6 sum and square, 7 and 8 ambient x sum, 9 compare.
+    // 4 sizes, 5 squares, 6 sum and square, 7 and 8 ambient x sum and x face, 9 compare.
     logic [DirectionBits-1:0] size4_q  [3];
     logic [   SquareBits-1:0] square5_q[3], square6_q, square7_q, square8_q, part9_q;
     logic [    WholeBits-1:0] sum6_q, sum7_q, sum8_q, whole9_q;
     logic [  WholeBits+7:0] ambient7_q, ambient8_q;
+    logic [            7:0] face7_q, face8_q;
+    logic [           15:0] shadow8_q;  // face7_q * ambient.
 
     always_ff @(posedge clk_i) begin
       if (moves) begin
@@ -127,11 +149,18 @@ module voxrt_brightness
         square8_q  <= square7_q;
         sum8_q     <= sum7_q;
         ambient8_q <= ambient7_q;
+        face7_q    <= face_brightness(shading_i.brightness, shading_i.flat, info_q[6].pixel.face, info_q[6].upper);
+        face8_q    <= face7_q;
+        shadow8_q  <= 16'(face7_q) * 16'(shading_i.ambient);
         part9_q    <= square8_q;
         whole9_q   <= sum8_q;
-        if (info_q[8].lit && shading_i.flat) begin
-          part9_q  <= SquareBits'(1);
-          whole9_q <= WholeBits'(1);
+        if (by_face) begin
+          part9_q  <= SquareBits'(face8_q);
+          whole9_q <= WholeBits'(FaceUnit);
+          if (info_q[8].shade == ShadeLight && !info_q[8].lit) begin
+            part9_q  <= SquareBits'(shadow8_q);
+            whole9_q <= WholeBits'(256 * FaceUnit);
+          end
         end else if (!info_q[8].lit || (WholeBits + 8)'({square8_q, 8'd0}) <= ambient8_q) begin
           part9_q  <= SquareBits'(shading_i.ambient);
           whole9_q <= WholeBits'(256);
@@ -143,13 +172,14 @@ module voxrt_brightness
     assign whole = whole9_q;
   end else begin : gen_no_light
     logic unused_frame;
-    assign unused_frame = &{side_i, light_i, shading_i};
-    assign part  = '0;
-    assign whole = '0;
+    assign unused_frame = &{side_i, light_i};
+    assign part  = SquareBits'(face_brightness(shading_i.brightness, shading_i.flat, info_q[1].pixel.face,
+                                               info_q[1].upper));
+    assign whole = WholeBits'(FaceUnit);
   end
 
   always_comb begin
-    brightness_o.part_given = info_q[Stages].shade != ShadeAngle;
+    brightness_o.part_given = by_face || info_q[Stages].shade != ShadeAngle;
     brightness_o.sum_given  = info_q[Stages].shade == ShadeMean;
     brightness_o.part       = part;
     brightness_o.whole      = whole;

@@ -24,8 +24,7 @@ module voxrt_core
   // Cached: sets of four lines of 32 bytes in each lane's cache (1 or more), and in the cache that lanes share, 2**bits.
   parameter int unsigned L1SetBits    = 5,
   parameter int unsigned L2SetBits    = 9,
-  // Features of the shader, 0 = not built in: flat colours, a point light with shadows, mirrors.
-  parameter bit          Flat         = 1'b0,
+  // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -169,9 +168,15 @@ module voxrt_core
   assign frame.depth           = control.depth.depth.value;
   assign frame.root            = control.root.address.value;
   assign frame.shading.flat    = control.shading.flat.value;
+  assign frame.shading.faces   = control.shading.faces.value;
   assign frame.shading.light   = control.shading.light.value;
   assign frame.shading.ambient = control.shading.ambient.value;
   assign frame.shading.bounces = control.shading.bounces.value;
+
+  assign frame.shading.brightness[0] = {control.lower_faces.z.value, control.lower_faces.y.value,
+                                        control.lower_faces.x.value};
+  assign frame.shading.brightness[1] = {control.upper_faces.z.value, control.upper_faces.y.value,
+                                        control.upper_faces.x.value};
 
   material_write_t material_write;
 
@@ -210,7 +215,6 @@ module voxrt_core
     .MemoryForm  (MemoryForm),
     .L1SetBits   (L1SetBits),
     .L2SetBits   (L2SetBits),
-    .Flat        (Flat),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_rtu (
@@ -259,7 +263,6 @@ module voxrt_core
   assign status.configuration.block_bits.next    = 5'(BlockBits);
   assign status.configuration.banked.next        = MemoryForm == BankedForm;
   assign status.configuration.cached.next        = MemoryForm == CachedForm;
-  assign status.features.flat.next               = Flat;
   assign status.features.light.next              = Light;
   assign status.features.mirrors.next            = Mirrors;
   assign status.status.busy.next                 = busy;

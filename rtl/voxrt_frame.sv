@@ -7,7 +7,6 @@ module voxrt_frame
 #(
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
-  parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -44,7 +43,6 @@ module voxrt_frame
       legal.position[a] = 32'(position[a]);
       legal.light[a]    = 32'(light[a]);
     end
-    legal.shading.flat    = Flat && frame_i.shading.flat;
     legal.shading.light   = Light && frame_i.shading.light;
     legal.shading.ambient = Light ? frame_i.shading.ambient : '0;
     legal.shading.bounces = Mirrors ? frame_i.shading.bounces : '0;

@@ -5,7 +5,6 @@ module voxrt_pixels
 #(
   parameter int unsigned Lanes    = 1,
   parameter int unsigned MaxDepth = 10,
-  parameter bit          Flat     = 1'b0,
   parameter bit          Light    = 1'b0,
   parameter bit          Mirrors  = 1'b0,
   parameter bit          Strips   = 1'b0
@@ -122,13 +121,12 @@ module voxrt_pixels
   end
 
   voxrt_shader #(
-    .Flat (Flat),
     .Given(Given)
   ) u_shader (
     .clk_i,
     .rst_ni,
     .raster_i,
-    .flat_i      (shading_i.flat),
+    .shading_i,
     .material_write_i,
     .valid_i     (bright_valid),
     .ready_o     (bright_ready),

@@ -141,12 +141,18 @@ package voxrt_pkg;
     material_entry_t entry;
   } material_write_t;
 
+  // A brightness per face, by {looks along +axis, axis}, 1/FaceUnit.
+  typedef logic [1:0][2:0][7:0] faces_t;
+  localparam int unsigned FaceUnit = 255;
+
   // The shader's features that a frame uses: docs/shading.md.
   typedef struct packed {
     logic                  flat;
+    logic                  faces;       // Each face has its own brightness, unless flat.
+    faces_t                brightness;
     logic                  light;
-    logic [7:0]            ambient;  // 1/256
-    logic [BounceBits-1:0] bounces;  // 0: mirrors are like all others.
+    logic [7:0]            ambient;     // 1/256
+    logic [BounceBits-1:0] bounces;     // 0: mirrors are like all others.
   } shading_t;
 
   // A frame, as the registers describe it. Camera and light: grid frame, signed, 1/16 voxel; look, right, up: signed.
@@ -283,9 +289,9 @@ package voxrt_pkg;
 
   // What a pixel's colour is made of. In the reorder buffer, a payload is below it.
   typedef enum logic [1:0] {
-    ShadeAngle,  // The material, by the ray's own angle.
+    ShadeAngle,  // The material, by the ray's own angle or by its face: as below, point not used.
     ShadeMean,   // The mean of mirrors: a mirrors_t.
-    ShadeLight   // The material, by the light's angle or in shadow: {mirrored, point[2], point[1], point[0]}.
+    ShadeLight   // The material, lit or in shadow: {mirrored, point[2], point[1], point[0]}; without Light {mirrored}.
   } shade_e;
 
   // Sums of colours, and of how many.
@@ -294,6 +300,18 @@ package voxrt_pkg;
     logic [2:0][ColourSumBits-1:0] sum;    // Red is 0.
     logic [BounceBits:0]           count;
   } mirrors_t;
+
+  // The brightness of a pixel without light, 1/FaceUnit, where it does not depend on the angle. Upper: the face looks
+  // along its axis.
+  function automatic logic [7:0] face_brightness(faces_t brightness, logic flat, face_e face, logic upper);
+    unique case (face)
+      FaceX:   face_brightness = brightness[upper][0];
+      FaceY:   face_brightness = brightness[upper][1];
+      FaceZ:   face_brightness = brightness[upper][2];
+      default: face_brightness = 8'(FaceUnit);
+    endcase
+    if (flat) face_brightness = 8'(FaceUnit);
+  endfunction
 
   // What the shader takes instead of colour * (d_a**2 / |d|**2): sum * part / whole.
   localparam int unsigned SquareBits = 2 * DirectionBits;

@@ -8,7 +8,7 @@
 // words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started
 // before its pixels can be accepted: pixel_ready_i may be low at any time.
 //
-// Flat, Light and Mirrors build the shader's features in: docs/shading.md.
+// Light and Mirrors build the shader's features in: docs/shading.md.
 module voxrt_rtu
   import voxrt_pkg::*;
 #(
@@ -19,7 +19,6 @@ module voxrt_rtu
   parameter int unsigned MemoryForm   = PrivateForm,
   parameter int unsigned L1SetBits    = 5,
   parameter int unsigned L2SetBits    = 9,
-  parameter bit          Flat         = 1'b0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -76,7 +75,6 @@ module voxrt_rtu
   voxrt_frame #(
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Flat        (Flat),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_frame (
@@ -297,7 +295,6 @@ module voxrt_rtu
   voxrt_pixels #(
     .Lanes   (Lanes),
     .MaxDepth(MaxDepth),
-    .Flat    (Flat),
     .Light   (Light),
     .Mirrors (Mirrors),
     .Strips  (Strips)

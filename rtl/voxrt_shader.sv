@@ -1,8 +1,10 @@
 // From materials and faces to colours, exact to the last bit, one pixel per clock:
-//   colour = round half up (c * d_a**2 / |d|**2), a the axis crossed, d the ray's direction
-// which is the report's perceptual curve (section 3.1.2). A pixel without a face has the material's own colour; so have
-// all when Flat is built in and asked for. With Given, voxrt_brightness may give a pixel another factor, and sums of
-// colours instead of the material's.
+//   colour = round half up (c * part / whole)
+//   by face             the face's brightness / 255; flat: 255 / 255
+//   by angle            d_a**2 / |d|**2, a the axis crossed, d the ray's direction: the report's perceptual curve
+//                       (section 3.1.2)
+// A pixel without a face has the material's own colour. With Given, voxrt_brightness may give a pixel another factor,
+// and sums of colours instead of the material's; brightness by face is then its own.
 //
 // A second ray generator computes the directions again, in pixel order: of a ray, only material and face need come
 // through the lanes. The pipeline never stops; a pixel enters when there is a credit for the FIFO behind.
@@ -12,14 +14,13 @@
 module voxrt_shader
   import voxrt_pkg::*;
 #(
-  parameter bit Flat  = 1'b0,
   parameter bit Given = 1'b0
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
   // Frame.
   input  raster_t         raster_i,
-  input  logic            flat_i,            // Held during a frame.
+  input  shading_t        shading_i,         // Held during a frame.
   // Material table; entry 0 is the background.
   input  material_write_t material_write_i,
   // Pixels in.
@@ -114,10 +115,13 @@ module voxrt_shader
     for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) brightness_q[s] <= brightness_q[s-1];
   end
 
-  // 2 sizes, 3 and 4 squares, 5 sums.
+  // 2 sizes, 3 and 4 squares, 5 sums; on the way the brightness of the face, where it does not depend on the angle.
   logic [DirectionBits-1:0] size2_q[3];
   logic [SquareBits-1:0]    square4[3], square5_q;
   logic [SumBits-1:0]       sum5_q, sum6_q, sum7_q, sum8_q;
+  logic                     upper2_q;
+  logic [7:0]               face3_q, face4_q;
+  face_e                    angle4_q;  // The axis whose square it is; FaceNone: the face's brightness.
 
   for (genvar a = 0; a < 3; a++) begin : gen_square
     voxrt_multiply #(
@@ -137,23 +141,31 @@ module voxrt_shader
       for (int unsigned a = 0; a < 3; a++) begin
         size2_q[a] <= DirectionBits'(direction1_q[a] < 0 ? -direction1_q[a] : direction1_q[a]);
       end
+      unique case (info_q[1].pixel.face)
+        FaceX:   upper2_q <= direction1_q[0] < 0;
+        FaceY:   upper2_q <= direction1_q[1] < 0;
+        default: upper2_q <= direction1_q[2] < 0;
+      endcase
+    end
+    if (valid_q[2]) begin
+      face3_q <= face_brightness(shading_i.brightness, shading_i.flat, info_q[2].pixel.face, upper2_q);
+      if (Given) face3_q <= 8'(FaceUnit);  // Without a face; of others voxrt_brightness has it.
+    end
+    if (valid_q[3]) begin
+      face4_q  <= face3_q;
+      angle4_q <= shading_i.flat || shading_i.faces ? FaceNone : info_q[3].pixel.face;
     end
     if (valid_q[4]) begin
       sum5_q <= SumBits'(square4[0]) + SumBits'(square4[1]) + SumBits'(square4[2]);
-      unique case (info_q[4].pixel.face)
+      unique case (angle4_q)
         FaceX:   square5_q <= square4[0];
         FaceY:   square5_q <= square4[1];
         FaceZ:   square5_q <= square4[2];
         default: begin
-          // Without a face: c * 1 / 1.
-          square5_q <= SquareBits'(1);
-          sum5_q    <= SumBits'(1);
+          square5_q <= SquareBits'(face4_q);
+          sum5_q    <= SumBits'(FaceUnit);
         end
       endcase
-      if (Flat && flat_i) begin
-        square5_q <= SquareBits'(1);
-        sum5_q    <= SumBits'(1);
-      end
       if (Given && brightness_q[4].part_given) begin
         square5_q <= brightness_q[4].part;
         sum5_q    <= brightness_q[4].whole;

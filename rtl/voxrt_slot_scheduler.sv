@@ -109,12 +109,12 @@ module voxrt_slot_scheduler
     logic [DetailBits-3:0] payload;
 
     always_comb begin
-      payload = '0;
-      if (Mirrors) payload = (DetailBits - 2)'(mirrors);
-      if (Light && asks) begin
+      payload = (DetailBits - 2)'(step_i.mirrored);
+      if (Light) begin
         payload = (DetailBits - 2)'({step_i.mirrored, hit_point_o.point[2][PointBits-1:0],
                                      hit_point_o.point[1][PointBits-1:0], hit_point_o.point[0][PointBits-1:0]});
       end
+      if (Mirrors && shows_mean && !asks) payload = (DetailBits - 2)'(mirrors);
     end
 
     assign result_pixel_o = {shade, payload, pixel};

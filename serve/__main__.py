@@ -5,22 +5,17 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
-import secrets
 import sys
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..board.errors import DeviceError, Refused
 from ..board.pynq_device import open_pynq
-from .access_control import is_loopback
-from .scene_files import MemoryReader
-from .scene_library import SceneLibrary
+from .scene_files import read_memory
+from .scene_library import SceneLibrary, scene_names
+from .scene_process import memory_reader
 from .server import FrameServer
 from .server_options import ServerOptions
-
-if TYPE_CHECKING:
-    from ..board.scene import Scene
+from .token import choose_token
 
 
 def main() -> int:
@@ -39,7 +34,12 @@ def main() -> int:
         "--host", default="127.0.0.1", help="address to listen on; every one but loopback needs a token"
     )
     parser.add_argument("--port", type=int, default=8080, help="TCP port of the page")
-    parser.add_argument("--token", help="token that clients must send; default: a random one where a token is needed")
+    parser.add_argument(
+        "--token",
+        help="token that clients must send; default: a random one where a token is needed. Other users of the machine "
+        "see the command line",
+    )
+    parser.add_argument("--token-file", type=Path, help="file whose first line is the token")
     parser.add_argument(
         "--origin", action="append", default=[], help="further origin (http://NAME:PORT) whose pages may connect"
     )
@@ -49,9 +49,9 @@ def main() -> int:
         help="TCP port of the legacy protocol, for the desktop client of the original project; it has no token",
     )
     arguments = parser.parse_args()
-    token = arguments.token if arguments.token or is_loopback(arguments.host) else secrets.token_urlsafe(16)
-    options = ServerOptions(arguments.host, arguments.port, token, tuple(arguments.origin), arguments.legacy_port)
     try:
+        token = choose_token(arguments.host, arguments.token, arguments.token_file)
+        options = ServerOptions(arguments.host, arguments.port, token, tuple(arguments.origin), arguments.legacy_port)
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(_serve(arguments.bitstream, arguments.scenes, options))
     except (Refused, DeviceError, OSError) as error:
@@ -61,17 +61,17 @@ def main() -> int:
 
 
 async def _serve(bitstream: str, scenes: list[Path], options: ServerOptions) -> None:
-    library = SceneLibrary(MemoryReader(), {path.stem: partial(_read, path) for path in scenes})
+    library = SceneLibrary(memory_reader(), {name: _files(path) for name, path in scene_names(scenes).items()})
     async with FrameServer(open_pynq(bitstream), library, options) as server:
         for path in scenes[:1]:
-            await server.session.renderer.load(_read(path), _ignore_progress)
-        sys.stderr.write(f"serving at {server.url}; Ctrl-C ends it\n")
+            await server.session.renderer.load(read_memory(_files(path), _ignore_progress), _ignore_progress)
+        sys.stderr.write(f"serving at {' or '.join(server.urls)}; Ctrl-C ends it\n")
         await asyncio.Event().wait()
 
 
-def _read(path: Path) -> Scene:
-    manifest = [path.with_suffix(".json")] if path.suffix == ".mem" else []
-    return MemoryReader()({file.name: file.read_bytes() for file in (path, *manifest)}, _ignore_progress)
+def _files(path: Path) -> list[Path]:
+    """Return the file of a scene, and the manifest of a ``.mem``."""
+    return [path, path.with_suffix(".json")] if path.suffix.lower() == ".mem" else [path]
 
 
 def _ignore_progress(_stage: str, _done: int, _total: int) -> None:

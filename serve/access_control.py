@@ -7,6 +7,8 @@ import ipaddress
 from dataclasses import dataclass
 from urllib.parse import parse_qs, urlsplit
 
+from .shown_text import shown_line
+
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 
 
@@ -28,10 +30,13 @@ class AccessControl:
         The token that every client must send; None accepts all clients, for loopback.
     origins
         Origins besides the server's own whose pages may connect.
+    hosts
+        Names and addresses of this machine, by which browsers reach it.
     """
 
     token: str | None
     origins: tuple[str, ...] = ()
+    hosts: tuple[str, ...] = ()
 
     def check(
         self, target: str, authorization: str | None, origin: str | None, address: tuple[str, int]
@@ -48,7 +53,8 @@ class AccessControl:
             The address and port of the server to which the client connected.
         """
         if origin is not None and not self._is_allowed(origin, address):
-            return Refusal(403, f"pages of {origin[:100]} may not connect; start the server with --origin for them\n")
+            shown = shown_line(origin, 100)
+            return Refusal(403, f"pages of {shown} may not connect; start the server with --origin {shown}\n")
         if self.token is not None and not self._has_token(target, authorization):
             return Refusal(
                 401, "the token is missing or wrong: open the address that the server printed at its start\n"
@@ -59,11 +65,12 @@ class AccessControl:
         token = parse_qs(urlsplit(target).query).get("token", [""])[0]
         if authorization is not None and authorization.startswith("Bearer "):
             token = authorization[len("Bearer ") :]
-        return hmac.compare_digest(token.encode(), (self.token or "").encode())
+        return hmac.compare_digest(token.encode("utf-8", "replace"), (self.token or "").encode())
 
     def _is_allowed(self, origin: str, address: tuple[str, int]) -> bool:
         # The Host header proves nothing: a page whose own name resolves to this address (DNS rebinding) sends its name
-        # there too. So the origin must be the address itself, or a loopback name on a loopback connection.
+        # there too. So the origin must be the address itself, a name that this machine gives itself, or a loopback name
+        # on a loopback connection.
         if origin in self.origins:
             return True
         try:
@@ -73,8 +80,8 @@ class AccessControl:
             return False
         if parts.scheme != "http" or host is None or port != address[1]:
             return False
-        if is_loopback(address[0]):
-            return host in _LOOPBACK_NAMES
+        if host in self.hosts or is_loopback(address[0]):
+            return host in (*self.hosts, *_LOOPBACK_NAMES)
         try:
             return ipaddress.ip_address(host) == _without_mapping(address[0])
         except ValueError:

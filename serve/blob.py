@@ -10,7 +10,7 @@ import numpy as np
 
 from ..board.errors import Refused
 from ..board.scene import Scene
-from ..board.view import Camera, Lighting
+from ..board.view import FACES, Camera, Faces, Lighting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,9 +24,10 @@ _DEPTH = struct.Struct("<I")  # the rest of the section places the grid in the s
 _MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
 _VIEW = struct.Struct("<12i")  # position, look, right, up
 _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
+_FACES = struct.Struct("<6B")  # brightness of the faces along -x, +x, -y, +y, -z, +z; absent where it is the default
 
 _MIRROR = 1
-_LIGHT_ON, _FLAT = 1, 2
+_LIGHT_ON, _FLAT, _BY_ANGLE = 1, 2, 4
 
 
 def read_blob(data: bytes) -> Scene:
@@ -44,7 +45,8 @@ def read_blob(data: bytes) -> Scene:
         colours, mirrors = _materials(sections[b"MATL"])
         words = np.frombuffer(sections[b"WORD"], dtype="<u4").astype(np.uint32)
         camera = _camera(sections[b"VIEW"]) if b"VIEW" in sections else None
-        lighting = _lighting(sections[b"LITE"]) if b"LITE" in sections else None
+        faces = _FACES.unpack(sections[b"FACE"]) if b"FACE" in sections else FACES
+        lighting = _lighting(sections[b"LITE"], faces) if b"LITE" in sections else None
     except KeyError as error:
         raise Refused(f"the blob has no section {error.args[0].decode()}; write it again") from None
     except (struct.error, ValueError) as error:
@@ -93,6 +95,13 @@ def _camera(section: bytes) -> Camera:
     return Camera(values[:3], values[3:6], values[6:9], values[9:12])
 
 
-def _lighting(section: bytes) -> Lighting:
+def _lighting(section: bytes, faces: Faces) -> Lighting:
     x, y, z, ambient, flags, bounces, _ = _LIGHT.unpack(section)
-    return Lighting((x, y, z), ambient, bool(flags & _LIGHT_ON), bool(flags & _FLAT), min(bounces, 15))
+    return Lighting(
+        (x, y, z),
+        ambient,
+        on=bool(flags & _LIGHT_ON),
+        flat=bool(flags & _FLAT),
+        bounces=min(bounces, 15),
+        faces=None if flags & _BY_ANGLE else faces,
+    )

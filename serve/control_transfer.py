@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 IDLE_SECONDS = 30.0
-"""A controller that has sent no change for this time loses control to the next client that asks for it."""
+"""A controller that has sent no change for this time loses control to the client that waits for it, or asks next."""
 
 
 class ControlTransfer:
@@ -18,10 +18,13 @@ class ControlTransfer:
     ----------
     clock
         Returns monotonic seconds.
+    on_loss
+        Called with the number of a client that has lost control.
     """
 
-    def __init__(self, clock: Callable[[], float]) -> None:
+    def __init__(self, clock: Callable[[], float], on_loss: Callable[[int], None]) -> None:
         self._clock = clock
+        self._on_loss = on_loss
         self._waiting: list[int] = []
         self._last_use = 0.0
         self.controller: int | None = None
@@ -33,13 +36,19 @@ class ControlTransfer:
 
     def request(self, client: int) -> bool:
         """Request control: True when `client` has it now, False when it waits for it."""
-        idle = self._clock() - self._last_use > IDLE_SECONDS
-        if self.controller is None or self.controller == client or idle:
+        if self.controller is None or self.controller == client or self._is_idle():
             self._transfer(client)
             return True
         if client not in self._waiting:
             self._waiting.append(client)
         return False
+
+    def pass_on(self) -> bool:
+        """Give control to the first client that waits, if the controller is idle; tell whether control has passed."""
+        if not self._waiting or not self._is_idle():
+            return False
+        self._transfer(self._waiting[0])
+        return True
 
     def use(self, client: int) -> bool:
         """Tell whether `client` has control; if so, its idle time starts again."""
@@ -53,12 +62,15 @@ class ControlTransfer:
         if client in self._waiting:
             self._waiting.remove(client)
         if self.controller == client:
-            self.controller = None
-            if self._waiting:
-                self._transfer(self._waiting[0])
+            self._transfer(self._waiting[0] if self._waiting else None)
 
-    def _transfer(self, client: int) -> None:
+    def _is_idle(self) -> bool:
+        return self._clock() - self._last_use > IDLE_SECONDS
+
+    def _transfer(self, client: int | None) -> None:
+        lost, self.controller = self.controller, client
+        self._last_use = self._clock()
         if client in self._waiting:
             self._waiting.remove(client)
-        self.controller = client
-        self._last_use = self._clock()
+        if lost is not None and lost != client:
+            self._on_loss(lost)

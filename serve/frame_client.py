@@ -1,7 +1,13 @@
-"""A client of the frame server: it changes the view, receives frames and uploads scenes."""
+"""A client of the frame server: it changes the view, receives frames and uploads scenes.
+
+It trusts no server: whatever one sends or fails to send becomes :class:`~.errors.Refused`, in one line, within a time
+limit.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import json
 import zlib
 from contextlib import asynccontextmanager
@@ -9,19 +15,27 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
+from websockets.exceptions import InvalidStatus, WebSocketException
 
 from ..board.errors import Refused
 from .packets import CHUNK_LIMIT, PROTOCOL_VERSION, Chunk, pack_chunk, unpack_frame
+from .shown_text import shown_line
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Mapping
+    from collections.abc import AsyncIterator, Awaitable, Mapping
+    from typing import TypeVar
 
     from ..board.scene_memory import Progress
     from .packets import FramePacket
 
+    Result = TypeVar("Result")
+
 _MESSAGE_LIMIT = 1 << 28
 _WINDOW = 8  # chunks that may be sent before the server acknowledges the first of them
+_OPEN_SECONDS = 10.0
+_ANSWER_SECONDS = 60.0  # without any message for a request; while a scene is made the server repeats its progress
+_UPLOAD_SECONDS = 3600.0
+_SCHEMES = {"http": "ws", "ws": "ws", "https": "wss", "wss": "wss"}
 
 
 class FrameClient:
@@ -43,9 +57,15 @@ class FrameClient:
         self._frame: FramePacket | None = None
 
     async def send(self, kind: str, **fields: object) -> int:
-        """Send a request without waiting for its answer; return its number."""
+        """Send a request without waiting for its answer; return its number.
+
+        Raises
+        ------
+        Refused
+            The server closed the connection, or reads nothing.
+        """
         self._requests += 1
-        await self._connection.send(json.dumps({"type": kind, "request": self._requests, **fields}))
+        await self._send(json.dumps({"type": kind, "request": self._requests, **fields}))
         return self._requests
 
     async def request(self, kind: str, **fields: object) -> dict[str, Any]:
@@ -54,7 +74,7 @@ class FrameClient:
         Raises
         ------
         Refused
-            The server refused the request, or closed the connection.
+            The server refused the request, does not answer, or closed the connection.
         """
         return await self._answer(await self.send(kind, **fields))
 
@@ -66,11 +86,11 @@ class FrameClient:
         Refused
             Another viewer has it.
         """
-        if not (await self.request("take"))["granted"]:
+        if (await self.request("take")).get("granted") is not True:
             raise Refused("another viewer has control; wait, or ask for control in the page")
 
     async def next_frame(self) -> FramePacket:
-        """Wait for the next frame.
+        """Wait for the next frame, without time limit: a server sends one when something has changed.
 
         Raises
         ------
@@ -90,44 +110,58 @@ class FrameClient:
         Raises
         ------
         Refused
-            The server refused the scene, or closed the connection. The present scene stays.
+            The server refused the scene, does not answer, or closed the connection. The present scene stays.
         """
+        work = self._upload(files, progress, check_only=check_only)
+        return await _in_time(work, _UPLOAD_SECONDS, "does not load the scene")
+
+    async def _upload(self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool) -> dict[str, Any]:
         announced = [{"name": name, "size": len(data), "crc32": zlib.crc32(data)} for name, data in files.items()]
         ready = await self.request("upload", files=announced, check_only=check_only)
-        number, data = ready["request"], b"".join(files.values())
+        number, data = self._requests, b"".join(files.values())
         received = 0
         for offset in range(0, len(data), CHUNK_LIMIT):
             while offset - received >= _WINDOW * CHUNK_LIMIT:
-                received = (await self._answer(number))["bytes"]
+                received = _whole(await self._answer(number), "bytes")
                 progress("send", received, len(data))
-            await self._connection.send(pack_chunk(Chunk(ready["upload"], offset, data[offset : offset + CHUNK_LIMIT])))
+            chunk = Chunk(_whole(ready, "upload"), offset, data[offset : offset + CHUNK_LIMIT])
+            await self._send(pack_chunk(chunk))
         while True:
             answer = await self._answer(number)
             if answer["type"] == "done":
                 return answer
             if answer["type"] == "received":
-                progress("send", answer["bytes"], len(data))
+                progress("send", _whole(answer, "bytes"), len(data))
             elif answer["type"] == "progress":
-                progress(answer["stage"], answer["done"], answer["total"])
+                progress(shown_line(answer.get("stage"), 40), _whole(answer, "done"), _whole(answer, "total"))
 
     async def _answer(self, number: int) -> dict[str, Any]:
+        return await _in_time(self._answer_without_limit(number), _ANSWER_SECONDS, "does not answer")
+
+    async def _answer_without_limit(self, number: int) -> dict[str, Any]:
         while True:
             message = await self._receive()
             if message is not None and message.get("request") == number:
                 if message["type"] == "refused":
-                    raise Refused(message["problem"])
+                    raise Refused(shown_line(message.get("problem")))
                 return message
+
+    async def _send(self, message: str | bytes) -> None:
+        try:
+            await _in_time(self._connection.send(message), _ANSWER_SECONDS, "reads nothing")
+        except (WebSocketException, OSError) as error:
+            raise _closed(error) from None
 
     async def _receive(self) -> dict[str, Any] | None:
         """Receive one message: keep a frame or a state, return an answer."""
         try:
             message = await self._connection.recv()
-        except ConnectionClosed as error:
-            raise Refused(f"the server closed the connection ({error}); it still shows its present scene") from None
+        except (WebSocketException, OSError, UnicodeDecodeError) as error:
+            raise _closed(error) from None
         if isinstance(message, bytes):
             self._frame = unpack_frame(message)
             return None
-        answer: dict[str, Any] = json.loads(message)
+        answer = _read_message(message)
         if answer["type"] == "state":
             self.state = answer
             return None
@@ -143,26 +177,95 @@ async def open_client(url: str) -> AsyncIterator[FrameClient]:
     Refused
         No server answers, it refuses the connection, or it has another version of the protocol.
     """
-    parts = urlsplit(url if "//" in url else f"http://{url}")
-    if parts.scheme not in {"http", "ws"} or not parts.netloc:
-        raise Refused(f"{url}: is no address such as http://127.0.0.1:8000/")
-    token = parse_qs(parts.fragment or parts.query).get("token", [""])[0]
+    address, token, place = _read_url(url)
     headers = {"Authorization": f"Bearer {token}"} if token else {}
-    address = f"ws://{parts.netloc}/v{PROTOCOL_VERSION}"
     try:
         connection = await connect(
-            address, additional_headers=headers, compression=None, max_size=_MESSAGE_LIMIT, open_timeout=10, proxy=None
+            address,
+            additional_headers=headers,
+            compression=None,
+            max_size=_MESSAGE_LIMIT,
+            open_timeout=_OPEN_SECONDS,
+            close_timeout=1,
+            proxy=None,
         )
     except InvalidStatus as error:
-        reason = (error.response.body or b"").decode("utf-8", "replace").strip()
-        raise Refused(f"{parts.netloc}: {reason or error}") from None
-    except (TimeoutError, OSError, InvalidHandshake) as error:
-        raise Refused(f"{parts.netloc}: no frame server answers ({error}); start one: voxrt serve") from None
-    async with connection:
-        hello = json.loads(await connection.recv())
+        reason = shown_line((error.response.body or b"").decode("utf-8", "replace").strip())
+        raise Refused(f"{place}: {reason or error}") from None
+    except (OSError, WebSocketException, ValueError, asyncio.TimeoutError) as error:  # noqa: UP041 - as below
+        raise Refused(f"{place}: no frame server answers ({shown_line(error)}); start one: voxrt serve") from None
+    async with _closing(connection):
+        try:
+            text = await _in_time(connection.recv(), _OPEN_SECONDS, "does not answer")
+        except (WebSocketException, OSError, UnicodeDecodeError) as error:
+            raise _closed(error) from None
+        hello = _read_message(text)
         if hello.get("protocol") != PROTOCOL_VERSION:
             raise Refused(
-                f"{parts.netloc} has protocol version {hello.get('protocol')} and this client {PROTOCOL_VERSION}; "
-                "upgrade the older one"
+                f"{place} has protocol version {shown_line(hello.get('protocol'), 40)} and this client "
+                f"{PROTOCOL_VERSION}; upgrade the older one"
             )
+        device = hello.get("device")
+        if not isinstance(device, dict):
+            raise _not_understood()
+        for field in ("capacity", "depth"):
+            _whole(device, field)
+        device["name"] = shown_line(device.get("name"), 100)
         yield FrameClient(connection, hello)
+
+
+@asynccontextmanager
+async def _closing(connection: ClientConnection) -> AsyncIterator[None]:
+    """Close a connection at the end; what goes wrong then is no error."""
+    try:
+        yield
+    finally:
+        with contextlib.suppress(WebSocketException, OSError):
+            await connection.close()
+
+
+def _read_url(url: str) -> tuple[str, str, str]:
+    """Return the address of the WebSocket, the token and the host with its port."""
+    try:
+        parts = urlsplit(url if "//" in url else f"http://{url}")
+        usable = parts.scheme in _SCHEMES and bool(parts.hostname) and (parts.port is None or parts.port > 0)
+    except ValueError:
+        usable = False
+    if not usable:
+        raise Refused(f"{shown_line(url, 200)}: is no address such as http://127.0.0.1:8000/")
+    token = parse_qs(parts.fragment or parts.query).get("token", [""])[0]
+    if not token.isascii() or not token.isprintable():
+        raise Refused("the token has characters that no token has; copy the address that the server printed")
+    return f"{_SCHEMES[parts.scheme]}://{parts.netloc}/v{PROTOCOL_VERSION}", token, parts.netloc
+
+
+async def _in_time(work: Awaitable[Result], seconds: float, problem: str) -> Result:
+    try:
+        return await asyncio.wait_for(work, seconds)
+    except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+        raise Refused(f"the server {problem} within {seconds:.0f} s; it may be gone, or be no frame server") from None
+
+
+def _read_message(text: object) -> dict[str, Any]:
+    try:
+        message = json.loads(text) if isinstance(text, str) else None
+    except (ValueError, RecursionError):
+        message = None
+    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
+        raise _not_understood()
+    return message
+
+
+def _whole(message: dict[str, Any], field: str) -> int:
+    value = message.get(field)
+    if type(value) is not int or not 0 <= value < 1 << 32:
+        raise _not_understood()
+    return value
+
+
+def _not_understood() -> Refused:
+    return Refused("the server sent what this client does not understand; check that it is a frame server of voxrt")
+
+
+def _closed(error: Exception) -> Refused:
+    return Refused(f"the server closed the connection ({shown_line(error)}); it still shows its present scene")

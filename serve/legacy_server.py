@@ -5,19 +5,22 @@ A request is 28 bytes: seven 32-bit words, little-endian. Each of the first six 
 The last has the background: 8 bits each of blue, green, red. Positions are in units of 1/1024 of the world's side. The
 answer is a picture without header: 512 rows of 512 pixels, three bytes each: red, green, blue.
 
-Every client sees the scene through a camera of its own and changes nothing for others. The protocol has no token.
+Every client sees the scene through a camera of its own and changes nothing for others. The protocol has no token, so
+its load is bounded: four clients, and all together one picture at a time and thirty per second.
 """
 
 from __future__ import annotations
 
 import asyncio
 import struct
+import time
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..board.errors import DeviceError, Refused
 from ..board.view import Camera
+from .rate_limiter import RateLimiter
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -28,6 +31,8 @@ _REQUEST = struct.Struct("<7I")
 _SIZE = (512, 512)
 _WORLD_BITS = 10
 _CLIENTS = 4
+_PICTURES_PER_SECOND = 30
+_FIRST_SECONDS = 10  # until the first request
 _IDLE_SECONDS = 600
 _SEND_SECONDS = 20
 
@@ -44,6 +49,8 @@ class LegacyServer:
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
         self._clients: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
+        self._turn = asyncio.Lock()
+        self._pictures = RateLimiter(_PICTURES_PER_SECOND, time.monotonic, burst=1)
         self.port = 0
 
     @asynccontextmanager
@@ -63,13 +70,20 @@ class LegacyServer:
     async def _serve_client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         task = asyncio.current_task()
         assert task is not None
+        if len(self._clients) >= _CLIENTS:
+            writer.transport.abort()
+            return
         self._clients[task] = writer
+        seconds = _FIRST_SECONDS
         try:
-            while len(self._clients) <= _CLIENTS:
-                request = await asyncio.wait_for(reader.readexactly(_REQUEST.size), _IDLE_SECONDS)
+            while True:
+                request = await asyncio.wait_for(reader.readexactly(_REQUEST.size), seconds)
+                seconds = _IDLE_SECONDS
                 writer.write(await self._render(request))
                 await asyncio.wait_for(writer.drain(), _SEND_SECONDS)
-        except (TimeoutError, asyncio.IncompleteReadError, ConnectionError, Refused, DeviceError):
+        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+            pass
+        except (asyncio.IncompleteReadError, ConnectionError, Refused, DeviceError):
             pass  # the protocol has no error messages: the connection is closed
         finally:
             del self._clients[task]
@@ -78,7 +92,9 @@ class LegacyServer:
     async def _render(self, request: bytes) -> bytes:
         camera, background = read_legacy_request(request, self._renderer.scene.depth)
         view = replace(self._renderer.view, camera=camera, size=_SIZE, background=background)
-        frame = await self._renderer.render_view(view)
+        async with self._turn:
+            await asyncio.sleep(self._pictures.charge(1))
+            frame = await self._renderer.render_view(view)
         return frame.colour.tobytes()
 
 

@@ -102,6 +102,8 @@ def unpack_frame(message: bytes) -> FramePacket:
     (_, header, width, height, sequence, length, scene, client, request, rays, micros, cycles, words_read) = (
         _FRAME.unpack_from(message)
     )
+    if header < FRAME_HEADER or width * height == 0:
+        raise Refused(f"a frame of {width}x{height} pixels has a header of {header} bytes; connect again")
     if length != width * height * 3 or len(message) != header + length:
         raise Refused(f"a frame of {width}x{height} pixels has {len(message) - header} bytes; connect again")
     colour = np.frombuffer(message, dtype=np.uint8, offset=header).reshape(height, width, 3)

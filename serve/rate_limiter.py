@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class RateLimiter:
-    """Permits `rate` events per second on average, and a burst of twice as many.
+    """Permits `rate` events per second on average, and a burst.
 
     Parameters
     ----------
@@ -17,20 +17,37 @@ class RateLimiter:
         Events per second.
     clock
         Returns monotonic seconds.
+    burst
+        Events at once; None for twice as many as `rate`.
     """
 
-    def __init__(self, rate: float, clock: Callable[[], float]) -> None:
+    def __init__(self, rate: float, clock: Callable[[], float], burst: float | None = None) -> None:
         self._rate = rate
         self._clock = clock
-        self._permits = 2 * rate
+        self._burst = self._permits = 2 * rate if burst is None else burst
         self._refilled = clock()
 
-    def acquire(self) -> float:
-        """Permit one event: return 0, or the seconds until the next event is permitted."""
-        now = self._clock()
-        self._permits = min(2 * self._rate, self._permits + (now - self._refilled) * self._rate)
-        self._refilled = now
+    @property
+    def rested(self) -> bool:
+        """Whether nothing has been permitted for so long that a whole burst is permitted again."""
+        self._refill()
+        return self._permits >= self._burst
+
+    def acquire(self) -> bool:
+        """Permit one event, or tell that it is too early."""
+        self._refill()
         if self._permits < 1:
-            return (1 - self._permits) / self._rate
+            return False
         self._permits -= 1
-        return 0.0
+        return True
+
+    def charge(self, events: float) -> float:
+        """Count events that have happened; return the seconds until the next ones are permitted."""
+        self._refill()
+        self._permits -= events
+        return max(0.0, -self._permits / self._rate)
+
+    def _refill(self) -> None:
+        now = self._clock()
+        self._permits = min(self._burst, self._permits + (now - self._refilled) * self._rate)
+        self._refilled = now

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+import math
+import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..board.errors import DeviceError
+from ..board.errors import DeviceError, Refused, TooSlow
 from ..board.scene import EMPTY_LEAF, Scene
 from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
@@ -39,12 +42,20 @@ EMPTY_SCENE = Scene(
 )
 """The scene until another one is loaded: empty space, dark grey."""
 
+_REGISTERS_SECONDS = 0.05
+_LOG = logging.getLogger("voxrt.serve")
+
+
+def _ignore() -> None:
+    pass
+
 
 class Renderer:
     """Renders a frame when the view or the scene has changed and a client is ready for it, or without end.
 
     All calls of the device come from one thread, and never two at a time. A scene is loaded in steps between frames;
-    :class:`~.scene_memory.SceneMemory` says what frames show meanwhile.
+    :class:`~.scene_memory.SceneMemory` says what frames show meanwhile. Every frame has a time limit. A scene whose
+    first frame exceeds it is refused, and the present one stays.
 
     Parameters
     ----------
@@ -69,6 +80,9 @@ class Renderer:
         self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
         self._changed = asyncio.Event()
         self._newest_request = (0, 0)
+        self._registers: Mapping[str, int] = {}
+        self._registers_time = -math.inf
+        self._first_frame: tuple[View, Frame] | None = None  # of a scene that was loaded
 
     def change_view(self, change: ChangeView, client: int, request: int) -> None:
         """Change the view; frames then carry the numbers `client` and `request`.
@@ -91,71 +105,116 @@ class Renderer:
         self._memory.check(scene)
         check_view(self._view_of(scene), self.device.identity)
 
-    async def load(self, scene: Scene, progress: Progress) -> None:
+    async def load(self, scene: Scene, progress: Progress, check: Callable[[], None] = _ignore) -> None:
         """Load a scene while frames of the present one are rendered, and show it from the next frame on.
+
+        Parameters
+        ----------
+        scene
+            The scene.
+        progress
+            Receives what is done; called from the device's thread.
+        check
+            Called between two steps; if it raises an error, the present scene stays, and the error is raised again.
 
         Raises
         ------
         Refused
-            The device cannot hold or render it; nothing was written.
+            The device cannot hold or render it, or its first frame exceeds the time limit of frames. The present scene
+            stays.
         DeviceError
             The device did not keep it; the present scene stays.
         """
-        self.check_scene(scene)
         async with self._loading:
-            steps = self._memory.load_in_steps(scene, progress)
+            steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene, progress))
             complete = False
             while not complete:
                 async with self._device_lock:
-                    complete = await self._on_device(partial(_finish_step, steps))
+                    check()
+                    try:
+                        complete = await self._on_device(partial(_finish_step, steps))
+                    except TooSlow as error:
+                        raise Refused(
+                            f"{scene.name} is too slow to show ({error}); build it again, with a smaller depth"
+                        ) from error
                     if complete:
+                        assert self._first_frame is not None
                         self.scene, self.crc32 = scene, scene.crc32
-                        self.view = self.initial_view = self._view_of(scene)
+                        self.view = self.initial_view = self._first_frame[0]
                         self.scene_number += 1
         self._changed.set()
 
     async def read_registers(self) -> Mapping[str, int]:
-        """Read the registers of the device between two frames."""
+        """Read the registers of the device between two frames; they may have been read a moment ago for another."""
         async with self._device_lock:
-            return await self._on_device(self.device.registers)
+            now = time.monotonic()
+            if now - self._registers_time > _REGISTERS_SECONDS:
+                self._registers = await self._on_device(self.device.registers)
+                self._registers_time = now
+            return self._registers
 
     async def render_view(self, view: View) -> Frame:
         """Render one frame of another view; the view of the session stays."""
         check_view(view, self.device.identity)
         async with self._device_lock:
-            return await self._on_device(partial(self.device.frame, view))
+            return await self._on_device(partial(self._render, view))
 
     async def run(self, clients: Clients) -> None:
-        """Render frames for `clients`, without end."""
+        """Render frames for `clients`, without end; an error is told to them, and the next change tries again."""
         self._changed.set()
         while True:
             if not self.nonstop:
                 await self._changed.wait()
             await clients.wait_until_ready()
             self._changed.clear()
-            async with self._device_lock:
-                view, scene_number, (client, request) = self.view, self.scene_number, self._newest_request
-                trouble = None
-                try:
-                    frame = await self._on_device(partial(self.device.frame, view))
-                except DeviceError as error:
-                    trouble, self.nonstop = str(error), False
-            if trouble is None:
-                self.frames += 1
-                clients.queue_frame(FramePacket(self.frames, scene_number, client, request, frame))
+            trouble = None
+            try:
+                clients.queue_frame(await self._next_frame())
+            except TooSlow as error:
+                trouble = f"{error}: move the camera, choose a smaller picture, or load another scene"
+            except DeviceError as error:
+                trouble = str(error)
+            except MemoryError:
+                trouble = "there is not enough memory for a frame; choose a smaller picture"
+            except Exception as error:  # noqa: BLE001 - the loop goes on, whatever a device does
+                trouble = f"the frame failed: {type(error).__name__}: {error}; please report this"
+                _LOG.exception("a frame failed; please report this")
+            if trouble is not None:
+                self.nonstop = False
             if trouble != self.trouble:
                 self.trouble = trouble
                 clients.queue_state()
 
     def close(self) -> None:
-        """Close the device after the present frame."""
+        """End the present frame and close the device."""
+        self.device.stop()
         self._thread.submit(self.device.close)
         self._thread.shutdown()
+
+    async def _next_frame(self) -> FramePacket:
+        async with self._device_lock:
+            view, scene_number, (client, request) = self.view, self.scene_number, self._newest_request
+            first, self._first_frame = self._first_frame, None
+            if first is not None and first[0] == view:
+                frame = first[1]
+            else:
+                frame = await self._on_device(partial(self._render, view))
+        self.frames += 1
+        return FramePacket(self.frames, scene_number, client, request, frame)
+
+    def _render(self, view: View) -> Frame:
+        return self.device.frame(view, self.device.identity.frame_seconds(view.size))
+
+    def _render_first(self, scene: Scene, progress: Progress) -> None:
+        progress("render", 0, 1)
+        view = self._view_of(scene)
+        self._first_frame = view, self._render(view)
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
         # A call of the device goes on when its caller is cancelled, so it is shielded. The next call waits in the same
         # thread.
         work = asyncio.get_running_loop().run_in_executor(self._thread, call)
+        work.add_done_callback(_retrieve_error)
         return await asyncio.shield(work)
 
     def _view_of(self, scene: Scene) -> View:
@@ -173,10 +232,15 @@ class Renderer:
             lighting=replace(
                 lighting,
                 on=lighting.on and "light" in built_in,
-                flat=lighting.flat and "flat" in built_in,
                 bounces=lighting.bounces if "mirrors" in built_in else 0,
             ),
         )
+
+
+def _retrieve_error(work: asyncio.Future[Any]) -> None:
+    """Mark the error of a call as seen: a caller that was cancelled does not ask for it."""
+    if not work.cancelled():
+        work.exception()
 
 
 def _finish_step(steps: Iterator[None]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,7 @@ from .requests import (
     read_request,
     request_number,
 )
-from .upload import Upload
+from .shown_text import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from .session import Session
 
 _PROGRESS_SECONDS = 0.05
+_REPEAT_SECONDS = 5.0  # of the newest progress, so that a client sees that the server still works
+_LOG = logging.getLogger("voxrt.serve")
 
 
 class RequestHandler:
@@ -54,25 +57,23 @@ class RequestHandler:
         self._session = session
         self._client = client
         self._start_task = start_task
-        self._upload: Upload | None = None
 
     async def handle(self, message: str | bytes) -> None:
         """Do what a message requests, and answer it. No message makes this raise an error."""
         number = 0
         try:
             if isinstance(message, bytes):
-                number = self._upload.number if self._upload else 0
+                number = self._upload_number()
                 self._handle_chunk(message)
             else:
                 number = request_number(message)
                 number, request = read_request(message)
                 await self._handle_request(number, request)
         except (Refused, DeviceError) as error:
-            self._client.queue_answer({"type": "refused", "request": number, "problem": str(error)})
+            self._refuse(number, str(error))
 
     def close(self) -> None:
-        """Discard an incomplete upload, and release control."""
-        self._upload = None
+        """Release control; an incomplete upload ends with it, and what is made of one."""
         self._session.control.release(self._client.number)
 
     async def _handle_request(self, number: int, request: Request) -> None:
@@ -90,63 +91,85 @@ class RequestHandler:
             case ReadCounters():
                 answer["counters"] = session.counters()
             case CancelUpload():
-                self._upload = None
+                session.cancel(client.number)
             case ChangeView():
                 self._require_control()
                 session.renderer.change_view(request, client.number, number)
                 session.clients.queue_state()
             case LoadScene():
                 self._require_control()
-                self._start_task(self._load(number, partial(session.load_named, request.scene)))
+                self._start_task(self._load(number, partial(session.load_named, client.number, request.scene)))
                 return
             case StartUpload():
                 self._require_control()
-                self._upload = Upload(number, request)
+                session.start_upload(number, request)
                 answer = {"type": "ready", "request": number, "upload": number}
         client.queue_answer(answer)
 
+    def _upload_number(self) -> int:
+        session = self._session
+        has_control = session.control.controller == self._client.number
+        return session.upload.number if session.upload is not None and has_control else 0
+
     def _handle_chunk(self, message: bytes) -> None:
-        upload = self._upload
+        session = self._session
+        self._require_control()
+        upload = session.upload
         if upload is None:
             raise Refused("a chunk came without an upload; announce the upload first")
         try:
-            self._require_control()
             upload.add(unpack_chunk(message))
-            files = upload.files() if upload.complete else None
         except Refused:
-            self._upload = None
+            session.drop_upload()
             raise
         self._client.queue_answer({"type": "received", "request": upload.number, "bytes": upload.received})
-        if files is not None:
-            self._upload = None
-            load = partial(self._session.load_files, files, check_only=upload.announced.check_only)
-            self._start_task(self._load(upload.number, load))
+        if upload.complete:
+            self._start_task(self._load(upload.number, partial(session.load_upload, self._client.number, upload)))
 
     def _require_control(self) -> None:
         if not self._session.control.use(self._client.number):
             raise Refused("this viewer does not have control; take control first")
 
-    async def _load(self, number: int, load: Callable[..., Coroutine[Any, Any, Scene]]) -> None:
-        has_control = partial(self._session.control.use, self._client.number)
+    async def _load(self, number: int, load: Callable[[Progress], Coroutine[Any, Any, Scene]]) -> None:
+        progress = _ReportedProgress(self._client, number)
+        repeating = asyncio.ensure_future(progress.repeat())
         try:
-            scene = await load(progress=self._progress(number), allowed=has_control)
+            scene = await load(progress)
         except (Refused, DeviceError) as error:
-            self._client.queue_answer({"type": "refused", "request": number, "problem": str(error)})
-            return
-        described = {"name": scene.name, "depth": scene.depth, "words": len(scene.words), "crc32": scene.crc32}
-        self._client.queue_answer({"type": "done", "request": number, "scene": described})
+            self._refuse(number, str(error))
+        except Exception as error:  # noqa: BLE001 - whatever it is, the client gets an answer
+            _LOG.exception("a scene was not loaded; please report this")
+            self._refuse(number, f"the scene was not loaded: {type(error).__name__}: {error}; please report this")
+        else:
+            described = {"name": scene.name, "depth": scene.depth, "words": len(scene.words), "crc32": scene.crc32}
+            self._client.queue_answer({"type": "done", "request": number, "scene": described})
+        finally:
+            repeating.cancel()
 
-    def _progress(self, number: int) -> Progress:
-        """Make a function that other threads call, and that sends progress to the client from time to time."""
-        loop = asyncio.get_running_loop()
-        last_stage, last_time = "", 0.0
+    def _refuse(self, number: int, problem: str) -> None:
+        self._client.queue_answer({"type": "refused", "request": number, "problem": shown_line(problem)})
 
-        def send_progress(stage: str, done: int, total: int) -> None:
-            nonlocal last_stage, last_time
-            now = time.monotonic()
-            if stage != last_stage or done == total or now - last_time >= _PROGRESS_SECONDS:
-                last_stage, last_time = stage, now
-                message = {"type": "progress", "request": number, "stage": stage, "done": done, "total": total}
-                loop.call_soon_threadsafe(self._client.queue_answer, message)
 
-        return send_progress
+class _ReportedProgress:
+    """Sends progress to a client, from time to time; other threads may call it."""
+
+    def __init__(self, client: Client, number: int) -> None:
+        self._client = client
+        self._number = number
+        self._loop = asyncio.get_running_loop()
+        self._stage, self._time = "", 0.0
+        self._message: dict[str, Any] | None = None
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if stage != self._stage or done == total or now - self._time >= _PROGRESS_SECONDS:
+            self._stage, self._time = stage, now
+            self._message = {"type": "progress", "request": self._number, "stage": stage, "done": done, "total": total}
+            self._loop.call_soon_threadsafe(self._client.queue_answer, self._message)
+
+    async def repeat(self) -> None:
+        """Send the newest progress again, without end."""
+        while True:
+            await asyncio.sleep(_REPEAT_SECONDS)
+            if self._message is not None:
+                self._client.queue_answer(self._message)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from ..board.errors import Refused
-from ..board.view import FEATURES, Camera, Lighting, Triple, View
+from ..board.view import FEATURES, Camera, Lighting, Shading, Triple, View
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
+_SHADINGS: tuple[Shading, ...] = get_args(Shading)
 _NAME = 200
 _BOUNCES = 4  # of mirrors that are turned on without a number
 
@@ -38,6 +39,7 @@ class ChangeView:
     light: Triple | None = None
     ambient: int | None = None
     features: frozenset[str] | None = None
+    shading: Shading | None = None
     bounces: int | None = None
     nonstop: bool | None = None
 
@@ -56,8 +58,8 @@ class ChangeView:
             lighting = replace(lighting, bounces=self.bounces)
         if self.features is not None:
             bounces = (lighting.bounces or _BOUNCES) if "mirrors" in self.features else 0
-            lighting = replace(lighting, on="light" in self.features, flat="flat" in self.features, bounces=bounces)
-        return lighting
+            lighting = replace(lighting, on="light" in self.features, bounces=bounces)
+        return lighting if self.shading is None else lighting.shaded(self.shading)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +152,7 @@ def _change_view(message: dict[str, Any]) -> ChangeView:
         light=optional("light", _position),
         ambient=optional("ambient", lambda name, value: _whole(name, value, 0, 255)),
         features=optional("features", _features),
+        shading=optional("shading", _shading),
         bounces=optional("bounces", lambda name, value: _whole(name, value, 0, 15)),
         nonstop=optional("nonstop", _truth),
     )
@@ -160,14 +163,19 @@ def _start_upload(message: dict[str, Any]) -> StartUpload:
     if not isinstance(files, list) or not 1 <= len(files) <= _FILES:
         raise Refused(f"files is not a list of 1 to {_FILES} files")
     check_only = _truth("check_only", message.pop("check_only", False))
-    return StartUpload(tuple(_file(entry) for entry in files), check_only)
+    read = tuple(_file(entry) for entry in files)
+    names = [file.name.casefold() for file in read]
+    for file in read:
+        if names.count(file.name.casefold()) > 1:
+            raise Refused(f"two files have the name {file.name}; rename one of them")
+    return StartUpload(read, check_only)
 
 
 def _file(entry: object) -> UploadedFile:
     if not isinstance(entry, dict) or entry.keys() != {"name", "size", "crc32"}:
         raise Refused("a file of an upload is not {name, size, crc32}")
     return UploadedFile(
-        _name("name", entry["name"]),
+        _file_name(entry["name"]),
         _whole("size", entry["size"], 1, 1 << 40),
         _whole("crc32", entry["crc32"], 0, 0xFFFFFFFF),
     )
@@ -219,6 +227,13 @@ def _features(name: str, value: object) -> frozenset[str]:
     return frozenset(value)
 
 
+def _shading(name: str, value: object) -> Shading:
+    for shading in _SHADINGS:
+        if value == shading:
+            return shading
+    raise Refused(f"{name} {_shown(value)} is not {', '.join(_SHADINGS[:-1])} or {_SHADINGS[-1]}")
+
+
 def _whole(name: str, value: object, low: int, high: int) -> int:
     if type(value) is not int or not low <= value <= high:
         raise Refused(f"{name} {_shown(value)} is not a whole number from {low} to {high}")
@@ -232,9 +247,17 @@ def _truth(name: str, value: object) -> bool:
 
 
 def _name(name: str, value: object) -> str:
-    if not isinstance(value, str) or not value.isprintable() or not 1 <= len(value) <= _NAME:
-        raise Refused(f"{name} {_shown(value)} is not a name of 1 to {_NAME} printable characters")
+    # isprintable() excludes control characters and those that change the direction of text.
+    if not isinstance(value, str) or not value.isprintable() or not 1 <= len(value.encode()) <= _NAME:
+        raise Refused(f"{name} {_shown(value)} is not a name of 1 to {_NAME} bytes of printable characters")
     return value
+
+
+def _file_name(value: object) -> str:
+    name = _name("name", value)
+    if name in {".", ".."} or "/" in name or "\\" in name:
+        raise Refused(f"{name}: is no plain file name; upload the files without their folders")
+    return name
 
 
 def _shown(value: object) -> str:

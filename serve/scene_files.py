@@ -1,9 +1,9 @@
-"""Readers of uploaded files; this one reads octree memories."""
+"""A scene from the files of an octree memory. Run as a module, it is the child of a server: see scene_child.py."""
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Protocol
+import sys
+from typing import TYPE_CHECKING
 
 from ..board.errors import Refused
 from .blob import MAGIC as BLOB_MAGIC
@@ -11,47 +11,37 @@ from .blob import read_blob
 from .mem_files import read_mem_files
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
+    from pathlib import Path
 
     from ..board.scene import Scene
     from ..board.scene_memory import Progress
 
-
-class SceneReader(Protocol):
-    """Makes scenes from uploaded files. It is called in a thread of its own and may take long."""
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of the files that hold a scene, such as ``.mem``."""
-
-    def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make a scene from files, given by name.
-
-        Raises
-        ------
-        Refused
-            The files are no scene.
-        """
+MEMORY_SUFFIXES = (".blob", ".mem")
 
 
-class MemoryReader:
-    """Reads a blob, or a ``.mem`` with its ``.json``: all that a board can read without the rest of voxrt."""
+def read_memory(paths: Sequence[Path], progress: Progress) -> Scene:
+    """Read a blob, or a ``.mem`` with its ``.json``: all that a board can read without the rest of voxrt.
 
-    suffixes: tuple[str, ...] = (".blob", ".mem")
+    Raises
+    ------
+    Refused
+        The files are no scene.
+    """
+    progress("read", 0, 1)
+    if len(paths) == 1:
+        data = paths[0].read_bytes()
+        if data.startswith(BLOB_MAGIC):
+            return read_blob(data)
+    suffixes = {path.suffix.lower(): path for path in paths}
+    if suffixes.keys() == {".mem", ".json"} and len(paths) == 2:
+        mem = suffixes[".mem"]
+        return read_mem_files(mem.stem, mem.read_bytes(), suffixes[".json"].read_bytes())
+    names = ", ".join(path.name for path in paths)
+    raise Refused(f"{names}: neither a blob nor a .mem with its .json; upload one of them")
 
-    def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make a scene from files, given by name.
 
-        Raises
-        ------
-        Refused
-            The files are no scene.
-        """
-        progress("read", 0, 1)
-        if len(files) == 1 and (blob := next(iter(files.values()))).startswith(BLOB_MAGIC):
-            return read_blob(blob)
-        suffixes = {PurePosixPath(name).suffix.lower(): name for name in files}
-        if suffixes.keys() == {".mem", ".json"} and len(files) == 2:
-            mem = suffixes[".mem"]
-            return read_mem_files(PurePosixPath(mem).stem, files[mem], files[suffixes[".json"]])
-        raise Refused(f"{', '.join(files)}: neither a blob nor a .mem with its .json; upload one of them")
+if __name__ == "__main__":
+    from .scene_child import run_child
+
+    run_child(read_memory, sys.argv[1:])

@@ -7,7 +7,9 @@ import contextlib
 import logging
 import socket
 import time
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import quote
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -16,12 +18,17 @@ from websockets.http11 import Response
 
 from ..board.errors import Refused
 from .access_control import AccessControl, is_loopback
+from .addresses import accepted_hosts, reachable_hosts
 from .legacy_server import LegacyServer
+from .limited_connection import ConnectionGuard, LimitedConnection
+from .log_limit import LogLimit
 from .packets import CHUNK_HEADER, CHUNK_LIMIT, PROTOCOL_VERSION
 from .page_files import HEADERS, load_page_files
 from .rate_limiter import RateLimiter
 from .request_handler import RequestHandler
 from .session import Session
+from .strangers import Strangers
+from .token import check_token
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
@@ -35,7 +42,9 @@ if TYPE_CHECKING:
 
 WEBSOCKET_PATH = f"/v{PROTOCOL_VERSION}"
 _SEND_BUFFER = 1 << 19  # bytes per connection, about half a frame: a slow client then gets new frames, not queued ones
+_CLOSE_SECONDS = 1.0  # that a closing handshake may take
 _LOG = logging.getLogger("voxrt.serve")
+_LOG.addFilter(LogLimit())
 
 
 class FrameServer:
@@ -57,18 +66,26 @@ class FrameServer:
     """
 
     def __init__(self, device: Device, library: SceneLibrary, options: ServerOptions) -> None:
-        if options.token is None and not is_loopback(options.host):
+        if options.token is not None:
+            check_token(options.token)
+        elif not is_loopback(options.host):
             raise Refused(f"{options.host} can be reached from other machines; give a token, or listen on 127.0.0.1")
-        self.session = Session(device, library)
+        self._hosts = reachable_hosts(options.host)
+        self.session = Session(device, library, options.limits)
         self.refused = 0
-        self.connections: set[ServerConnection] = set()
         self._options = options
-        self._access = AccessControl(options.token, options.origins)
+        self._access = AccessControl(options.token, options.origins, accepted_hosts(options.host))
+        self._guard = ConnectionGuard(options.limits, Strangers(options.limits))
         self._new_clients = RateLimiter(options.limits.new_clients_per_second, time.monotonic)
         self._tasks: set[asyncio.Task[None]] = set()
         self._exit_stack = contextlib.AsyncExitStack()
         self._server: Server | None = None
         self._legacy: LegacyServer | None = None
+
+    @property
+    def connections(self) -> int:
+        """Open connections, those without a complete handshake included."""
+        return len(self._guard.connections)
 
     @property
     def port(self) -> int:
@@ -82,11 +99,16 @@ class FrameServer:
         return None if self._legacy is None else self._legacy.port
 
     @property
+    def urls(self) -> tuple[str, ...]:
+        """The addresses of the page, with the token where there is one; the best one for other machines is first."""
+        token = f"#token={quote(self._options.token, safe='')}" if self._options.token else ""
+        hosts = [f"[{host}]" if ":" in host else host for host in self._hosts]
+        return tuple(f"http://{host}:{self.port}/{token}" for host in hosts)
+
+    @property
     def url(self) -> str:
-        """The address of the page, with the token where there is one."""
-        host = f"[{self._options.host}]" if ":" in self._options.host else self._options.host
-        token = f"#token={self._options.token}" if self._options.token else ""
-        return f"http://{host}:{self.port}/{token}"
+        """The first of :attr:`urls`."""
+        return self.urls[0]
 
     async def __aenter__(self) -> FrameServer:  # noqa: PYI034 - Self needs Python 3.11
         async with contextlib.AsyncExitStack() as stack:
@@ -101,11 +123,11 @@ class FrameServer:
                     self._options.host,
                     self._options.port,
                     process_request=self._answer_http,
-                    create_connection=self._connection_class(),
+                    create_connection=cast("type[ServerConnection]", partial(LimitedConnection, self._guard)),
                     compression=None,
                     server_header=None,
                     open_timeout=self._options.limits.handshake_seconds,
-                    close_timeout=1,
+                    close_timeout=_CLOSE_SECONDS,
                     ping_interval=10,
                     ping_timeout=20,
                     max_size=CHUNK_HEADER + CHUNK_LIMIT,
@@ -114,11 +136,22 @@ class FrameServer:
                 )
             )
             self._start_task(self.session.run())
+            self._start_task(self.session.watch())
+            stack.callback(self._end_soon)
             self._exit_stack = stack.pop_all()
         return self
 
     async def __aexit__(self, *_exception: object) -> None:
         await self._exit_stack.aclose()
+
+    def _end_soon(self) -> None:
+        """End the frame in progress, and abort the connections that do not close soon."""
+        self.session.stop()
+        asyncio.get_running_loop().call_later(_CLOSE_SECONDS, self._abort_connections)
+
+    def _abort_connections(self) -> None:
+        for connection in tuple(self._guard.connections):
+            connection.transport.abort()
 
     def _start_task(self, coroutine: Coroutine[Any, Any, None]) -> None:
         task = asyncio.get_running_loop().create_task(coroutine)
@@ -136,24 +169,6 @@ class FrameServer:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
-    def _connection_class(self) -> type[ServerConnection]:
-        limit, open_connections = self._options.limits.connections, self.connections
-
-        class Connection(ServerConnection):
-            """A connection that is closed at once when there are too many, before any handshake."""
-
-            def connection_made(self, transport: asyncio.BaseTransport) -> None:
-                super().connection_made(transport)
-                open_connections.add(self)
-                if len(open_connections) > limit:
-                    self.transport.abort()
-
-            def connection_lost(self, exc: Exception | None) -> None:
-                open_connections.discard(self)
-                super().connection_lost(exc)
-
-        return Connection
-
     def _answer_http(self, connection: ServerConnection, request: Request) -> Response | None:
         path = request.path.partition("?")[0]
         if path != WEBSOCKET_PATH:
@@ -165,13 +180,18 @@ class FrameServer:
             headers["Content-Length"] = str(len(file.data))
             headers["Connection"] = "close"
             return Response(200, "OK", headers, file.data)
+        origin = request.headers.get("Origin")
+        if "Upgrade" not in request.headers and "Host" in request.headers:
+            # The page asks why it was refused, which browsers do not tell it.
+            host = request.headers["Host"]
+            origin = f"https://{host}" if f"https://{host}" in self._access.origins else f"http://{host}"
         refusal = self._access.check(
-            request.path, request.headers.get("Authorization"), request.headers.get("Origin"), connection.local_address
+            request.path, request.headers.get("Authorization"), origin, connection.local_address
         )
         if refusal is not None:
             self.refused += 1
             return connection.respond(refusal.status, refusal.text)
-        if len(self.session.clients) >= self._options.limits.clients or self._new_clients.acquire() > 0:
+        if len(self.session.clients) >= self._options.limits.clients or not self._new_clients.acquire():
             self.refused += 1
             response = connection.respond(503, "too many viewers; try again in a moment\n")
             response.headers["Retry-After"] = "2"
@@ -179,13 +199,15 @@ class FrameServer:
         return None
 
     async def _serve_client(self, connection: ServerConnection) -> None:
+        assert isinstance(connection, LimitedConnection)
         if len(self.session.clients) >= self._options.limits.clients:
             await connection.close(1013, "too many viewers")
             return
         raw: socket.socket | None = connection.transport.get_extra_info("socket")
         if raw is not None:
             raw.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER)
-        client = self.session.clients.add()
+        connection.accept()
+        client = self.session.clients.add(connection.transport.abort)
         handler = RequestHandler(self.session, client, self._start_task)
         client.queue_answer(self.session.hello(client.number))
         tasks = {
@@ -206,11 +228,7 @@ class FrameServer:
                     _LOG.error("a connection of the frame server failed; please report this", exc_info=result)
 
     async def _handle_requests(self, connection: ServerConnection, client: Client, handler: RequestHandler) -> None:
-        limiter = RateLimiter(self._options.limits.requests_per_second, time.monotonic)
         async for message in connection:
-            if (delay := limiter.acquire()) > 0:
-                await asyncio.sleep(delay)  # meanwhile messages fill the buffers, so the client must wait too
-                limiter.acquire()
             await handler.handle(message)
             if client.backlog_exceeded:
                 return

@@ -17,17 +17,36 @@ class Limits:
         Connections at the same time, those without a complete handshake included.
     new_clients_per_second
         On average; a burst may have twice as many.
-    requests_per_second
-        Messages per second and client, on average; a burst may have twice as many. Further messages wait.
+    strangers_per_address
+        Connections of one address at the same time that have not shown the token.
+    new_connections_per_address_and_second
+        On average; a burst may have twice as many.
+    frames_per_second, bytes_per_second
+        What is read of a connection, on average; a burst may have twice as many. The rest waits. Frames are those of
+        WebSocket: messages, their fragments, pings and pongs.
+    fragments
+        Fragments of a message.
     handshake_seconds
         Time limit of a handshake.
+    send_seconds, send_bytes_per_second
+        Time limit of sending a message, and its speed beyond: a client that is slower is dropped.
+    frame_bytes
+        Frames that are kept, since they are being sent to clients, together. Beyond, the client that has taken longest
+        is dropped.
     """
 
     clients: int = 64
     connections: int = 256
-    new_clients_per_second: float = 50
-    requests_per_second: float = 400
+    new_clients_per_second: float = 20
+    strangers_per_address: int = 64
+    new_connections_per_address_and_second: float = 50
+    frames_per_second: float = 400
+    bytes_per_second: float = 1 << 24
+    fragments: int = 64
     handshake_seconds: float = 5
+    send_seconds: float = 20
+    send_bytes_per_second: float = 1 << 20
+    frame_bytes: int = 1 << 28
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
-from functools import partial
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from ..board.errors import Refused
@@ -14,15 +13,21 @@ from .clients import Clients
 from .control_transfer import ControlTransfer
 from .packets import CHUNK_LIMIT, PROTOCOL_VERSION
 from .renderer import Renderer
-from .upload import UPLOAD_LIMIT
+from .scene_files import MEMORY_SUFFIXES
+from .scene_load import SceneLoad
+from .upload import UPLOAD_LIMIT, Upload, memory_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Coroutine
 
     from ..board.device import Device
     from ..board.scene import Scene
     from ..board.scene_memory import Progress
+    from .requests import StartUpload
     from .scene_library import SceneLibrary
+    from .server_options import Limits
+
+_WATCH_SECONDS = 0.5
 
 
 class Session:
@@ -34,20 +39,35 @@ class Session:
         The ray tracer; :meth:`close` closes it.
     library
         The scenes that can be loaded.
+    limits
+        The load that the clients may be.
     """
 
-    def __init__(self, device: Device, library: SceneLibrary) -> None:
+    def __init__(self, device: Device, library: SceneLibrary, limits: Limits) -> None:
         self.renderer = Renderer(device)
-        self.clients = Clients(self.state)
-        self.control = ControlTransfer(time.monotonic)
+        self.clients = Clients(self.state, limits)
+        self.control = ControlTransfer(time.monotonic, self._drop_work_of)
+        self.upload: Upload | None = None
         self._library = library
-        self._reader_thread = ThreadPoolExecutor(1, "reader")
-        self._scene_change = asyncio.Lock()
+        self._load: SceneLoad | None = None
+        self._memory_bytes = memory_bytes(device.identity.capacity)
+        reads_assets = not set(library.reader.suffixes) <= set(MEMORY_SUFFIXES)
+        self._upload_limit = UPLOAD_LIMIT if reads_assets else self._memory_bytes
         self._started = time.monotonic()
 
     async def run(self) -> None:
         """Render frames for the clients, without end."""
         await self.renderer.run(self.clients)
+
+    async def watch(self) -> None:
+        """Drop clients that are too slow, and pass control on when the controller is idle, without end."""
+        while True:
+            await asyncio.sleep(_WATCH_SECONDS)
+            self.clients.drop_slow()
+            if self._load is not None:
+                self.control.use(self._load.client)  # who waits for a scene is not idle
+            if self.control.pass_on():
+                self.clients.queue_state()
 
     def hello(self, client: int) -> dict[str, Any]:
         """Return the first message to a client."""
@@ -69,7 +89,7 @@ class Session:
             },
             "scenes": sorted(self._library.scenes),
             "suffixes": self._library.reader.suffixes,
-            "limits": {"chunk": CHUNK_LIMIT, "upload": UPLOAD_LIMIT},
+            "limits": {"chunk": CHUNK_LIMIT, "upload": self._upload_limit},
         }
 
     def state(self) -> dict[str, Any]:
@@ -96,6 +116,7 @@ class Session:
                 "light": renderer.view.lighting.position,
                 "ambient": renderer.view.lighting.ambient,
                 "features": sorted(renderer.view.lighting.features),
+                "shading": renderer.view.lighting.shading,
                 "bounces": renderer.view.lighting.bounces,
                 "nonstop": renderer.nonstop,
             },
@@ -112,44 +133,95 @@ class Session:
             "scenes": self.renderer.scene_number,
         }
 
-    async def load_files(
-        self, files: Mapping[str, bytes], progress: Progress, *, check_only: bool, allowed: Callable[[], bool]
-    ) -> Scene:
-        """Make a scene from files and load it; with `check_only` nothing is written to the device.
+    def start_upload(self, number: int, announced: StartUpload) -> None:
+        """Begin the upload `number`; an incomplete one is dropped.
 
         Raises
         ------
         Refused
-            The files are no scene, it does not fit, another scene is being loaded, or `allowed` returns False when the
-            scene has been made.
+            The files are larger than the limit, or than a memory that the device can hold, or cannot be stored.
+        """
+        self.drop_upload()
+        size = sum(file.size for file in announced.files)
+        if size > self._upload_limit:
+            raise Refused(
+                f"an upload of {size} bytes is more than the limit of {self._upload_limit}; make the files smaller"
+            )
+        for file in announced.files:
+            if PurePath(file.name).suffix.lower() in MEMORY_SUFFIXES and file.size > self._memory_bytes:
+                identity = self.renderer.device.identity
+                raise Refused(
+                    f"{file.name} has {file.size} bytes, and {identity.name} holds {identity.capacity} words, which "
+                    f"take {self._memory_bytes} at most; build it with a smaller depth"
+                )
+        self.upload = Upload(number, announced)
+
+    def drop_upload(self) -> None:
+        """Remove the files of the present upload, if there is one."""
+        if self.upload is not None:
+            self.upload.close()
+            self.upload = None
+
+    def cancel(self, client: int) -> None:
+        """Cancel what the controller `client` uploads, and what is made of it; the present scene stays."""
+        if self.control.controller == client:
+            self.drop_upload()
+        if self._load is not None and self._load.client == client:
+            self._load.cancel("cancelled; the scene was not changed")
+
+    async def load_upload(self, client: int, upload: Upload, progress: Progress) -> Scene:
+        """Make a scene from the present upload, which is complete, and load it; a mere check writes nothing.
+
+        Raises
+        ------
+        Refused
+            The files are no scene, it does not fit, another scene is being loaded, or this was cancelled.
         DeviceError
             The device did not keep the scene; the present one stays.
         """
-        return await self._load(
-            partial(self._library.reader, files, progress), progress, check_only=check_only, allowed=allowed
-        )
+        if self.upload is not upload:
+            raise Refused("cancelled; the scene was not changed")
+        self.upload = None
+        try:
+            scene = self._library.reader.read(upload.paths, progress)
+            return await self._load_scene(client, scene, progress, check_only=upload.announced.check_only)
+        finally:
+            upload.close()
 
-    async def load_named(self, name: str, progress: Progress, *, allowed: Callable[[], bool]) -> Scene:
-        """Load a scene of the library. Raises what :meth:`load_files` raises."""
-        return await self._load(self._library.find(name), progress, check_only=False, allowed=allowed)
+    async def load_named(self, client: int, name: str, progress: Progress) -> Scene:
+        """Load a scene of the library. Raises what :meth:`load_upload` raises."""
+        paths = self._library.find(name)
+        reader = self._library.scene_reader or self._library.reader
+        return await self._load_scene(client, reader.read(paths, progress), progress, check_only=False)
+
+    def stop(self) -> None:
+        """End the frame in progress; there are no further ones."""
+        self.renderer.device.stop()
 
     def close(self) -> None:
         """Close the device."""
-        self._reader_thread.shutdown(wait=False, cancel_futures=True)
+        self.drop_upload()
         self.renderer.close()
 
-    async def _load(
-        self, make_scene: Callable[[], Scene], progress: Progress, *, check_only: bool, allowed: Callable[[], bool]
+    async def _load_scene(
+        self, client: int, made: Coroutine[Any, Any, Scene], progress: Progress, *, check_only: bool
     ) -> Scene:
-        if self._scene_change.locked():
+        if self._load is not None:
+            made.close()
             raise Refused("another scene is being loaded; try again when it is shown")
-        async with self._scene_change:
-            scene = await asyncio.get_running_loop().run_in_executor(self._reader_thread, make_scene)
-            self.renderer.check_scene(scene)
-            if check_only:
-                return scene
-            if not allowed():
-                raise Refused("another viewer took control meanwhile; the scene was not changed")
-            await self.renderer.load(scene, progress)
-        self.clients.queue_state()
+        load = self._load = SceneLoad(client)
+        try:
+            scene = await load.make(made)
+            await asyncio.get_running_loop().run_in_executor(None, self.renderer.check_scene, scene)
+            if not check_only:
+                await self.renderer.load(scene, progress, load.check)
+        finally:
+            self._load = None
+        if not check_only:
+            self.clients.queue_state()
         return scene
+
+    def _drop_work_of(self, client: int) -> None:
+        self.drop_upload()
+        if self._load is not None and self._load.client == client:
+            self._load.cancel("another viewer took control meanwhile; the scene was not changed")

@@ -1,24 +1,37 @@
-"""An upload in progress: files that arrive in chunks."""
+"""An upload in progress: files that arrive in chunks, and are kept in a temporary folder."""
 
 from __future__ import annotations
 
+import tempfile
 import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..board.errors import Refused
 
 if TYPE_CHECKING:
+    from typing import BinaryIO
+
     from .packets import Chunk
     from .requests import StartUpload
 
 UPLOAD_LIMIT = 1 << 28
 """Bytes that the files of an upload may have together."""
 
+_BYTES_PER_WORD = 16
+_MANIFEST_BYTES = 1 << 20
+
+
+def memory_bytes(capacity: int) -> int:
+    """Return how many bytes the files of an octree memory of `capacity` words may have.
+
+    A word takes 4 bytes in a blob, 9 or 10 in a .mem, and more where comments are written between them.
+    """
+    return min(UPLOAD_LIMIT, _BYTES_PER_WORD * capacity + _MANIFEST_BYTES)
+
 
 class Upload:
-    """The files of one upload and the bytes that have arrived.
-
-    It allocates memory for bytes that have arrived, not for those that were announced.
+    """The files of one upload, as far as they have arrived; a context manager's end or :meth:`close` removes them.
 
     Parameters
     ----------
@@ -30,28 +43,33 @@ class Upload:
     Raises
     ------
     Refused
-        The files are larger than :data:`UPLOAD_LIMIT` together.
+        The temporary folder cannot be written.
     """
 
     def __init__(self, number: int, announced: StartUpload) -> None:
         self.number = number
         self.announced = announced
         self.size = sum(file.size for file in announced.files)
-        if self.size > UPLOAD_LIMIT:
-            raise Refused(
-                f"an upload of {self.size} bytes is more than the limit of {UPLOAD_LIMIT}; make the files smaller"
-            )
-        self._data = bytearray()
-
-    @property
-    def received(self) -> int:
-        """Bytes that have arrived."""
-        return len(self._data)
+        self.received = 0
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        try:
+            self._folder = tempfile.TemporaryDirectory(prefix="voxrt-upload-", ignore_cleanup_errors=True)
+        except OSError as error:
+            raise _not_stored(error) from error
+        self._waiting = list(announced.files)
+        self._file: BinaryIO | None = None
+        self._left = self._crc32 = 0
 
     @property
     def complete(self) -> bool:
         """Whether all bytes have arrived."""
         return self.received == self.size
+
+    @property
+    def paths(self) -> list[Path]:
+        """The files, in the order of their announcement."""
+        assert self._folder is not None
+        return [Path(self._folder.name, file.name) for file in self.announced.files]
 
     def add(self, chunk: Chunk) -> None:
         """Add the next chunk.
@@ -59,7 +77,8 @@ class Upload:
         Raises
         ------
         Refused
-            The chunk belongs to another upload, is not the next one, or is longer than announced.
+            The chunk belongs to another upload, is not the next one, or is longer than announced. The CRC-32 of a file
+            is not the announced one. The temporary folder is full.
         """
         if chunk.upload != self.number:
             raise Refused(f"a chunk of upload {chunk.upload} came during upload {self.number}; upload again")
@@ -68,24 +87,40 @@ class Upload:
                 f"a chunk of {len(chunk.data)} bytes at byte {chunk.offset} does not continue the {self.received} of "
                 f"{self.size} bytes that have arrived; upload again"
             )
-        self._data += chunk.data
+        try:
+            self._write(memoryview(chunk.data))
+        except OSError as error:
+            raise _not_stored(error) from error
 
-    def files(self) -> dict[str, bytes]:
-        """Return the complete files by name.
+    def close(self) -> None:
+        """Remove the files."""
+        if self._file is not None:
+            self._file.close()
+        if self._folder is not None:
+            self._folder.cleanup()
+        self._file = self._folder = None
 
-        Raises
-        ------
-        Refused
-            The CRC-32 of a file is not the announced one, or two files have the same name.
-        """
-        files: dict[str, bytes] = {}
-        start = 0
-        for file in self.announced.files:
-            data = bytes(self._data[start : start + file.size])
-            start += file.size
-            if zlib.crc32(data) != file.crc32:
-                raise Refused(f"{file.name} was damaged in transit (CRC-32); upload again")
-            if file.name in files:
-                raise Refused(f"two files have the name {file.name}; rename one of them")
-            files[file.name] = data
-        return files
+    def _write(self, data: memoryview) -> None:
+        while len(data):
+            if self._file is None:
+                path = self.paths[-len(self._waiting)]
+                self._left, self._crc32 = self._waiting[0].size, 0
+                self._file = path.open("xb", buffering=0)
+            part = data[: self._left]
+            self._file.write(part)
+            self._crc32 = zlib.crc32(part, self._crc32)
+            self._left -= len(part)
+            self.received += len(part)
+            data = data[len(part) :]
+            if self._left == 0:
+                self._file.close()
+                self._file = None
+                announced = self._waiting.pop(0)
+                if announced.crc32 != self._crc32:
+                    raise Refused(f"{announced.name} was damaged in transit (CRC-32); upload again")
+
+
+def _not_stored(error: OSError) -> Refused:
+    return Refused(
+        f"the server cannot store the files in {tempfile.gettempdir()}: {error.strerror or error}; make room there"
+    )

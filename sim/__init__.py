@@ -21,10 +21,12 @@ from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_s
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
 from voxrt.sim.ray_query import RayHits, cast_rays
 from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
+from voxrt.sim.samples import Background
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 __all__ = [
     "FACE_NONE",
+    "Background",
     "CacheCost",
     "Camera",
     "Comparison",

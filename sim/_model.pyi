@@ -32,6 +32,10 @@ class FollowedRay(NamedTuple):
     cell: tuple[int, int, int]
     readings: list[Reading]
 
+class Stop:
+    def __init__(self) -> None: ...
+    def set(self) -> None: ...
+
 class Memory:
     def __init__(self, words: NDArray[np.uint32], depth: int) -> None: ...
     def render(
@@ -44,10 +48,13 @@ class Memory:
         instructions: str = "",
         *,
         flat: bool = False,
+        brightness: NDArray[np.uint8] | None = None,
         light: NDArray[np.int32] | None = None,
         ambient: int = 0,
         bounces: int = 0,
         mirrors: NDArray[np.uint8] | None = None,
+        seconds: float = ...,
+        stop: Stop | None = None,
     ) -> RenderedPixels: ...
     def trace(self, origins: NDArray[np.int32], directions: NDArray[np.int32], threads: int = 0) -> TracedRays: ...
     def follow(self, origin: NDArray[np.int32], direction: NDArray[np.int32]) -> FollowedRay: ...

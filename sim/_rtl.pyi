@@ -42,6 +42,7 @@ class Tracer:
         materials: NDArray[np.uint8],
         *,
         flat: bool = False,
+        brightness: NDArray[np.uint8] | None = None,
         light: NDArray[np.int32] | None = None,
         ambient: int = 0,
         bounces: int = 0,

@@ -60,47 +60,47 @@ class CacheCost:
 
     Attributes
     ----------
+    words_read
+        Octree words that lanes read.
     word_requests
         How often lanes asked for a word: once for each word they read, and again for each time it had not come.
     line_requests
         How often the caches of lanes asked the shared cache for a line.
     lines_read
         Lines that the shared cache asked the external memory for.
-    l1_hits
-        Part of the words that needed no request of a line, 0 … 1.
-    l2_hits
-        Part of the requests of lines that needed no line of the external memory, 0 … 1.
 
     Examples
     --------
-    >>> CacheCost.of(words_read=1000, word_requests=1100, line_requests=100, lines_read=20).l2_hits
-    0.8
+    >>> cost = CacheCost(words_read=1000, word_requests=1100, line_requests=100, lines_read=20)
+    >>> cost.l1_hits, cost.l2_hits, cost.bytes_read
+    (0.9, 0.8, 640)
     """
 
+    words_read: int
     word_requests: int
     line_requests: int
     lines_read: int
-    l1_hits: float
-    l2_hits: float
+
+    @property
+    def l1_hits(self) -> float:
+        """Part of the words that needed no request of a line, 0 … 1."""
+        return 1 - self.line_requests / max(self.words_read, 1)
+
+    @property
+    def l2_hits(self) -> float:
+        """Part of the requests of lines that needed no line of the external memory, 0 … 1."""
+        return 1 - self.lines_read / max(self.line_requests, 1)
 
     @property
     def bytes_read(self) -> int:
         """Bytes from the external memory."""
         return LINE_BYTES * self.lines_read
 
-    @classmethod
-    def of(cls, words_read: int, word_requests: int, line_requests: int, lines_read: int) -> CacheCost:
-        """Make it of what the ray tracer counts.
-
-        Examples
-        --------
-        >>> CacheCost.of(words_read=0, word_requests=0, line_requests=0, lines_read=0).l1_hits
-        1.0
-        """
-        return cls(
-            word_requests,
-            line_requests,
-            lines_read,
-            1 - line_requests / max(words_read, 1),
-            1 - lines_read / max(line_requests, 1),
+    def __add__(self, other: CacheCost) -> CacheCost:
+        """Give the cost of two frames."""
+        return CacheCost(
+            self.words_read + other.words_read,
+            self.word_requests + other.word_requests,
+            self.line_requests + other.line_requests,
+            self.lines_read + other.lines_read,
         )

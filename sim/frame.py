@@ -22,7 +22,7 @@ class RenderCost:
     Attributes
     ----------
     rays
-        Rays traced: one per pixel.
+        Rays traced: one per pixel and sample. Those of mirrors and shadows are not counted.
     words_read
         Octree words read; None for the model, which reads one word for many rays.
     cycles
@@ -47,7 +47,7 @@ class Frame:
     Attributes
     ----------
     colour
-        uint8, shape (H, W, 3), sRGB.
+        uint8, shape (H, W, 3), sRGB; on a transparent background (H, W, 4), with the opacity.
     material
         uint8, shape (H, W): the material hit, 0 for a miss.
     face

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def encode_png(colour: NDArray[np.uint8]) -> bytes:
-    """Return a picture (uint8, shape (H, W, 3), sRGB) as the bytes of a PNG file. Equal pixels give equal bytes."""
+    """Return a picture, as :func:`write_png` takes it, as the bytes of a PNG file. Equal pixels give equal bytes."""
     encoded = io.BytesIO()
-    Image.fromarray(colour, "RGB").save(encoded, format="PNG")
+    Image.fromarray(colour).save(encoded, format="PNG")
     return encoded.getvalue()
 
 
@@ -32,7 +32,7 @@ def write_png(path: str | os.PathLike[str], colour: NDArray[np.uint8]) -> None:
     path
         The file, in a folder that exists.
     colour
-        uint8, shape (H, W, 3), sRGB. Equal pixels give equal bytes.
+        uint8, shape (H, W, 3), sRGB, or (H, W, 4) with the opacity. Equal pixels give equal bytes.
 
     Raises
     ------

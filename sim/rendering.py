@@ -9,11 +9,19 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 import numpy as np
 
 from voxrt.octree import Rom
-from voxrt.octree.camera import BOUNCE_LIMIT, CAMERA_LIGHT, DIRECTION_LIMIT, POSITION_UNITS
+from voxrt.octree.camera import (
+    BOUNCE_LIMIT,
+    DIRECTION_LIMIT,
+    PLAIN_LIGHTING,
+    POSITION_UNITS,
+    SAMPLES,
+    sample_cameras,
+)
 from voxrt.sim import _model
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import Frame, RenderCost
+from voxrt.sim.samples import join_samples, put_background
 from voxrt.sim.verilated import import_verilated
 from voxrt.voxelize.arguments import choice, instance, text, whole, whole_array
 
@@ -21,9 +29,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim.samples import Background
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
+_FACES = 6
 _FRAME_LIMIT = 1 << 14
 _RTL_FRAME_LIMIT = (1 << 12) - 1
 _CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
@@ -38,7 +48,7 @@ class EngineCheck:
     rtl, model
         The two frames.
     wrong
-        bool, shape (H, W): pixels whose colour, material or face differ.
+        bool, shape (H, W): pixels of which a sample differs in colour, material or face.
     """
 
     rtl: Frame
@@ -57,7 +67,9 @@ def render(
     size: tuple[int, int],
     *,
     engine: Engine,
-    lighting: Lighting = CAMERA_LIGHT,
+    lighting: Lighting = PLAIN_LIGHTING,
+    samples: int = 1,
+    background: Background | None = None,
     threads: int = 0,
     config: str = "tiny",
     dram: Dram | None = None,
@@ -76,7 +88,12 @@ def render(
         ``"rtl"`` is the verilated ray tracer, which counts its clock cycles. ``"model"`` is the exact C++ model. Both
         give the same pixels.
     lighting
-        Point light, mirrors and flat colours.
+        Brightness of faces, point light and mirrors.
+    samples
+        Rays per pixel on each axis, 1, 2 or 4, averaged in linear light. Each is a frame of its own, of a camera moved
+        by a part of a pixel: :func:`~voxrt.octree.camera.sample_cameras`.
+    background
+        sRGB, 0 … 255 each, in place of the colour of entry 0; or ``"transparent"``.
     threads
         Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
@@ -87,7 +104,7 @@ def render(
     Returns
     -------
     Frame
-        The pixels and what they cost.
+        The pixels and what they cost. `material` and `face` are those of the first sample.
 
     Raises
     ------
@@ -110,16 +127,17 @@ def render(
     >>> frame.colour.shape, frame.cost.rays, bool(frame.material.any())
     ((32, 32, 3), 1024, True)
     """
-    instance("rom", rom, Rom)
     choice("engine", engine, get_args(Engine))
-    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
-    _check_directions(camera, (width, height))
-    _check_lighting(lighting)
-    if engine == "model":
-        if dram is not None:
-            raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
-        return _render_model(rom, camera, (width, height), lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, (width, height), lighting, text("config", config), dram)
+    if engine == "model" and dram is not None:
+        raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
+    rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
+    return join_samples(
+        [
+            _render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram)
+            for one in cameras
+        ],
+        background,
+    )
 
 
 def check(
@@ -127,16 +145,18 @@ def check(
     camera: Camera,
     size: tuple[int, int],
     *,
-    lighting: Lighting = CAMERA_LIGHT,
+    lighting: Lighting = PLAIN_LIGHTING,
+    samples: int = 1,
+    background: Background | None = None,
     threads: int = 0,
     config: str = "tiny",
     dram: Dram | None = None,
 ) -> EngineCheck:
-    """Render with both engines and compare every pixel.
+    """Render with both engines and compare every sample of every pixel.
 
     Parameters
     ----------
-    rom, camera, size, lighting, threads, config, dram
+    rom, camera, size, lighting, samples, background, threads, config, dram
         As for :func:`render`.
 
     Returns
@@ -158,10 +178,61 @@ def check(
     >>> check(rom, frame_scene(rom, (32, 32)), (32, 32)).wrong_pixels
     0
     """
-    rtl = render(rom, camera, size, engine="rtl", lighting=lighting, config=config, dram=dram)
-    model = render(rom, camera, size, engine="model", lighting=lighting, threads=threads)
-    wrong = np.any(rtl.colour != model.colour, axis=2) | (rtl.material != model.material) | (rtl.face != model.face)
-    return EngineCheck(rtl=rtl, model=model, wrong=wrong)
+    rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
+    rtl = [
+        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram) for one in cameras
+    ]
+    model = [
+        _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None)
+        for one in cameras
+    ]
+    wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
+    return EngineCheck(rtl=join_samples(rtl, background), model=join_samples(model, background), wrong=wrong)
+
+
+def _checked(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    lighting: Lighting,
+    samples: int,
+    background: Background | None,
+) -> tuple[Rom, tuple[Camera, ...], tuple[int, int]]:
+    """Check what both engines are asked; give the memory with its background, and the cameras of the samples."""
+    instance("rom", rom, Rom)
+    width, height = whole_array("size", size, (2,), np.int64, low=1, high=_FRAME_LIMIT).tolist()
+    if whole("samples", samples, 1, max(SAMPLES)) not in SAMPLES:
+        raise ValueError(f"samples must be {', '.join(map(str, SAMPLES))}, not {samples}")
+    _check_directions(camera, (width, height))
+    _check_lighting(lighting)
+    rom = put_background(rom, background)
+    cameras = sample_cameras(camera, (width, height), samples)
+    for one in cameras[1:]:
+        _check_directions(one, (width, height))
+    return rom, cameras, (width, height)
+
+
+def _render_one(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    lighting: Lighting,
+    *,
+    engine: Engine,
+    threads: int,
+    config: str,
+    dram: Dram | None,
+) -> Frame:
+    if engine == "model":
+        return _render_model(rom, camera, size, lighting, whole("threads", threads, 0, 1024))
+    return _render_rtl(rom, camera, size, lighting, text("config", config), dram)
+
+
+def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
+    colour = np.any(one.colour != other.colour, axis=2)
+    apart: NDArray[np.bool_] = colour | (one.material != other.material) | (one.face != other.face)
+    return apart
 
 
 def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, threads: int) -> Frame:
@@ -193,7 +264,7 @@ def shader_features(config: str) -> frozenset[str]:
     Returns
     -------
     frozenset[str]
-        Some of ``"flat"``, ``"light"`` and ``"mirrors"``.
+        Some of ``"light"`` and ``"mirrors"``.
 
     Raises
     ------
@@ -205,7 +276,7 @@ def shader_features(config: str) -> frozenset[str]:
     Examples
     --------
     >>> sorted(shader_features("lit"))
-    ['flat', 'light', 'mirrors']
+    ['light', 'mirrors']
     """
     return frozenset(_ray_tracer(config).FEATURES[config])
 
@@ -281,7 +352,7 @@ def _render_rtl(
             pixels["words_read"],
             pixels["cycles"],
             time.perf_counter() - started,
-            CacheCost.of(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
+            CacheCost(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
         ),
     )
 
@@ -291,6 +362,7 @@ def _shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
     mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
     return {
         "flat": lighting.flat,
+        "brightness": None if lighting.faces is None else np.array(lighting.faces, dtype=np.uint8),
         "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
         "ambient": lighting.ambient if lighting.on else 0,
         "bounces": lighting.bounces,
@@ -320,6 +392,10 @@ def _registers(camera: Camera) -> NDArray[np.int32]:
 def _check_lighting(lighting: Lighting) -> None:
     if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
         raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
+    if lighting.faces is not None and not (
+        len(lighting.faces) == _FACES and all(0 <= face <= 255 for face in lighting.faces)
+    ):
+        raise SimulatorError(f"the brightness of faces {lighting.faces} is not six numbers of 0 … 255")
     if not lighting.on:
         return
     if not 0 <= lighting.ambient <= 255:

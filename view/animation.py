@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import subprocess
 import tempfile
 from importlib import import_module
 from pathlib import Path
@@ -59,17 +60,20 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
         raise ViewerError(
             "MP4 needs imageio-ffmpeg, which is not installed; pip install imageio-ffmpeg, or write a .gif"
         ) from error
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        whole = Path(folder, "turntable.mp4")
-        writer = None
-        for picture in pictures:
-            if writer is None:
-                height, width = picture.shape[:2]
-                writer = ffmpeg.write_frames(
-                    str(whole), (width, height), fps=PICTURES_A_SECOND, macro_block_size=2, quality=8
-                )
-                writer.send(None)
-            writer.send(np.ascontiguousarray(picture))
-        if writer is not None:
-            writer.close()
-        whole.replace(path)
+    first, *others = pictures
+    height, width = first.shape[:2]
+    pixels = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(PICTURES_A_SECOND), "-i", "-")
+    coded = ("-an", "-c:v", "libx264", "-crf", "10", "-pix_fmt", "yuv420p")
+    with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
+        film = Path(folder, "turntable.mp4")  # FFmpeg goes back in an MP4, so it cannot write to a pipe
+        done = subprocess.run(  # noqa: S603 - FFmpeg, by its path
+            [ffmpeg.get_ffmpeg_exe(), "-v", "error", *pixels, *coded, film],
+            input=b"".join(np.ascontiguousarray(picture).tobytes() for picture in (first, *others)),
+            capture_output=True,
+            check=False,
+        )
+        if done.returncode:
+            *_, said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
+            raise ViewerError(f"FFmpeg failed: {said}; write a .gif")
+        data = film.read_bytes()
+    write_atomically(path, data)

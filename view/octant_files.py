@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +12,8 @@ from voxrt.export.conversion import read_any
 from voxrt.view.cells import octants
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pyvista
     from numpy.typing import NDArray
 
@@ -59,10 +59,14 @@ def write_octants(path: Path, grid: pyvista.UnstructuredGrid) -> None:
     OSError
         The file cannot be written.
     """
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        whole = Path(folder, "octants.vtu")
-        grid.save(whole)
-        whole.replace(path)
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: PLC0415 - optional
+
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    write_atomically(path, writer.GetOutputString().encode())
 
 
 def write_glb(path: Path, rom: Rom, mesh: OctantMesh) -> None:

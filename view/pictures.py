@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.sim.image import write_png
 from voxrt.view.drawing import draw
 from voxrt.view.pane import Aspect, Pane
 from voxrt.view.window import Window
@@ -61,9 +62,7 @@ def plot(
     if screenshot is None:
         Window(panes, size).show()
         return
-    plotter, _ = draw(panes, size, off_screen=True)
-    plotter.screenshot(screenshot, return_img=False)
-    plotter.close()
+    write_png(screenshot, picture(panes, size))
 
 
 def picture(

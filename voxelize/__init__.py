@@ -5,23 +5,20 @@ a :class:`Grid` to it, :func:`assign_colours` gives textured surfaces materials,
 :mod:`voxrt.voxelize.authoring` makes scenes in Python.
 """
 
+from importlib import import_module
 from pkgutil import extend_path
+from typing import TYPE_CHECKING
 
 __path__ = extend_path(__path__, __name__)
 
-from voxrt.voxelize.assets import load
 from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid
-from voxrt.voxelize.grid_fitting import fit_grid
 from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
 from voxrt.voxelize.mesh import MaterialMap, Mesh
 from voxrt.voxelize.scene import PointLight, Scene, SceneObject, Viewpoint
-from voxrt.voxelize.voxelizer import voxelize
-from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 
 __all__ = [
     "DEFAULT_COLOUR",
@@ -56,3 +53,30 @@ __all__ = [
     "load",
     "voxelize",
 ]
+
+# What works on scenes is imported when it is first used: a process that only makes a scene does not wait for it.
+_HOMES = {
+    "voxrt.voxelize.assets": ("load",),
+    "voxrt.voxelize.colour.voxel_colours": ("DEFAULT_COLOURS", "assign_colours"),
+    "voxrt.voxelize.grid_fitting": ("fit_grid",),
+    "voxrt.voxelize.voxelizer": ("voxelize",),
+    "voxrt.voxelize.voxels": ("ObjectMode", "ObjectReport", "Voxelization", "Voxels"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+if TYPE_CHECKING:  # type checkers see these names and no others
+    from voxrt.voxelize.assets import load
+    from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
+    from voxrt.voxelize.grid_fitting import fit_grid
+    from voxrt.voxelize.voxelizer import voxelize
+    from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
+else:
+
+    def __getattr__(name: str) -> object:
+        if name in _HOME:
+            return getattr(import_module(_HOME[name]), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

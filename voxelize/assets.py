@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -24,18 +25,20 @@ UP_AXES: tuple[UpAxis, ...] = ("x", "y", "z")
 _LOADERS = {
     ".gltf": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
     ".glb": ("voxrt.voxelize.formats.gltf", "load_gltf", {"time", "animation", "variants", "allow_outside"}),
-    ".usd": ("voxrt.voxelize.formats.usd", "load_usd", {"time", "variants", "allow_outside"}),
-    ".usda": ("voxrt.voxelize.formats.usd", "load_usd", {"time", "variants", "allow_outside"}),
-    ".usdc": ("voxrt.voxelize.formats.usd", "load_usd", {"time", "variants", "allow_outside"}),
-    ".usdz": ("voxrt.voxelize.formats.usd", "load_usd", {"time", "variants", "allow_outside"}),
+    ".usd": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
+    ".usda": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
+    ".usdc": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
+    ".usdz": ("voxrt.voxelize.formats.usd.isolated", "read_isolated", {"time", "variants", "allow_outside"}),
     ".toml": ("voxrt.voxelize.authoring.scene_toml", "load_scene_toml", {"allow_outside"}),
     ".obj": ("voxrt.voxelize.formats.obj", "load_obj", {"up", "unit", "allow_outside"}),
     ".stl": ("voxrt.voxelize.formats.stl.load", "load_stl", {"up", "unit"}),
-    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit"}),
+    ".ply": ("voxrt.voxelize.formats.ply", "load_ply", {"up", "unit", "allow_outside"}),
 }
 
 SUFFIXES = tuple(_LOADERS)
 """The suffixes that :func:`load` reads, in lower case."""
+
+_ADDRESS = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/+(.*)")
 
 _WHY_IGNORED = {
     "up": "the up axis was ignored: {} files define it",
@@ -148,6 +151,9 @@ def _checked(
 
 def _suffix(path: Path) -> str:
     """Return the suffix of a file that can be loaded, in lower case."""
+    if address := _ADDRESS.match(str(path)):  # a path has lost one of the slashes
+        shown = f"{address[1]}://{address[2]}"
+        raise AssetError(shown, "is an address, and files are read from folders alone", fix="download it first")
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"use one of {', '.join(SUFFIXES)}")

@@ -15,7 +15,7 @@ from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
 from voxrt.voxelize.scene import Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,6 +31,7 @@ def fit_grid(
     voxel_size: float | None = None,
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
+    bounds: tuple[Sequence[float], Sequence[float]] | None = None,
 ) -> Grid:
     """Fit the smallest grid to a scene: its lowest corner is the lowest corner of what will be voxelized.
 
@@ -44,6 +45,8 @@ def fit_grid(
         Metres per voxel. The depth is the least that holds the scene and its rounded boxes.
     geometry, pow2
         As for :func:`voxrt.voxelize.voxelize`.
+    bounds
+        The lowest and the highest corner of what the grid holds, metres, scene frame; None for the scene's own.
 
     Returns
     -------
@@ -78,7 +81,7 @@ def fit_grid(
         depth = arguments.whole("depth", depth, 1, DEPTH_LIMIT)
     if voxel_size is not None:
         voxel_size = arguments.real("voxel_size", voxel_size, above=0)
-    low, high = scene_bounds(scene, geometry)
+    low, high = scene_bounds(scene, geometry) if bounds is None else _checked_bounds(bounds)
     longest = float((high - low).max())
     if not np.isfinite(longest):
         raise AssetError(scene.name, "the scene's size overflows float64", fix="scale it down")
@@ -97,9 +100,16 @@ def fit_grid(
         )
     fitted_depth = max(1, int(np.ceil(np.log2(voxels)))) if voxels > 1 else 1
     grid = Grid(fitted_depth, origin, voxel_size)
-    if pow2 == "box" and grid.depth < DEPTH_LIMIT and _rounding_overflows(scene, grid, geometry):
+    if bounds is None and pow2 == "box" and grid.depth < DEPTH_LIMIT and _rounding_overflows(scene, grid, geometry):
         return Grid(fitted_depth + 1, origin, voxel_size)
     return grid
+
+
+def _checked_bounds(bounds: object) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    corners = arguments.real_array("bounds", bounds, (2, 3)).astype(np.float64, copy=False)
+    if not (corners[0] < corners[1]).all():
+        raise ValueError(f"bounds must be a lowest and a highest corner, not {corners[0]} and {corners[1]}")
+    return corners[0], corners[1]
 
 
 def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -124,7 +134,9 @@ def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64],
     if np.isnan(low).any() or np.isnan(high).any():
         raise AssetError(scene.name, "a coordinate is not a number", fix="repair the mesh or its transform")
     if not (low <= high).all():
-        raise AssetError(scene.name, "nothing to voxelize: no triangles and no colliders")
+        hidden = sum(item.hidden for item in scene.objects)
+        fix = f"{hidden} objects are hidden: use geometry collider for their colliders" if hidden else ""
+        raise AssetError(scene.name, "nothing to voxelize: no triangles and no colliders", fix=fix)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         raise AssetError(scene.name, "a coordinate is infinite", fix="repair the mesh or its transform")
     return low, high

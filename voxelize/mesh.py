@@ -163,3 +163,7 @@ def checked_surface(owner: str, positions: object, triangles: object) -> tuple[N
 def _same_length(name: str, has: int, triangles: int) -> None:
     if has != triangles:
         raise ValueError(f"{name} is for {has} triangles, and the mesh has {triangles}")
+
+
+NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
+"""The mesh of an object that consists of colliders alone."""

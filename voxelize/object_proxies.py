@@ -26,11 +26,13 @@ def proxies(item: SceneObject, geometry: Geometry) -> tuple[Collider, ...] | Non
         The object.
     geometry
         As for :func:`voxrt.voxelize.voxelize`. With ``"collider"``, an object without colliders gets the box of its
-        mesh, in its own frame.
+        mesh, in its own frame, unless others represent it.
     """
+    if item.hidden:
+        return item.colliders if geometry == "collider" else ()
     if geometry == "render" or (geometry == "auto" and not item.colliders):
         return None
-    if item.colliders or len(item.mesh.triangles) == 0:
+    if item.colliders or item.represented or len(item.mesh.triangles) == 0:
         return item.colliders
     corners = item.mesh.positions[item.mesh.triangles.ravel()].astype(np.float64)
     return (BoxCollider(corners.min(axis=0), corners.max(axis=0)),)

@@ -37,6 +37,10 @@ class SceneObject:
         The colliders that its author gave it; they are filled with `collider_material`.
     collider_material
         Material id 1 … 255.
+    hidden
+        Whether it is not shown: its colliders count with ``geometry="collider"`` alone, its triangles never.
+    represented
+        Whether other objects' colliders stand for it with ``geometry="collider"``: it needs none of its own.
 
     Raises
     ------
@@ -55,6 +59,8 @@ class SceneObject:
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     colliders: tuple[Collider, ...] = ()
     collider_material: int = 1
+    hidden: bool = False
+    represented: bool = False
 
     def __post_init__(self) -> None:
         arguments.text("SceneObject.name", self.name)
@@ -70,6 +76,8 @@ class SceneObject:
         object.__setattr__(self, "transform", transform.astype(np.float64, copy=False))
         object.__setattr__(self, "colliders", colliders)
         object.__setattr__(self, "collider_material", material)
+        object.__setattr__(self, "hidden", arguments.flag("SceneObject.hidden", self.hidden))
+        object.__setattr__(self, "represented", arguments.flag("SceneObject.represented", self.represented))
 
     def __repr__(self) -> str:
         return f"SceneObject(name={self.name!r}, mesh={self.mesh!r}, colliders={len(self.colliders)})"
@@ -88,21 +96,28 @@ class Viewpoint:
         Metres, scene frame: the camera's position and the point in the middle of its picture.
     field_of_view
         Degrees from the picture's top to its bottom, between 0 and 180; None where the author does not say.
+    up
+        The direction that points up in the picture, scene frame, of any length; None for the scene's y axis.
+    name
+        The author's name for it; empty for none.
 
     Raises
     ------
     TypeError, ValueError
-        A point that is not three finite numbers, an eye at the target, or a field of view out of range.
+        A point that is not three finite numbers, an eye at the target, a direction without length, or a field of view
+        out of range.
 
     Examples
     --------
-    >>> Viewpoint([6, 4, 9], [0, 1, 0], 45)
-    Viewpoint(eye=(6.0, 4.0, 9.0), target=(0.0, 1.0, 0.0), field_of_view=45.0)
+    >>> Viewpoint([6, 4, 9], [0, 1, 0], 45).field_of_view
+    45.0
     """
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
     field_of_view: float | None = None
+    up: tuple[float, float, float] | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         eye = arguments.vector("Viewpoint.eye", self.eye)
@@ -114,6 +129,12 @@ class Viewpoint:
         if self.field_of_view is not None:
             angle = arguments.real("Viewpoint.field_of_view", self.field_of_view, above=0, below=180)
             object.__setattr__(self, "field_of_view", angle)
+        if self.up is not None:
+            up = arguments.vector("Viewpoint.up", self.up)
+            if not any(up):
+                raise ValueError("Viewpoint.up must have a direction, and is (0, 0, 0)")
+            object.__setattr__(self, "up", up)
+        object.__setattr__(self, "name", arguments.text("Viewpoint.name", self.name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,6 +181,8 @@ class Scene:
         The author's camera, used where no other is given; None where the author gave none.
     light
         The author's light, likewise.
+    cameras
+        All cameras that the author gave, in authored order; the first is the `viewpoint` of scenes from files.
 
     Raises
     ------
@@ -184,12 +207,16 @@ class Scene:
     warnings: tuple[SceneWarning, ...] = ()
     viewpoint: Viewpoint | None = None
     light: PointLight | None = None
+    cameras: tuple[Viewpoint, ...] = ()
 
     def __post_init__(self) -> None:
         arguments.text("Scene.name", self.name)
         object.__setattr__(self, "objects", tuple(self.objects))
         object.__setattr__(self, "materials", tuple(self.materials))
         object.__setattr__(self, "warnings", tuple(self.warnings))
+        object.__setattr__(self, "cameras", tuple(self.cameras))
+        for index, camera in enumerate(self.cameras):
+            arguments.instance(f"Scene.cameras[{index}]", camera, Viewpoint)
         for index, one in enumerate(self.objects):
             arguments.instance(f"Scene.objects[{index}]", one, SceneObject)
         for index, material in enumerate(self.materials):

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MOST_THREADS = 1024
+_MOST_NAMES = 20
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no material per triangle: the part has one
 _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -108,7 +109,10 @@ def voxelize(
         for item, (source, moved, grown), mode, count in zip(
             scene.objects, reports, result.object_modes, result.object_voxels, strict=True
         )
+        if geometry == "collider" or not item.hidden
     )
+    if without := [report.name for report in objects if not report.voxels]:
+        parts.warn("no-voxels", f"objects got no voxel: {_names(without)}", len(without))
     standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
     if standing_open:
         parts.warn(
@@ -134,6 +138,12 @@ def voxelize(
         octant_materials=result.octant_materials,
     )
     return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
+
+
+def _names(names: list[str]) -> str:
+    """Return names as a message lists them; the reports of the objects list all."""
+    shown = ", ".join(names[:_MOST_NAMES])
+    return shown + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
 
 
 class _Parts:

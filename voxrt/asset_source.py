@@ -41,6 +41,17 @@ def asset_name(asset: Asset) -> str:
     return "mesh"
 
 
+def asset_label(asset: Asset) -> str:
+    """Return what errors call an asset: the file's path as it was given, else its name.
+
+    Examples
+    --------
+    >>> asset_label("examples/house.obj")
+    'examples/house.obj'
+    """
+    return os.fspath(asset) if isinstance(asset, str | os.PathLike) else asset_name(asset)
+
+
 def load_asset(asset: Asset, options: BuildOptions) -> Scene:
     """Load a file, or make a scene of what is in memory.
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,15 +14,20 @@ from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
 from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
+from voxrt.serve.scene_process import ChildReader
 from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
+    from pathlib import Path
 
     from voxrt.board.scene_memory import Progress
 
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
+
+ASSET_READER_SUFFIXES = (".blob", ".mem", *sorted(SUFFIXES))
+"""Suffixes of the files that hold a scene."""
 
 
 def board_scene(blob: Blob) -> Scene:
@@ -75,45 +78,47 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     return board_scene(Blob(built.rom, built.view, built.lighting))
 
 
-class AssetReader:
-    """Makes scenes from uploaded memories, and builds scenes from uploaded assets.
+def read_files(paths: Sequence[Path], progress: Progress, depth: int | None, memory_depth: int | None) -> Scene:
+    """Make the scene of files, one of which is a memory or an asset.
+
+    Parameters
+    ----------
+    paths
+        That file, and those that it refers to.
+    progress
+        Receives the stages.
+    depth
+        Levels of an asset; None for the default.
+    memory_depth
+        Levels of a memory without manifest.
+
+    Raises
+    ------
+    Refused
+        The files are no scene.
+    """
+    main = [path for path in paths if path.suffix.lower() in ASSET_READER_SUFFIXES]
+    if len(main) != 1:
+        names = ", ".join(path.name for path in paths)
+        raise Refused(
+            f"{names}: upload exactly one file with a suffix of {' '.join(ASSET_READER_SUFFIXES)}, "
+            "and the files that it refers to"
+        )
+    try:
+        return load_scene(main[0], depth if main[0].suffix.lower() in SUFFIXES else memory_depth, progress)
+    except (RomError, voxelize.AssetError, voxelize.DoesNotFitError) as error:
+        raise Refused(str(error).replace(f"{main[0].parent}/", "")) from error
+
+
+def asset_reader(depth: int | None = None, memory_depth: int | None = None) -> ChildReader:
+    """Return the reader of memories and assets; each is read and built in a process of its own.
 
     Parameters
     ----------
     depth
         Levels of assets; None for the default.
+    memory_depth
+        Levels of memories without manifest; None refuses them.
     """
-
-    def __init__(self, depth: int | None = None) -> None:
-        self._depth = depth
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of the files that hold a scene."""
-        return (".blob", ".mem", *sorted(SUFFIXES))
-
-    def __call__(self, files: Mapping[str, bytes], progress: Progress) -> Scene:
-        """Make a scene from files, given by name.
-
-        Raises
-        ------
-        Refused
-            The files are no scene.
-        """
-        for name in files:
-            if PurePath(name).name != name or name in {".", ".."} or "\\" in name:
-                raise Refused(f"{name}: is no plain file name; upload the files without their folders")
-        with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
-            paths = [Path(folder, name) for name in files]
-            for path, data in zip(paths, files.values(), strict=True):
-                path.write_bytes(data)
-            main = [path for path in paths if path.suffix.lower() in self.suffixes]
-            if len(main) != 1:
-                raise Refused(
-                    f"{', '.join(files)}: upload exactly one file with a suffix of {' '.join(self.suffixes)}, "
-                    "and the files that it refers to"
-                )
-            try:
-                return load_scene(main[0], self._depth if main[0].suffix.lower() in SUFFIXES else None, progress)
-            except (RomError, voxelize.AssetError, voxelize.DoesNotFitError) as error:
-                raise Refused(str(error).replace(f"{folder}/", "")) from error
+    levels = ["" if number is None else str(number) for number in (depth, memory_depth)]
+    return ChildReader(ASSET_READER_SUFFIXES, ("-m", "voxrt.scene_builder", *levels))

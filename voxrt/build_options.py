@@ -11,6 +11,8 @@ from dataclasses import dataclass, fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 
+from voxrt.backgrounds import read_background
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -41,7 +43,8 @@ class BuildOptions:
         Levels of the octree, 1 to 16. The grid has 2**depth voxels per side. The default is 7, unless `voxel_size` is
         given.
     voxel_size
-        Side of a voxel in metres. Give this or `depth`, not both.
+        Side of a voxel in metres; on the command line also with a unit, such as ``5cm``. Give this or `depth`, not
+        both.
     fill
         ``"solid"``: fill what closed surfaces enclose. ``"surface"``: keep only the shell.
     interior
@@ -57,13 +60,21 @@ class BuildOptions:
     up
         The up axis of an asset whose format does not state it (OBJ, STL, PLY). The default is y.
     unit
-        Metres per unit of an asset whose format does not state it (OBJ, STL, PLY). The default is 1.
+        Metres per unit of an asset whose format does not state it (OBJ, STL, PLY); on the command line also the name of
+        the unit, such as ``mm``. The default is 1.
     time
         Second of the animation at which the asset is built (glTF, USD).
     animation
         The animation to use, by name or by number, counted from 0 (glTF). The default is the first.
     variants
         Variants to build: the name of a material variant (glTF), or any number of ``/prim/path:set=variant`` (USD).
+    ignore
+        Names of objects to leave out. A prim path of a USD file leaves out all below it, too.
+    bounds
+        The lowest and the highest corner of what the grid holds, in metres of the scene: x, y, z, x, y, z. What lies
+        outside the grid is cut off. The default is the bounds of all objects.
+    allow_empty
+        Accept a memory without a single solid voxel.
     allow_outside
         Also open files that the asset names outside of its own folder.
     colours
@@ -80,6 +91,14 @@ class BuildOptions:
         or to ``NAME.preview.png`` in the output folder. In Python, True asks for the latter.
     size
         Width and height of the preview in pixels. The default is 640 x 480.
+    camera
+        The author's camera for the preview and for boards, by name or by number, counted from 0 (glTF, USD). The
+        default is the first. Without one, pictures show the whole scene from the front right and above.
+    samples
+        Rays per pixel of the preview on each axis: 1, 2 or 4. More than one smooths the edges.
+    background
+        The background of the preview: ``"light"``, ``"dark"``, ``"transparent"``, or a colour such as ``"#204060"``.
+        The default is the background of the scene.
     engine
         What renders the preview. ``"rtl"``: the verilated hardware, which counts its clock cycles. ``"model"``: the
         exact C++ model, which is faster. Both give the same pixels.
@@ -117,12 +136,18 @@ class BuildOptions:
     time: float | None = None
     animation: str | None = None
     variants: Sequence[str] = ()
+    ignore: Sequence[str] = ()
+    bounds: tuple[float, float, float, float, float, float] | None = None
+    allow_empty: bool = False
     allow_outside: bool = False
     colours: int = 32
     budget: int | str | None = None
     dialect: Dialect = "report"
     preview: str | PathLike[str] | bool = False
     size: tuple[int, int] = PREVIEW_SIZE
+    camera: str | None = None
+    samples: int = 1
+    background: str | tuple[int, int, int] | None = None
     engine: Engine = "rtl"
     strict: bool = False
     threads: int = 0
@@ -146,12 +171,18 @@ class BuildKeywords(TypedDict, total=False):
     time: float | None
     animation: str | None
     variants: Sequence[str]
+    ignore: Sequence[str]
+    bounds: tuple[float, float, float, float, float, float] | None
+    allow_empty: bool
     allow_outside: bool
     colours: int
     budget: int | str | None
     dialect: Dialect
     preview: str | PathLike[str] | bool
     size: tuple[int, int]
+    camera: str | None
+    samples: int
+    background: str | tuple[int, int, int] | None
     engine: Engine
     strict: bool
     threads: int
@@ -180,12 +211,18 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "time": real,
         "animation": text,
         "variants": _texts,
+        "ignore": _texts,
+        "bounds": _bounds,
+        "allow_empty": flag,
         "allow_outside": flag,
         "colours": lambda name, value: whole(name, value, 1, 254),
         "budget": budget,
         "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
         "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
         "size": _pixels,
+        "camera": text,
+        "samples": _samples,
+        "background": read_background,
         "engine": lambda name, value: choice(name, value, get_args(Engine)),
         "strict": flag,
         "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
@@ -204,6 +241,27 @@ def _texts(name: str, value: object) -> tuple[str, ...]:
     if isinstance(value, str) or not isinstance(value, Iterable):
         raise TypeError(f"{name} must be a sequence of strings, not {shown(value)}")
     return tuple(text(f"{name}[{row}]", one) for row, one in enumerate(value))
+
+
+def _bounds(name: str, value: object) -> tuple[float, ...]:
+    from voxrt.voxelize.arguments import real, shown  # noqa: PLC0415
+
+    if not isinstance(value, Iterable) or len(parts := list(value)) != 6:
+        raise ValueError(f"{name} must be the lowest and the highest corner, six numbers, not {shown(value)}")
+    corners = tuple(real(f"{name}[{row}]", one) for row, one in enumerate(parts))
+    if not all(low < high for low, high in zip(corners[:3], corners[3:], strict=True)):
+        raise ValueError(f"{name} must be the lowest and then the highest corner, not {shown(value)}")
+    return corners
+
+
+def _samples(name: str, value: object) -> int:
+    from voxrt.octree.camera import SAMPLES  # noqa: PLC0415
+    from voxrt.voxelize.arguments import whole  # noqa: PLC0415
+
+    samples = whole(name, value, 1, max(SAMPLES))
+    if samples not in SAMPLES:
+        raise ValueError(f"{name} must be 1, 2 or 4, not {samples}")
+    return samples
 
 
 def _pixels(name: str, value: object) -> tuple[int, int]:

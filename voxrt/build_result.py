@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from voxrt.export import Blob, Provenance
 from voxrt.octree import census, to_dense, to_points
 
 if TYPE_CHECKING:
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voxrt.export import Source
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
@@ -49,6 +51,8 @@ class BuildResult:
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
         The author's camera and light; None if the author gave none.
+    source
+        The name of the asset, and the options of the build.
 
     Examples
     --------
@@ -74,6 +78,7 @@ class BuildResult:
     parts: dict[str, dict[str, float]] = field(default_factory=dict)
     view: Camera | None = None
     lighting: Lighting | None = None
+    source: Source | None = None
 
     def __repr__(self) -> str:
         words, count = len(self.octree.words), len(self.rom.materials) - 1
@@ -82,6 +87,12 @@ class BuildResult:
             f"<BuildResult {self.rom.name!r}: depth {self.octree.depth}, {words:,} words, {self.solid_voxels:,} solid "
             f"voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
         )
+
+    @property
+    def blob(self) -> Blob:
+        """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
+        told = Provenance(self.source, self.objects, self.warnings, self.seconds)
+        return Blob(self.rom, self.view, self.lighting, told)
 
     @property
     def octree(self) -> Octree:

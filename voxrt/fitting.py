@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree, Rom
-    from voxrt.voxelize import Scene
+    from voxrt.voxelize import Material
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -34,12 +34,16 @@ class BudgetFit:
     psnr, ssim
         How like the whole scene's picture is to that of the unfitted memory: decibel, infinite for equal pictures;
         1 for equal pictures.
+    lossless
+        Where more than a tenth of the surface was given up: the greatest depth at which the asset fits the budget
+        without loss, and its words there. None if little was given up, or no depth fits.
     """
 
     words: int
     fit: octree.Fit
     psnr: float
     ssim: float
+    lossless: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,21 +65,21 @@ class InteriorFit:
     words_before: int
 
 
-def find_material(asset: object, scene: Scene, wanted: int | str) -> int:
-    """Find the id of a material that is asked for by name or by id.
+def find_material(asset: object, materials: Sequence[Material], wanted: int | str) -> int:
+    """Find the id of a material, one of those of an asset, that is asked for by name or by id.
 
     Raises
     ------
     AssetError
-        The scene has none such.
+        None of them is it.
     """
-    names = [material.name for material in scene.materials]
+    names = [material.name for material in materials]
     if wanted in names[1:]:
         return 1 + names[1:].index(str(wanted))
     number = int(wanted) if isinstance(wanted, int) or wanted.isdecimal() else 0
     if 1 <= number < len(names):
         return number
-    there = ", ".join(f"{number} {name}" for number, name in enumerate(names[1:9], 1)) + ", ..." * (len(names) > 9)
+    there = ", ".join(f"{number} {name}" for number, name in enumerate(names[1:], 1))
     raise AssetError(
         asset, f"has no material {wanted!r} for its interior", fix=f"name one of: {there or 'it has none'}"
     )

@@ -1,19 +1,14 @@
-"""Where files may be written, and what happens when somebody interrupts."""
+"""Where files may be written."""
 
 from __future__ import annotations
 
 import os
-import signal
-import threading
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-    from types import FrameType
-
-_INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 
 class OutputError(Exception):
@@ -39,38 +34,19 @@ def check_folder(folder: Path) -> None:
 
 @contextmanager
 def writing(target: Path) -> Iterator[None]:
-    """Say of an error of the operating system which output it hit.
+    """Make the folder of an output, and say of an error of the operating system which output it hit.
+
+    A folder that was made goes again if the block fails.
 
     Raises
     ------
     OutputError
         Instead of the OSError of the block.
     """
+    from voxrt.export.atomic import new_folder  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
     try:
-        yield
+        with new_folder(target.parent):
+            yield
     except OSError as error:
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}; name another place") from error
-
-
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Hold back SIGINT and SIGTERM until the block is done, then let the last one through.
-
-    For the moments in which several files change places: who interrupts finds all of the old ones or all of the new.
-    """
-    if threading.current_thread() is not threading.main_thread():  # signals never arrive elsewhere
-        yield
-        return
-    held: list[int] = []
-
-    def hold(number: int, _frame: FrameType | None) -> None:
-        held.append(number)
-
-    before = {number: signal.signal(number, hold) for number in _INTERRUPTS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        if held:
-            signal.raise_signal(held[-1])

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import sim
+from voxrt.backgrounds import read_background
 from voxrt.build_options import PREVIEW_SIZE
 from voxrt.octree import Rom
-from voxrt.octree.camera import CAMERA_LIGHT
+from voxrt.octree.camera import PLAIN_LIGHTING
 from voxrt.outputs import OutputError, check_folder, writing
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.sim import Engine, Frame
+    from voxrt.sim import Background, Dram, Engine, Frame
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -61,6 +62,8 @@ def render(
     engine: Engine = "rtl",
     config: str = "tiny",
     lighting: Lighting | None = None,
+    samples: int = 1,
+    background: Background | str | None = None,
     threads: int = 0,
     dram: Dram | None = None,
 ) -> Frame:
@@ -80,8 +83,12 @@ def render(
     config
         The configuration of the ray tracer for ``"rtl"``.
     lighting
-        Light, mirrors and flat colours. The ray tracer needs a configuration that has them. None lights the scene from
-        the camera.
+        Brightness of faces, light and mirrors. For light and mirrors the ray tracer needs a configuration that has
+        them. None takes the default brightness of faces.
+    samples
+        Rays per pixel on each axis, 1, 2 or 4, averaged in linear light.
+    background
+        ``"light"``, ``"dark"``, ``"transparent"``, ``"#rrggbb"``, or sRGB, 0 … 255 each. None takes the memory's.
     threads
         Threads of the model; 0 takes one per core.
     dram
@@ -90,7 +97,8 @@ def render(
     Returns
     -------
     Frame
-        The pixels: ``colour`` (uint8, shape (H, W, 3), sRGB), ``material`` and ``face``, and what they cost.
+        The pixels: ``colour`` (uint8, shape (H, W, 3), sRGB; (H, W, 4) on a transparent background), ``material`` and
+        ``face``, and what they cost.
 
     Raises
     ------
@@ -113,7 +121,9 @@ def render(
         camera or aim_camera(rom, size),
         size,
         engine=engine,
-        lighting=lighting or CAMERA_LIGHT,
+        lighting=lighting or PLAIN_LIGHTING,
+        samples=samples,
+        background=None if background is None else read_background("background", background),
         config=config,
         threads=threads,
         dram=dram,
@@ -126,7 +136,7 @@ def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     colour
-        uint8, shape (H, W, 3), sRGB.
+        uint8, shape (H, W, 3), sRGB, or (H, W, 4) with the opacity.
     path
         The file. Its folder is made if it is missing.
 
@@ -142,11 +152,11 @@ def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:
     >>> import numpy as np, voxrt
     >>> voxrt.save_picture(np.zeros((48, 64, 3), np.uint8), "black.png")
     """
-    pixels = whole_array("colour", colour, ("H", "W", 3), np.uint8, low=0, high=255)
+    channels = 4 if np.shape(colour)[-1:] == (4,) else 3
+    pixels = whole_array("colour", colour, ("H", "W", channels), np.uint8, low=0, high=255)
     path = Path(path)
     check_folder(path.parent)
     if path.is_dir():
         raise OutputError(f"{path}: is a folder; name a file")
     with writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
         sim.write_png(path, pixels)

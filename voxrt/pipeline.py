@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.asset_source import as_text, asset_name, load_asset
+from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
+from voxrt.estimate import estimate_build
+from voxrt.export.atomic import write_together
 from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
-from voxrt.outputs import check_folder, uninterrupted, writing
-from voxrt.pictures import Picture, render, save_picture
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting
+from voxrt.object_selection import crowded_out, refuse_empty, without_objects
+from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
+from voxrt.outputs import writing
+from voxrt.pictures import Picture, render
+from voxrt.sim import SimulatorError
+from voxrt.sim.image import encode_png
+from voxrt.viewpoint import (
+    ViewpointError,
+    aim_camera,
+    authored_camera,
+    authored_lighting,
+    named_camera,
+    stands_inside,
+)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -28,10 +41,15 @@ if TYPE_CHECKING:
 
     from voxrt.asset_source import Asset
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
+    from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.voxelize import Grid, Voxelization
+    from voxrt.voxelize import Grid, Viewpoint, Voxelization
+
+
+_MUCH = 10
+"""Percent of the surface that a budget may take without a word about it."""
 
 
 def build(
@@ -40,6 +58,7 @@ def build(
     options: BuildOptions | None = None,
     *,
     progress: Callable[[str], None] | None = None,
+    estimated: Callable[[BuildEstimate], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build the octree memory of an asset, and write it with its manifest and its preview.
@@ -50,12 +69,14 @@ def build(
         A glTF, OBJ, USD, STL or PLY file, or a scene of some (.toml); a mesh or a scene of trimesh; vertices and faces
         as arrays, ``(vertices, faces)``; a :class:`Scene`.
     output
-        Folder for ``NAME.mem`` and ``NAME.json``. It is made if it is missing. None writes neither. NAME is the name
-        of the file or of the scene.
+        Folder for ``NAME.mem`` and ``NAME.json``, where NAME is the name of the file or of the scene; or the file of
+        words itself, such as ``yard.mem`` or ``yard.coe``. Folders are made if they are missing. None writes neither.
     options
         How to build; None for the defaults.
     progress
         Called with the name of each stage as it begins.
+    estimated
+        Called with what the build will take, once the scene is loaded and its grid is known.
     **keywords
         The options of :class:`BuildOptions` by name. They take precedence over `options`.
 
@@ -73,9 +94,11 @@ def build(
     DoesNotFitError
         The asset is sound but too large.
     OutputError
-        A file cannot be written. Old files stay as they were.
+        A file cannot be written, or the folder has files of the same name that were built from another asset. Old
+        files stay as they were.
     SimulatorError
-        The preview cannot be rendered. The memory and the manifest are complete by then.
+        The preview cannot be rendered. The memory and the manifest are complete by then; an older preview is removed,
+        for it shows another memory.
 
     Examples
     --------
@@ -93,48 +116,40 @@ def build(
         raise TypeError(f"build() has no option {unknown[0]!r}; it has {', '.join(names)}")
     if keywords:
         options = replace(options, **keywords)
-    name = asset_name(asset)
-    picture_file = _picture_file(name, output, options)
+    files = output_files(asset_name(asset), output, options.preview)
+    source = as_text(Path(asset).name if isinstance(asset, str | os.PathLike) else files.name)
+    if files.words is not None and not files.named:
+        refuse_other_asset(files.words, source)
     clock = _Clock(progress)
     with clock.stage("load"):
-        scene = load_asset(asset, options)
-    _refuse_warnings(asset, scene, scene.warnings, options)
-    scene, grid, voxelization = _voxelize(scene, options, clock)
+        loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
+        if options.camera is not None:
+            viewpoint = named_camera(asset_label(asset), loaded, options.camera)
+            loaded = replace(loaded, viewpoint=viewpoint)
+    _refuse_warnings(asset, loaded.warnings, options)
+    scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
+    if not options.allow_empty:
+        refuse_empty(asset_label(asset), grid, voxelization)
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
-        rom = octree.Rom(name, tree, scene.materials, grid)
-    rom, interior_fit, budget_fit = _made_smaller(rom, asset, scene, options, clock)
-    view, lighting, unseen = _authored(scene, grid)
-    warnings = scene.warnings + voxelization.warnings + unseen
-    _refuse_warnings(asset, scene, warnings, options)
-    outputs: dict[str, Path] = {}
-    if output is not None:
-        source = asset if isinstance(asset, str | os.PathLike) else name
-        with clock.stage("write"), writing(Path(output)), uninterrupted():
-            files = export.write_rom(
-                Path(output),
-                rom,
-                dialect=options.dialect,
-                objects=voxelization.objects,
-                warnings=warnings,
-                seconds=clock.seconds,
-                source=export.Source(as_text(Path(source).name), _settings(options)),
-                view=view,
-                lighting=lighting,
-            )
-        outputs |= {"mem": files.mem, "manifest": files.manifest}
-    picture = None
-    if picture_file is not None:
+        rom = octree.Rom(files.name, tree, scene.materials, grid)
+    rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
+    view, lighting, unseen = _authored(scene, rom)
+    warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
+    _refuse_warnings(asset, warnings, options)
+    picture, unseen_picture = None, None
+    if files.preview is not None:
         with clock.stage("preview"):
-            picture = _picture(rom, scene, lighting, options)
-            save_picture(picture.frame.colour, picture_file)
-            outputs["preview"] = picture_file
-    return BuildResult(
+            try:
+                picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
+            except (SimulatorError, ViewpointError) as error:
+                unseen_picture = error  # the memory is sound: it is written first
+    result = BuildResult(
         rom,
         scene,
         voxelization.objects,
         warnings,
-        outputs,
+        {},
         picture,
         interior_fit,
         budget_fit,
@@ -142,7 +157,15 @@ def build(
         {"voxelize": voxelization.seconds},
         view,
         lighting,
+        export.Source(source, _settings(options)),
     )
+    with clock.stage("write"):
+        result.outputs.update(_write(files, result, options))
+    if picture is not None:  # what programs read keeps its order
+        clock.seconds["preview"] = clock.seconds.pop("preview")
+    if unseen_picture is not None:
+        raise unseen_picture
+    return result
 
 
 def voxelize_mesh(
@@ -212,12 +235,19 @@ class _Clock:
         self.seconds[name] = perf_counter() - start
 
 
-def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene, Grid, Voxelization]:
+def _voxelize(
+    scene: Scene, options: BuildOptions, clock: _Clock, estimated: Callable[[BuildEstimate], None] | None
+) -> tuple[Scene, Grid, Voxelization]:
     """Fit a grid, reduce colours to materials, voxelize."""
     depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
     geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
-        grid = voxelize.fit_grid(scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2)
+        corners = None if options.bounds is None else (options.bounds[:3], options.bounds[3:])
+        grid = voxelize.fit_grid(
+            scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
+        )
+    if estimated is not None:
+        estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
     with clock.stage("voxelize"):
@@ -228,20 +258,32 @@ def _voxelize(scene: Scene, options: BuildOptions, clock: _Clock) -> tuple[Scene
 
 
 def _made_smaller(
-    rom: Rom, asset: Asset, scene: Scene, options: BuildOptions, clock: _Clock
+    rom: Rom, asset: Asset, loaded: Scene, options: BuildOptions, clock: _Clock
 ) -> tuple[Rom, InteriorFit | None, BudgetFit | None]:
     """Give hidden voxels their material and fit the budget, if that is asked for."""
     interior_fit, budget_fit = None, None
     interior, budget = options.interior, options.budget
     if interior != "keep":
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(_label(asset, scene), scene, interior)
+            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
     if budget is not None:
         with clock.stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
             rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            if budget_fit.fit.percent_changed > _MUCH:
+                budget_fit = replace(budget_fit, lossless=_lossless_depth(loaded, options, rom.octree.depth, words))
     return rom, interior_fit, budget_fit
+
+
+def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int) -> tuple[int, int] | None:
+    """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
+    for lesser in range(depth - 1, 0, -1):
+        whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
+        size = len(build(loaded, options=whole).octree.words)
+        if size <= words:
+            return lesser, size
+    return None
 
 
 def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
@@ -256,24 +298,49 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "time": options.time,
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
+        "ignore": ", ".join(options.ignore) or None,
+        "bounds": None if options.bounds is None else ",".join(f"{value:g}" for value in options.bounds),
         "colours": options.colours,
     }
 
 
-def _picture_file(name: str, output: str | os.PathLike[str] | None, options: BuildOptions) -> Path | None:
-    """Check that the folders can be written to, and return the file of the preview; None for none."""
-    if output is not None:
-        check_folder(Path(output))
-    if not options.preview:
-        return None
-    file = Path(output or ".") / f"{name}.preview.png" if options.preview is True else Path(options.preview)
-    check_folder(file.parent)
-    return file
+def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
+    """Write the set of files, all of it or nothing, and return the files by kind."""
+    pictures: dict[Path, bytes | None] = {}
+    if files.preview is not None:
+        pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
+    outputs: dict[str, Path] = {}
+    with ExitStack() as stack:
+        for path in (*pictures, files.words):
+            if path is not None:
+                stack.enter_context(writing(path))
+        if files.words is None:
+            if result.preview is not None:
+                write_together(pictures)
+        else:
+            written = export.write_rom(
+                files.words.parent,
+                result.rom,
+                stem=files.words.stem,
+                suffix=files.words.suffix,
+                dialect=options.dialect,
+                objects=result.objects,
+                warnings=result.warnings,
+                seconds=result.seconds,
+                source=result.source,
+                view=result.view,
+                lighting=result.lighting,
+                beside=pictures,
+            )
+            outputs = {"mem": written.mem, "manifest": written.manifest}
+    if files.preview is not None and result.preview is not None:
+        outputs["preview"] = files.preview
+    return outputs
 
 
-def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    if scene.viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(scene.viewpoint, rom.grid, options.size)
+def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    if viewpoint is not None and rom.grid is not None:
+        camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
         camera = aim_camera(rom, options.size)
     frame = render(
@@ -281,21 +348,30 @@ def _picture(rom: Rom, scene: Scene, lighting: Lighting | None, options: BuildOp
         camera,
         size=options.size,
         engine=options.engine,
-        config="tiny" if lighting is None else "lit",
+        config="lit" if lighting is not None and lighting.features else "tiny",
         lighting=lighting,
+        samples=options.samples,
+        background=options.background,
         threads=options.threads,
     )
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this grid, and a warning for each that the registers cannot hold."""
+def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used."""
     view, lighting, unseen = None, None, []
+    grid = rom.grid
+    assert grid is not None
     if scene.viewpoint is not None:
         try:
             view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
         except ViewpointError as error:
             unseen.append(SceneWarning("camera", str(error)))
+    if view is not None and stands_inside(rom, view):
+        unseen.append(
+            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
+        )
+        view = None
     try:
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
@@ -303,17 +379,10 @@ def _authored(scene: Scene, grid: Grid) -> tuple[Camera | None, Lighting | None,
     return view, lighting, tuple(unseen)
 
 
-def _label(asset: Asset, scene: Scene) -> str:
-    """Return what errors call an asset: the file's path, else the scene's name."""
-    return os.fspath(asset) if isinstance(asset, str | os.PathLike) else scene.name
-
-
-def _refuse_warnings(asset: Asset, scene: Scene, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
+def _refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
     """Raise AssetError for the first warning of a build that is strict."""
     if warnings and options.strict:
         first, *others = warnings
         kinds = sorted({warning.kind for warning in others})
         more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
-        raise AssetError(
-            _label(asset, scene), f"{first.message}{more}", fix="correct the asset, or build without strict"
-        )
+        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree import Rom
+from voxrt.octree import Rom, material_at
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
 from voxrt.sim import frame_scene, outline
+from voxrt.voxelize import AssetError
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
@@ -117,18 +118,59 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
     Raises
     ------
     ViewpointError
-        The eye is its own target, is straight above or below it, or is too far away for the registers.
+        The camera is too far away for the registers, or its `up` points along the line of sight.
+
+    Examples
+    --------
+    A camera that looks straight down has the scene's -z axis at the top of its picture, as a map:
+
+    >>> from voxrt.voxelize import Grid, Viewpoint
+    >>> camera = authored_camera(Viewpoint((4, 9, 4), (4, 0, 4)), Grid(3, (0, 0, 0), 1.0), (64, 48))
+    >>> camera.look[:1], camera.up[0], camera.up[2] < 0
+    ((0,), 0, True)
     """
     eye, target = ((np.array(point) - grid.origin) / grid.voxel_size for point in (viewpoint.eye, viewpoint.target))
-    wanted = {}
+    wanted: dict[str, float] = {}
     if viewpoint.field_of_view is not None:
         # Theirs is from top to bottom, look_at's across the shorter side.
         height = 2 * np.tan(np.radians(viewpoint.field_of_view) / 2)
         wanted["field_of_view"] = float(np.degrees(2 * np.arctan(height * min(size) / size[1] / 2)))
+    up = _upright(_unit(target - eye, "the line of sight")) if viewpoint.up is None else np.array(viewpoint.up)
     try:
-        return look_at(eye, target, size=size, **wanted)
+        return look_at(eye, target, size=size, up=up, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
+
+
+def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
+    """Return the author's camera with a name, or with a number, counted from 0.
+
+    Raises
+    ------
+    AssetError
+        The scene has no such camera; `label` is what the message calls it.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import EMPTY, Scene, Viewpoint
+    >>> cameras = Viewpoint((1, 1, 1), (0, 0, 0), name="left"), Viewpoint((9, 1, 1), (0, 0, 0), name="right")
+    >>> named_camera("yard", Scene("yard", (), (EMPTY,), cameras=cameras), "right").eye
+    (9.0, 1.0, 1.0)
+    """
+    found = [camera for camera in scene.cameras if camera.name == name]
+    if not found and name.isdecimal() and int(name) < len(scene.cameras):
+        found = [scene.cameras[int(name)]]
+    if not found:
+        names = ", ".join(camera.name or str(number) for number, camera in enumerate(scene.cameras))
+        there, fix = (f"there are {names}", "name one of these") if names else ("it has none", "leave it out")
+        raise AssetError(label, f"there is no camera {name!r}: {there}", fix=fix)
+    return found[0]
+
+
+def stands_inside(rom: Rom, camera: Camera) -> bool:
+    """Tell whether a camera stands inside a solid voxel: its picture would show nothing else."""
+    voxel = [[place >> 4 for place in camera.position]]
+    return bool(material_at(rom.octree, voxel)[0])
 
 
 def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
@@ -174,8 +216,7 @@ def _complete(
     """Return all registers: missing ones as of an upright right-handed camera that looks along `sight`."""
     given = up if right is None else right
     if given is None:  # look alone is a direction
-        upright = _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])
-        made = look_at(np.zeros(3), sight, size=size, up=upright)
+        made = look_at(np.zeros(3), sight, size=size, up=_upright(sight))
         return made.look, made.right, made.up
     across = _unit(right if right is not None else np.cross(sight, given), "right" if right else "look x up")
     above = np.cross(across, sight)
@@ -186,6 +227,11 @@ def _complete(
         right or _register(across * step),
         up or _register(above * step),
     )
+
+
+def _upright(sight: Vector) -> Vector:
+    """Return what points up in the picture of a camera along a unit vector: y, or -z or z along a vertical one."""
+    return _UP if abs(sight[1]) < 1 - 1e-9 else _BACK * np.sign(-sight[1])
 
 
 def _unit(vector: ArrayLike, name: str) -> Vector:

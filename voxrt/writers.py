@@ -113,7 +113,6 @@ def convert(memory: Blob | Rom, target: str | os.PathLike[str], *, dialect: str 
         raise RomError(f"{path}: is not a format to write; name one of {', '.join(WRITABLE_SUFFIXES)}")
     check_folder(path.parent)
     with writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
         if suffix not in PANE_WRITERS:
             return export.convert(blob, path, dialect=dialect)
         PANE_WRITERS[suffix](path, Pane(blob.rom))

@@ -30,8 +30,9 @@ materials = [
 ]
 rom = octree.Rom(built.name, built.octree, tuple(materials))
 camera = level_camera(rom, size[0])
-hardware = sim.render(rom, camera, size, engine="rtl")
-model = sim.render(rom, camera, size, engine="model")
+as_in_the_report = sim.Lighting(faces=None)
+hardware = sim.render(rom, camera, size, engine="rtl", lighting=as_in_the_report)
+model = sim.render(rom, camera, size, engine="model", lighting=as_in_the_report)
 with Original(as_published=False) as program:
     _, original = program.render(rom, camera, size)
 

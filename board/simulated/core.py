@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _FRAME_LIMIT = 4095
 _PAUSE_CLOCKS = 1 << 15
+_PIXEL_SECONDS = 1e-3
 
 
 def open_rtl(config: str = "lit") -> RegisterDevice:
@@ -33,7 +34,9 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
         raise NoSuchConfigurationError(config, module.CORES)
     core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
-    return RegisterDevice(f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause)
+    return RegisterDevice(
+        f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
+    )
 
 
 class _MemoryPort:

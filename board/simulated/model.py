@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
-from voxrt.board.errors import DeviceError
+from voxrt.board.errors import DeviceError, TooSlow
 from voxrt.board.scene import EMPTY_LEAF
 from voxrt.board.view import FEATURES
 from voxrt.sim import _model
@@ -22,6 +23,7 @@ MODEL_CAPACITY = 1 << 25
 """Words of the model's memory."""
 
 _FRAME_LIMIT = 4095
+_PIXEL_SECONDS = 2e-6
 
 
 class _Memory:
@@ -89,10 +91,12 @@ class ModelDevice:
             size=(_FRAME_LIMIT, _FRAME_LIMIT),
             position_limit=1 << 31,
             features=frozenset(FEATURES),
+            pixel_seconds=_PIXEL_SECONDS,
         )
         self._memory = _Memory(capacity)
         self._view: View | None = None
         self._threads = threads
+        self._stop = _model.Stop()
         self._model = _model.Memory(self._memory.octree(), self._memory.depth)
 
     @property
@@ -135,8 +139,8 @@ class ModelDevice:
         except ValueError as error:
             raise DeviceError(f"the model refuses the memory: {error}") from error
 
-    def frame(self, view: View) -> Frame:
-        """Render one frame of `view`."""
+    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+        """Render one frame of `view`, within `seconds`."""
         started = time.perf_counter()
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
         try:
@@ -146,16 +150,27 @@ class ModelDevice:
                 *view.size,
                 self._threads,
                 flat=view.lighting.flat,
+                brightness=None if view.lighting.faces is None else np.array(view.lighting.faces, dtype=np.uint8),
                 light=np.array(view.lighting.position, dtype=np.int32) if view.lighting.on else None,
                 ambient=view.lighting.ambient,
                 bounces=view.lighting.bounces,
                 mirrors=self._memory.mirrors,
+                seconds=seconds,
+                stop=self._stop,
             )
+        except TimeoutError as error:
+            raise TooSlow(f"the frame took more than {seconds:.1f} s") from error
+        except InterruptedError as error:
+            raise DeviceError("the frame was stopped") from error
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
         self._view = view
         counters = Counters(view.size[0] * view.size[1], None, None, time.perf_counter() - started)
         return Frame(pixels.colour, counters)
+
+    def stop(self) -> None:
+        """End the frame in progress, and all further ones."""
+        self._stop.set()
 
     def close(self) -> None:
         """Do nothing: the model holds no resources."""

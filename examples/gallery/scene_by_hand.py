@@ -20,7 +20,7 @@ built = voxrt.build(EXAMPLES / "playground.toml", depth=7)
 print(f"{len(built.objects)} objects, {built.solid_voxels:,} voxels, {len(built.rom.octree.words):,} words")
 
 # %%
-# Rendered by the simulated hardware. The light is at the camera. Every clock cycle is counted.
+# Rendered by the simulated hardware. Each side of a block has its own brightness. Every clock cycle is counted.
 size = (480, 360)
 camera = sim.look_at((130, 80, 160), (58, 20, 64), size=size)
 plain = sim.render(built.rom, camera, size, engine="rtl")
@@ -29,7 +29,7 @@ print(f"{cost.cycles / cost.rays:.2f} cycles per pixel, {cost.words_read / cost.
 
 # %%
 # With a light that casts shadows. The ball is a mirror. ``docs/shading.md`` defines every colour exactly.
-lighting = sim.Lighting((16 * 96, 16 * 150, 16 * 190), ambient=48, on=True, bounces=4)
+lighting = sim.Lighting((16 * 96, 16 * 150, 16 * 190), on=True, bounces=4)
 lit = sim.render(built.rom, camera, size, engine="model", lighting=lighting)
 
 picture = np.concatenate([plain.colour, lit.colour], axis=1)

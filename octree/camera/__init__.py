@@ -5,19 +5,26 @@ Needs NumPy and Python 3.10 alone: the boards' own package takes this folder too
 
 from .aim import FIELD_OF_VIEW, THREE_QUARTER, eye_that_sees, focal_length, frame_points, frame_world, look_at, refit
 from .camera import DIRECTION_LIMIT, POSITION_UNITS, Camera, Triple, camera_from_registers, pixel_directions
-from .lighting import BOUNCE_LIMIT, CAMERA_LIGHT, FEATURES, Lighting
+from .lighting import BOUNCE_LIMIT, FACES, FEATURES, PLAIN_LIGHTING, Faces, Lighting, Shading
+from .samples import SAMPLES, average_cut_out, average_samples, sample_cameras
 
 __all__ = [
     "BOUNCE_LIMIT",
-    "CAMERA_LIGHT",
     "DIRECTION_LIMIT",
+    "FACES",
     "FEATURES",
     "FIELD_OF_VIEW",
+    "PLAIN_LIGHTING",
     "POSITION_UNITS",
+    "SAMPLES",
     "THREE_QUARTER",
     "Camera",
+    "Faces",
     "Lighting",
+    "Shading",
     "Triple",
+    "average_cut_out",
+    "average_samples",
     "camera_from_registers",
     "eye_that_sees",
     "focal_length",
@@ -26,4 +33,5 @@ __all__ = [
     "look_at",
     "pixel_directions",
     "refit",
+    "sample_cameras",
 ]

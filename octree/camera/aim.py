@@ -17,7 +17,7 @@ FIELD_OF_VIEW = 35.0
 THREE_QUARTER = (-0.62, -0.68, -1.0)
 """The look of a camera at a scene's front (+z), from its right and above."""
 
-_MARGIN = 0.04  # of the frame's side, left free on each side by eye_that_sees
+_MARGIN = 0.085  # of the frame's side, left free on each side by eye_that_sees
 
 
 def look_at(

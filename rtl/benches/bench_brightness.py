@@ -26,15 +26,24 @@ def some_place(side, face):
     return place
 
 
-def some_pixel(dut, side, light, ambient, flat):
+def some_pixel(dut, side, light, shading):
     """Make a pixel and what shall be said of it: whether part and sums are given, part / whole, the sums."""
+    ambient, flat, faces = shading
     payload = len(dut.detail_i) - 2
     shades = [ANGLE] + int(dut.Mirrors.value) * [MEAN] + 2 * int(dut.Light.value) * [LIGHT]
     face, shade, lit = random.randrange(3), random.choice(shades), random.randrange(2)
     pixel = random.randrange(256) << 2 | face
     item = {"pixel_i": pixel, "lit_i": lit}
     if shade == ANGLE:
-        return item | {"detail_i": random.randrange(1 << payload)}, (pixel, 0, 0)
+        detail = random.randrange(1 << payload)
+        if flat or faces:
+            return item | {"detail_i": detail}, (
+                pixel,
+                1,
+                0,
+                of_face(flat, faces, face, detail >> mirrored_at(dut) + face & 1),
+            )
+        return item | {"detail_i": detail}, (pixel, 0, 0)
     if shade == MEAN:
         count = random.randint(1, 16)
         sums = packed(*((random.randint(0, 255 * count), SUM) for _ in range(3)))
@@ -44,10 +53,23 @@ def some_pixel(dut, side, light, ambient, flat):
     direction = [2 * at - own for at, own in zip(light, lit_point(place, mirrored, face, side), strict=True)]
     lit = item["lit_i"] = lit and any(direction)
     part = Fraction(ambient, 256)
-    if lit:
-        part = Fraction(1) if flat else max(part, Fraction(direction[face] ** 2, sum(d * d for d in direction)))
+    if flat or faces:
+        own = of_face(flat, faces, face, mirrored >> face & 1)
+        part = own if lit else own * part
+    elif lit:
+        part = max(part, Fraction(direction[face] ** 2, sum(d * d for d in direction)))
     detail = packed((LIGHT, 2), (0, payload - 3 - 3 * PLACE), (mirrored, 3), *((p, PLACE) for p in reversed(place)))
     return item | {"detail_i": detail}, (pixel, 1, 0, part)
+
+
+def mirrored_at(dut):
+    """Give the bit of a pixel's detail from which on it has the mirrored axes."""
+    return 3 * PLACE * int(dut.Light.value)
+
+
+def of_face(flat, faces, face, upper):
+    """Give the brightness of a face."""
+    return Fraction(1) if flat else Fraction(faces[3 * upper + face], 255)
 
 
 def seen(dut):
@@ -68,8 +90,11 @@ def begin(dut):
     reach = random.choice([16 * side, 1 << 18])
     light = [random.randint(-reach, reach) for _ in range(3)]
     ambient, flat = random.choice([0, 255, random.randrange(256)]), random.random() < 0.2
-    drive(dut, side_i=side, light_i=packed_array(light, 32), shading_i=SHADING.pack(flat=flat, ambient=ambient))
-    return lambda: some_pixel(dut, side, light, ambient, flat)
+    brightness = [random.choice([0, 255, random.randrange(256)]) for _ in range(6)]
+    faces = brightness if random.random() < 0.5 else None
+    shading = SHADING.pack(flat=flat, faces=faces is not None, brightness=brightness, ambient=ambient)
+    drive(dut, side_i=side, light_i=packed_array(light, 32), shading_i=shading)
+    return lambda: some_pixel(dut, side, light, (ambient, flat, faces))
 
 
 @cocotb.test()

@@ -16,7 +16,7 @@ from voxrt_registers import MATERIALS, REGISTERS
 COLOURS = np.random.default_rng(4).integers(0, 256, (256, 3), dtype=np.uint8)
 MIRRORS = frozenset({2, 255})
 # What the oracle is told, and the feature that it belongs to.
-FEATURES = {"flat": "flat", "light": "light", "ambient": "light", "bounces": "mirrors", "mirrors": "mirrors"}
+FEATURES = {"light": "light", "ambient": "light", "bounces": "mirrors", "mirrors": "mirrors"}
 CAMERA = np.array([[-60, 150, -70], [90, -70, 100], [9, 0, -9], [1, 9, 2]], np.int32)
 
 
@@ -107,7 +107,8 @@ class Core:
         dut.bram_we_i.value = 0
 
     async def set_frame(self, camera, width, height, depth):
-        """Write camera, size and depth."""
+        """Write camera, size and depth; brightness by the angle, no light, no mirrors."""
+        await self.write("shading")
         await self.write("size", width=width, height=height)
         await self.write("depth", depth=depth)
         for name, row in zip(("position", "look", "right", "up"), camera.tolist(), strict=True):
@@ -118,6 +119,11 @@ class Core:
         """Write the light's position."""
         for axis in range(3):
             await self.write(f"light[{axis}]", value=position[axis])
+
+    async def set_faces(self, brightness):
+        """Write the brightness of the faces along -x, +x, -y, +y, -z, +z."""
+        for name, values in (("lower_faces", brightness[::2]), ("upper_faces", brightness[1::2])):
+            await self.write(name, **dict(zip("xyz", values, strict=True)))
 
     async def write_mirrors(self):
         """Write the materials of scenes, those of MIRRORS as mirrors."""
@@ -479,9 +485,11 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
     """Shading is latched at the frame's start; a core without a feature shows none, and says so."""
     core = Core(dut)
     await core.start()
-    features = {name for name in ("flat", "light", "mirrors") if await core.read("features", name)}
-    parameters = {"flat": dut.Flat, "light": dut.Light, "mirrors": dut.Mirrors}
+    features = {name for name in ("light", "mirrors") if await core.read("features", name)}
+    parameters = {"light": dut.Light, "mirrors": dut.Mirrors}
     assert features == {name for name, built in parameters.items() if int(built.value)}
+    assert await core.read("features", "flat")
+    assert await core.read("features", "faces")
     voxels = scene(8)
     await core.load(words_of(voxels))
     await core.write_mirrors()
@@ -492,19 +500,23 @@ async def light_and_mirrors_written_during_a_frame_show_in_the_next(dut):
         {"bounces": 3, "mirrors": MIRRORS},
         {"light": (70, 60, 50), "ambient": 7, "flat": True, "bounces": 15, "mirrors": MIRRORS},
         {"light": (-40, 200, 30), "bounces": 1, "mirrors": MIRRORS},
+        {"faces": (1, 40, 99, 255, 200, 0)},
+        {"faces": (9, 40, 255, 70, 200, 128), "light": (-40, 200, 30), "ambient": 90, "bounces": 2, "mirrors": MIRRORS},
         {},
     ]
     for look, following in itertools.pairwise([{}, *looks, {}]):
         # What is written now is the next frame's.
         await core.write("control", start=1)
         await core.set_light(following.get("light", (0, 0, 0)))
+        await core.set_faces(following.get("faces", (77,) * 6))
         await core.write(
             "shading",
             flat="flat" in following,
+            faces="faces" in following,
             light="light" in following,
             ambient=following.get("ambient", 0),
             bounces=following.get("bounces", 0),
         )
         await core.wait()
-        built = {name: value for name, value in look.items() if FEATURES[name] in features}
+        built = {name: value for name, value in look.items() if name not in FEATURES or FEATURES[name] in features}
         np.testing.assert_array_equal(core.picture(14, 11), shaded(voxels, 14, 11, **built))

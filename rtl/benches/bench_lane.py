@@ -11,7 +11,7 @@ from math import floor
 
 import cocotb
 import numpy as np
-from bench_brightness import ANGLE, LIGHT, MEAN, lit_point
+from bench_brightness import ANGLE, LIGHT, MEAN, lit_point, mirrored_at
 from cocotb.triggers import ClockCycles, RisingEdge
 from oracles.memory import words_of
 from oracles.ray import FACE_NONE, shade
@@ -167,7 +167,7 @@ class Surroundings:
         colour = self.shader.palette[material]
         kind = stored >> len(self.dut.result_pixel_o) - 2 if len(self.dut.result_pixel_o) > 10 else ANGLE
         if kind == ANGLE:
-            return tuple(colour) if self.shader.flat else shade(colour, direction, face), material, face
+            return self.by_face_or_angle(colour, direction, face, detail), material, face
         if kind == MEAN:
             count = detail % (1 << COUNT)
             sums = [detail >> COUNT + SUM * channel & (1 << SUM) - 1 for channel in range(3)]
@@ -178,8 +178,25 @@ class Surroundings:
             point = lit_point(*hit_point(stored), face, SIDE)
             direction = [2 * at - own for at, own in zip(self.shader.light, point, strict=True)]
             square, total = direction[face] ** 2, sum(d * d for d in direction)
-            part = Fraction(1) if self.shader.flat else max(part, Fraction(square, total))
+            part = max(part, Fraction(square, total))
+        if self.shader.flat or self.shader.faces:
+            own = self.of_face(face, hit_point(stored)[1])
+            part = own if self.lit[tag] else own * Fraction(self.shader.ambient, 256)
         return tuple(floor(channel * part + Fraction(1, 2)) for channel in colour), material, face
+
+    def by_face_or_angle(self, colour, direction, face, detail):
+        """Give the colour of a pixel that is not lit; where rays are mirrored, `detail` has on which axes."""
+        if face == FACE_NONE or not (self.shader.flat or self.shader.faces):
+            return shade(colour, direction, face)
+        mirrored = sum((d < 0) << axis for axis, d in enumerate(direction))
+        if len(self.dut.result_pixel_o) > 10:
+            mirrored = detail >> mirrored_at(self.dut)
+        part = self.of_face(face, mirrored)
+        return tuple(floor(channel * part + Fraction(1, 2)) for channel in colour)
+
+    def of_face(self, face, mirrored):
+        """Give the brightness of a face."""
+        return Fraction(1) if self.shader.flat else Fraction(self.shader.faces[2 * face + (mirrored >> face & 1)], 255)
 
 
 def hit_point(stored):
@@ -212,7 +229,8 @@ def into_the_world(position):
 async def some_shader(dut):
     """Set what a frame's shading is, of what is built in; give the same to the oracle."""
     palette = [[random.choice([0, 255, random.randrange(256)]) for _ in range(3)] for _ in range(256)]
-    shader = Shader(palette, flat=random.random() < 0.3)
+    faces = tuple(random.randrange(256) for _ in range(6)) if random.random() < 0.5 else None
+    shader = Shader(palette, flat=random.random() < 0.3, faces=faces)
     if int(dut.Mirrors.value):
         shader.bounces = random.choice([0, 1, 1, 3, 15])
         shader.mirrors = frozenset(random.choice([[5], [5, 9], [*MATERIALS]]))

@@ -10,7 +10,7 @@ from bench_ray_generator import expected as directions_of
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from oracles.ray import FACE_NONE, shade
 from streams import PACES, drive, exchange, reset_on_the_way, start
-from structs import MATERIAL_WRITE, SHADED_PIXEL
+from structs import MATERIAL_WRITE, SHADED_PIXEL, SHADING
 
 SQUARE, SUM = 40, 12
 OUTPUT = {"valid": "pixel_valid_o", "ready": "pixel_ready_i"}
@@ -47,15 +47,36 @@ def given(kind):
     return packed(*fields), sums, Fraction(1, count)
 
 
-def some_pixels(frame, colours, flat):
+def kinds_of(dut):
+    """Name what voxrt_brightness may say, if it is there; then those of faces are its own."""
+    return ["angle", "angle", "part", "mean"] if int(dut.Given.value) else ["angle"]
+
+
+def some_shading(dut):
+    """Make a frame's shading: flat, six brightnesses or None."""
+    flat, by_face = random.random() < 0.3, not int(dut.Given.value) and random.random() < 0.5
+    faces = [random.choice([0, 255, random.randrange(256)]) for _ in range(6)]
+    return flat, faces if by_face else None
+
+
+def shading_of(flat, faces):
+    """Pack what `some_shading` gives; those of faces that look along +axis are higher."""
+    return SHADING.pack(
+        flat=flat, faces=faces is not None, brightness=[*(faces or [7] * 6)[::2], *(faces or [7] * 6)[1::2]]
+    )
+
+
+def some_pixels(frame, colours, flat, faces, kinds):
     """Make a frame's pixels and what shall come of them."""
     items, wanted = [], []
     for direction, first, line_end, last in directions_of(*frame):
         material = random.randrange(256)
         face = random.choice([axis for axis in range(3) if direction[axis]] + [FACE_NONE])
-        brightness, sums, part = given(random.choice(["angle", "angle", "part", "mean"]))
+        brightness, sums, part = given(random.choice(kinds))
         items.append({"pixel_i": material << 2 | face, "brightness_i": brightness})
         own = sums or colours[material]
+        if faces and not flat and face != FACE_NONE:
+            part = Fraction(faces[2 * face + (direction[face] < 0)], 255)
         if part is not None:
             colour = tuple(floor(channel * part + Fraction(1, 2)) for channel in own)
         else:
@@ -71,7 +92,7 @@ def seen(dut):
 
 async def prepare(dut):
     """Start, and fill the material table; give it."""
-    await start(dut, raster_i=0, valid_i=0, pixel_ready_i=0, material_write_i=0, flat_i=0)
+    await start(dut, raster_i=0, valid_i=0, pixel_ready_i=0, material_write_i=0, shading_i=0)
     colours = [tuple(random.choice([0, 255, random.randrange(256)]) for _ in range(3)) for _ in range(256)]
     for material, (red, green, blue) in enumerate(colours):
         drive(dut, material_write_i=MATERIAL_WRITE.pack(valid=1, material=material, red=red, green=green, blue=blue))
@@ -85,11 +106,11 @@ async def prepare(dut):
 async def colours(dut, sending, taking):
     """Frames of all kinds of pixels."""
     table = await prepare(dut)
-    for number in range(15):
-        flat = number % 3 == 2
+    for _ in range(15):
+        flat, faces = some_shading(dut)
         frame = some_frame()
-        drive(dut, flat_i=flat)
-        items, wanted = some_pixels(frame, table, flat)
+        drive(dut, shading_i=shading_of(flat, faces))
+        items, wanted = some_pixels(frame, table, flat, faces, kinds_of(dut))
         await begin(dut, frame)
         assert await with_timeout(exchange(dut, items, lambda: seen(dut), sending, taking, **OUTPUT), 1, "ms") == wanted
 
@@ -100,7 +121,7 @@ async def reset_at_any_clock(dut):
     table = await prepare(dut)
     for _ in range(10):
         frame = some_frame()
-        items, wanted = some_pixels(frame, table, flat=False)
+        items, wanted = some_pixels(frame, table, flat=False, faces=None, kinds=kinds_of(dut))
         await begin(dut, frame)
         await reset_on_the_way(dut, items, lambda: seen(dut), **OUTPUT)
         await ClockCycles(dut.clk_i, 2)

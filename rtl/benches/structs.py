@@ -53,7 +53,8 @@ class Struct:
 DISTANCE, KEY, POINT, SHADOW_POINT, SCAN, WEIGHT = 33, 62, 20, 23, 29, 40
 WORLD = Struct(origin=(3, DISTANCE), mirrored_origin=(3, DISTANCE), depth=5, side=17, outside_mask=16)
 RASTER = Struct(start=1, corner=1, line_step=(3, SCAN), right=(3, 16), width=12, height=12)
-SHADING = Struct(flat=1, light=1, ambient=8, bounces=4)
+# Brightness: by {looks along +axis, axis}.
+SHADING = Struct(flat=1, faces=1, brightness=(6, 8), light=1, ambient=8, bounces=4)
 MATERIAL_WRITE = Struct(valid=1, material=8, mirror=1, red=8, green=8, blue=8)
 # By mirrored (0, 1) and axis: 3 * mirrored + axis.
 LIGHT_PLANES = Struct(occluder=(6, 17), backface=(6, 17))

@@ -20,7 +20,7 @@ extern "C" {
 #define VOXRT_REGISTERS__VERSION__MINOR_bm 0xff
 #define VOXRT_REGISTERS__VERSION__MINOR_bp 0
 #define VOXRT_REGISTERS__VERSION__MINOR_bw 8
-#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x2
+#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x3
 #define VOXRT_REGISTERS__VERSION__MAJOR_bm 0xff00
 #define VOXRT_REGISTERS__VERSION__MAJOR_bp 8
 #define VOXRT_REGISTERS__VERSION__MAJOR_bw 8
@@ -117,12 +117,17 @@ extern "C" {
 #define VOXRT_REGISTERS__FEATURES__FLAT_bm 0x1
 #define VOXRT_REGISTERS__FEATURES__FLAT_bp 0
 #define VOXRT_REGISTERS__FEATURES__FLAT_bw 1
+#define VOXRT_REGISTERS__FEATURES__FLAT_reset 0x1
 #define VOXRT_REGISTERS__FEATURES__LIGHT_bm 0x2
 #define VOXRT_REGISTERS__FEATURES__LIGHT_bp 1
 #define VOXRT_REGISTERS__FEATURES__LIGHT_bw 1
 #define VOXRT_REGISTERS__FEATURES__MIRRORS_bm 0x4
 #define VOXRT_REGISTERS__FEATURES__MIRRORS_bp 2
 #define VOXRT_REGISTERS__FEATURES__MIRRORS_bw 1
+#define VOXRT_REGISTERS__FEATURES__FACES_bm 0x8
+#define VOXRT_REGISTERS__FEATURES__FACES_bp 3
+#define VOXRT_REGISTERS__FEATURES__FACES_bw 1
+#define VOXRT_REGISTERS__FEATURES__FACES_reset 0x1
 
 // reg - voxrt_registers::position_reg
 #define VOXRT_REGISTERS__POSITION_REG__VALUE_bm 0xffffffff
@@ -150,10 +155,14 @@ extern "C" {
 #define VOXRT_REGISTERS__SHADING__LIGHT_bp 1
 #define VOXRT_REGISTERS__SHADING__LIGHT_bw 1
 #define VOXRT_REGISTERS__SHADING__LIGHT_reset 0x0
+#define VOXRT_REGISTERS__SHADING__FACES_bm 0x4
+#define VOXRT_REGISTERS__SHADING__FACES_bp 2
+#define VOXRT_REGISTERS__SHADING__FACES_bw 1
+#define VOXRT_REGISTERS__SHADING__FACES_reset 0x1
 #define VOXRT_REGISTERS__SHADING__AMBIENT_bm 0xff00
 #define VOXRT_REGISTERS__SHADING__AMBIENT_bp 8
 #define VOXRT_REGISTERS__SHADING__AMBIENT_bw 8
-#define VOXRT_REGISTERS__SHADING__AMBIENT_reset 0x20
+#define VOXRT_REGISTERS__SHADING__AMBIENT_reset 0x5a
 #define VOXRT_REGISTERS__SHADING__BOUNCES_bm 0xf0000
 #define VOXRT_REGISTERS__SHADING__BOUNCES_bp 16
 #define VOXRT_REGISTERS__SHADING__BOUNCES_bw 4
@@ -164,6 +173,34 @@ extern "C" {
 #define VOXRT_REGISTERS__ROOT__ADDRESS_bp 0
 #define VOXRT_REGISTERS__ROOT__ADDRESS_bw 32
 #define VOXRT_REGISTERS__ROOT__ADDRESS_reset 0x0
+
+// reg - voxrt_registers::lower_faces
+#define VOXRT_REGISTERS__LOWER_FACES__X_bm 0xff
+#define VOXRT_REGISTERS__LOWER_FACES__X_bp 0
+#define VOXRT_REGISTERS__LOWER_FACES__X_bw 8
+#define VOXRT_REGISTERS__LOWER_FACES__X_reset 0xbd
+#define VOXRT_REGISTERS__LOWER_FACES__Y_bm 0xff00
+#define VOXRT_REGISTERS__LOWER_FACES__Y_bp 8
+#define VOXRT_REGISTERS__LOWER_FACES__Y_bw 8
+#define VOXRT_REGISTERS__LOWER_FACES__Y_reset 0x8c
+#define VOXRT_REGISTERS__LOWER_FACES__Z_bm 0xff0000
+#define VOXRT_REGISTERS__LOWER_FACES__Z_bp 16
+#define VOXRT_REGISTERS__LOWER_FACES__Z_bw 8
+#define VOXRT_REGISTERS__LOWER_FACES__Z_reset 0xdb
+
+// reg - voxrt_registers::upper_faces
+#define VOXRT_REGISTERS__UPPER_FACES__X_bm 0xff
+#define VOXRT_REGISTERS__UPPER_FACES__X_bp 0
+#define VOXRT_REGISTERS__UPPER_FACES__X_bw 8
+#define VOXRT_REGISTERS__UPPER_FACES__X_reset 0xbd
+#define VOXRT_REGISTERS__UPPER_FACES__Y_bm 0xff00
+#define VOXRT_REGISTERS__UPPER_FACES__Y_bp 8
+#define VOXRT_REGISTERS__UPPER_FACES__Y_bw 8
+#define VOXRT_REGISTERS__UPPER_FACES__Y_reset 0xff
+#define VOXRT_REGISTERS__UPPER_FACES__Z_bm 0xff0000
+#define VOXRT_REGISTERS__UPPER_FACES__Z_bp 16
+#define VOXRT_REGISTERS__UPPER_FACES__Z_bw 8
+#define VOXRT_REGISTERS__UPPER_FACES__Z_reset 0xdb
 
 // reg - voxrt_registers::memory_base
 #define VOXRT_REGISTERS__MEMORY_BASE__ADDRESS_bm 0xffffffe0
@@ -203,7 +240,10 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t root;
     uint8_t RESERVED_7c_7f[0x4];
     uint32_t light[3];
-    uint8_t RESERVED_8c_bf[0x34];
+    uint8_t RESERVED_8c_8f[0x4];
+    uint32_t lower_faces;
+    uint32_t upper_faces;
+    uint8_t RESERVED_98_bf[0x28];
     uint32_t memory_base;
     uint32_t word_requests;
     uint32_t line_requests;

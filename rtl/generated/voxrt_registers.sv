@@ -256,6 +256,8 @@ module voxrt_registers (
         logic shading;
         logic root;
         logic light[3];
+        logic lower_faces;
+        logic upper_faces;
         logic memory_base;
         logic word_requests;
         logic line_requests;
@@ -329,6 +331,10 @@ module voxrt_registers (
             decoded_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
         end
+        decoded_reg_strb.lower_faces = cpuif_req_masked & (cpuif_addr == 11'h90);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h90);
+        decoded_reg_strb.upper_faces = cpuif_req_masked & (cpuif_addr == 11'h94);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h94);
         decoded_reg_strb.memory_base = cpuif_req_masked & (cpuif_addr == 11'hc0);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc0);
         decoded_reg_strb.word_requests = cpuif_req_masked & (cpuif_addr == 11'hc4) & !cpuif_req_is_wr;
@@ -469,6 +475,10 @@ module voxrt_registers (
                 logic load_next;
             } light;
             struct {
+                logic next;
+                logic load_next;
+            } faces;
+            struct {
                 logic [7:0] next;
                 logic load_next;
             } ambient;
@@ -489,6 +499,34 @@ module voxrt_registers (
                 logic load_next;
             } value;
         } light[3];
+        struct {
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } x;
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } y;
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } z;
+        } lower_faces;
+        struct {
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } x;
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } y;
+            struct {
+                logic [7:0] next;
+                logic load_next;
+            } z;
+        } upper_faces;
         struct {
             struct {
                 logic [26:0] next;
@@ -577,6 +615,9 @@ module voxrt_registers (
                 logic value;
             } light;
             struct {
+                logic value;
+            } faces;
+            struct {
                 logic [7:0] value;
             } ambient;
             struct {
@@ -593,6 +634,28 @@ module voxrt_registers (
                 logic [31:0] value;
             } value;
         } light[3];
+        struct {
+            struct {
+                logic [7:0] value;
+            } x;
+            struct {
+                logic [7:0] value;
+            } y;
+            struct {
+                logic [7:0] value;
+            } z;
+        } lower_faces;
+        struct {
+            struct {
+                logic [7:0] value;
+            } x;
+            struct {
+                logic [7:0] value;
+            } y;
+            struct {
+                logic [7:0] value;
+            } z;
+        } upper_faces;
         struct {
             struct {
                 logic [26:0] value;
@@ -1096,6 +1159,29 @@ module voxrt_registers (
         end
     end
     assign hwif_out.shading.light.value = field_storage.shading.light.value;
+    // Field: voxrt_registers.shading.faces
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.shading.faces.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.shading && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.shading.faces.value & ~decoded_wr_biten[2:2]) | (decoded_wr_data[2:2] & decoded_wr_biten[2:2]);
+            load_next_c = '1;
+        end
+        field_combo.shading.faces.next = next_c;
+        field_combo.shading.faces.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.shading.faces.value <= 1'h1;
+        end else begin
+            if(field_combo.shading.faces.load_next) begin
+                field_storage.shading.faces.value <= field_combo.shading.faces.next;
+            end
+        end
+    end
+    assign hwif_out.shading.faces.value = field_storage.shading.faces.value;
     // Field: voxrt_registers.shading.ambient
     always_comb begin
         automatic logic [7:0] next_c;
@@ -1111,7 +1197,7 @@ module voxrt_registers (
     end
     always_ff @(posedge clk) begin
         if(~rst_n) begin
-            field_storage.shading.ambient.value <= 8'h20;
+            field_storage.shading.ambient.value <= 8'h5a;
         end else begin
             if(field_combo.shading.ambient.load_next) begin
                 field_storage.shading.ambient.value <= field_combo.shading.ambient.next;
@@ -1190,6 +1276,144 @@ module voxrt_registers (
         end
         assign hwif_out.light[i0].value.value = field_storage.light[i0].value.value;
     end
+    // Field: voxrt_registers.lower_faces.x
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.lower_faces.x.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.lower_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.lower_faces.x.value & ~decoded_wr_biten[7:0]) | (decoded_wr_data[7:0] & decoded_wr_biten[7:0]);
+            load_next_c = '1;
+        end
+        field_combo.lower_faces.x.next = next_c;
+        field_combo.lower_faces.x.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.lower_faces.x.value <= 8'hbd;
+        end else begin
+            if(field_combo.lower_faces.x.load_next) begin
+                field_storage.lower_faces.x.value <= field_combo.lower_faces.x.next;
+            end
+        end
+    end
+    assign hwif_out.lower_faces.x.value = field_storage.lower_faces.x.value;
+    // Field: voxrt_registers.lower_faces.y
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.lower_faces.y.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.lower_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.lower_faces.y.value & ~decoded_wr_biten[15:8]) | (decoded_wr_data[15:8] & decoded_wr_biten[15:8]);
+            load_next_c = '1;
+        end
+        field_combo.lower_faces.y.next = next_c;
+        field_combo.lower_faces.y.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.lower_faces.y.value <= 8'h8c;
+        end else begin
+            if(field_combo.lower_faces.y.load_next) begin
+                field_storage.lower_faces.y.value <= field_combo.lower_faces.y.next;
+            end
+        end
+    end
+    assign hwif_out.lower_faces.y.value = field_storage.lower_faces.y.value;
+    // Field: voxrt_registers.lower_faces.z
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.lower_faces.z.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.lower_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.lower_faces.z.value & ~decoded_wr_biten[23:16]) | (decoded_wr_data[23:16] & decoded_wr_biten[23:16]);
+            load_next_c = '1;
+        end
+        field_combo.lower_faces.z.next = next_c;
+        field_combo.lower_faces.z.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.lower_faces.z.value <= 8'hdb;
+        end else begin
+            if(field_combo.lower_faces.z.load_next) begin
+                field_storage.lower_faces.z.value <= field_combo.lower_faces.z.next;
+            end
+        end
+    end
+    assign hwif_out.lower_faces.z.value = field_storage.lower_faces.z.value;
+    // Field: voxrt_registers.upper_faces.x
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.upper_faces.x.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.upper_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.upper_faces.x.value & ~decoded_wr_biten[7:0]) | (decoded_wr_data[7:0] & decoded_wr_biten[7:0]);
+            load_next_c = '1;
+        end
+        field_combo.upper_faces.x.next = next_c;
+        field_combo.upper_faces.x.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.upper_faces.x.value <= 8'hbd;
+        end else begin
+            if(field_combo.upper_faces.x.load_next) begin
+                field_storage.upper_faces.x.value <= field_combo.upper_faces.x.next;
+            end
+        end
+    end
+    assign hwif_out.upper_faces.x.value = field_storage.upper_faces.x.value;
+    // Field: voxrt_registers.upper_faces.y
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.upper_faces.y.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.upper_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.upper_faces.y.value & ~decoded_wr_biten[15:8]) | (decoded_wr_data[15:8] & decoded_wr_biten[15:8]);
+            load_next_c = '1;
+        end
+        field_combo.upper_faces.y.next = next_c;
+        field_combo.upper_faces.y.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.upper_faces.y.value <= 8'hff;
+        end else begin
+            if(field_combo.upper_faces.y.load_next) begin
+                field_storage.upper_faces.y.value <= field_combo.upper_faces.y.next;
+            end
+        end
+    end
+    assign hwif_out.upper_faces.y.value = field_storage.upper_faces.y.value;
+    // Field: voxrt_registers.upper_faces.z
+    always_comb begin
+        automatic logic [7:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.upper_faces.z.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.upper_faces && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.upper_faces.z.value & ~decoded_wr_biten[23:16]) | (decoded_wr_data[23:16] & decoded_wr_biten[23:16]);
+            load_next_c = '1;
+        end
+        field_combo.upper_faces.z.next = next_c;
+        field_combo.upper_faces.z.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.upper_faces.z.value <= 8'hdb;
+        end else begin
+            if(field_combo.upper_faces.z.load_next) begin
+                field_storage.upper_faces.z.value <= field_combo.upper_faces.z.next;
+            end
+        end
+    end
+    assign hwif_out.upper_faces.z.value = field_storage.upper_faces.z.value;
     // Field: voxrt_registers.memory_base.address
     always_comb begin
         automatic logic [26:0] next_c;
@@ -1284,7 +1508,7 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h0)][31:0] = 32'h56585254;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h4)) begin
-            readback_data_var[ad_hi(11'h4)][7:0] = 8'h2;
+            readback_data_var[ad_hi(11'h4)][7:0] = 8'h3;
             readback_data_var[ad_hi(11'h4)][15:8] = 8'h0;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h8)) begin
@@ -1319,9 +1543,10 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h18)][4:0] = field_storage.depth.depth.value;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h1c)) begin
-            readback_data_var[ad_hi(11'h1c)][0] = hwif_in.features.flat.next;
+            readback_data_var[ad_hi(11'h1c)][0] = 1'h1;
             readback_data_var[ad_hi(11'h1c)][1] = hwif_in.features.light.next;
             readback_data_var[ad_hi(11'h1c)][2] = hwif_in.features.mirrors.next;
+            readback_data_var[ad_hi(11'h1c)][3] = 1'h1;
         end
         for(int i0=0; i0<3; i0++) begin
             if(ad_low(rd_mux_addr) == ad_low(11'h20 + (11)'(i0) * 11'h4)) begin
@@ -1361,6 +1586,7 @@ module voxrt_registers (
         if(ad_low(rd_mux_addr) == ad_low(11'h74)) begin
             readback_data_var[ad_hi(11'h74)][0] = field_storage.shading.flat.value;
             readback_data_var[ad_hi(11'h74)][1] = field_storage.shading.light.value;
+            readback_data_var[ad_hi(11'h74)][2] = field_storage.shading.faces.value;
             readback_data_var[ad_hi(11'h74)][15:8] = field_storage.shading.ambient.value;
             readback_data_var[ad_hi(11'h74)][19:16] = field_storage.shading.bounces.value;
         end
@@ -1371,6 +1597,16 @@ module voxrt_registers (
             if(ad_low(rd_mux_addr) == ad_low(11'h80 + (11)'(i0) * 11'h4)) begin
                 readback_data_var[ad_hi(11'h80 + (11)'(i0) * 11'h4)][31:0] = field_storage.light[i0].value.value;
             end
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h90)) begin
+            readback_data_var[ad_hi(11'h90)][7:0] = field_storage.lower_faces.x.value;
+            readback_data_var[ad_hi(11'h90)][15:8] = field_storage.lower_faces.y.value;
+            readback_data_var[ad_hi(11'h90)][23:16] = field_storage.lower_faces.z.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h94)) begin
+            readback_data_var[ad_hi(11'h94)][7:0] = field_storage.upper_faces.x.value;
+            readback_data_var[ad_hi(11'h94)][15:8] = field_storage.upper_faces.y.value;
+            readback_data_var[ad_hi(11'h94)][23:16] = field_storage.upper_faces.z.value;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'hc0)) begin
             readback_data_var[ad_hi(11'hc0)][31:5] = field_storage.memory_base.address.value;

@@ -80,10 +80,6 @@ package voxrt_registers_pkg;
 
     typedef struct {
         logic next;
-    } voxrt_registers__features__flat__in_t;
-
-    typedef struct {
-        logic next;
     } voxrt_registers__features__light__in_t;
 
     typedef struct {
@@ -91,7 +87,6 @@ package voxrt_registers_pkg;
     } voxrt_registers__features__mirrors__in_t;
 
     typedef struct {
-        voxrt_registers__features__flat__in_t flat;
         voxrt_registers__features__light__in_t light;
         voxrt_registers__features__mirrors__in_t mirrors;
     } voxrt_registers__features__in_t;
@@ -232,6 +227,10 @@ package voxrt_registers_pkg;
     } voxrt_registers__shading__light__out_t;
 
     typedef struct {
+        logic value;
+    } voxrt_registers__shading__faces__out_t;
+
+    typedef struct {
         logic [7:0] value;
     } voxrt_registers__shading__ambient__out_t;
 
@@ -242,6 +241,7 @@ package voxrt_registers_pkg;
     typedef struct {
         voxrt_registers__shading__flat__out_t flat;
         voxrt_registers__shading__light__out_t light;
+        voxrt_registers__shading__faces__out_t faces;
         voxrt_registers__shading__ambient__out_t ambient;
         voxrt_registers__shading__bounces__out_t bounces;
     } voxrt_registers__shading__out_t;
@@ -253,6 +253,42 @@ package voxrt_registers_pkg;
     typedef struct {
         voxrt_registers__root__address__out_t address;
     } voxrt_registers__root__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__lower_faces__x__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__lower_faces__y__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__lower_faces__z__out_t;
+
+    typedef struct {
+        voxrt_registers__lower_faces__x__out_t x;
+        voxrt_registers__lower_faces__y__out_t y;
+        voxrt_registers__lower_faces__z__out_t z;
+    } voxrt_registers__lower_faces__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__upper_faces__x__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__upper_faces__y__out_t;
+
+    typedef struct {
+        logic [7:0] value;
+    } voxrt_registers__upper_faces__z__out_t;
+
+    typedef struct {
+        voxrt_registers__upper_faces__x__out_t x;
+        voxrt_registers__upper_faces__y__out_t y;
+        voxrt_registers__upper_faces__z__out_t z;
+    } voxrt_registers__upper_faces__out_t;
 
     typedef struct {
         logic [26:0] value;
@@ -282,6 +318,8 @@ package voxrt_registers_pkg;
         voxrt_registers__shading__out_t shading;
         voxrt_registers__root__out_t root;
         voxrt_registers__position_reg__out_t light[3];
+        voxrt_registers__lower_faces__out_t lower_faces;
+        voxrt_registers__upper_faces__out_t upper_faces;
         voxrt_registers__memory_base__out_t memory_base;
         voxrt_registers__materials__external__out_t materials;
     } voxrt_registers__out_t;

@@ -28,15 +28,24 @@ export class Connection extends EventTarget {
 
   get connected() { return this.hello !== null; }
 
-  handleClose({ code, reason }) {
+  async handleClose({ code, reason }) {
     const wasConnected = this.connected;
     this.hello = null;
     this.sent.clear();
     for (const { reject } of this.pending.values()) reject(new Error("the connection to the board was lost"));
     this.pending.clear();
-    this.emit("disconnected", { wasConnected, code, reason, retry: this.retry });
+    const why = wasConnected ? "" : await this.askWhy();
+    this.emit("disconnected", { wasConnected, code, reason, why, retry: this.retry });
     setTimeout(() => this.connect(), this.retry);
     this.retry = Math.min(this.retry * 1.6, RETRY.longest);
+  }
+
+  // Why the server refuses the connection, in its own words: browsers do not tell a page the answer to a WebSocket.
+  async askWhy() {
+    try {
+      const answer = await fetch(this.socket.url.replace(/^ws/, "http"), { signal: AbortSignal.timeout(5000) });
+      return [401, 403, 503].includes(answer.status) ? (await answer.text()).trim() : "";
+    } catch { return ""; }
   }
 
   emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }

@@ -33,7 +33,7 @@ const app = {
 };
 const panel = new Panel(app);
 
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the board", verify: "Verifying",
+const STAGES = { send: "Sending", read: "Reading", write: "Writing to the board", verify: "Verifying", render: "Rendering the first frame",
   load: "Loading the file", fit: "Fitting the grid", voxelize: "Voxelizing", octree: "Building the octree" };
 
 function notice(kind, title, text = "", progress = null) {
@@ -76,6 +76,7 @@ connection.addEventListener("disconnected", ({ detail }) => {
   $("control").textContent = "";
   $("take").hidden = $("release").hidden = true;
   const reason = detail.code === 1013 ? "The server has too many viewers." : detail.wasConnected ? "The connection was lost."
+    : detail.why ? `The server refuses: ${detail.why}.`
     : "No frame server answers, or the token is missing: open the address that the server printed.";
   notice("disconnected", "Not connected to the board", `${reason} The page tries again by itself.`);
 });
@@ -102,6 +103,8 @@ connection.addEventListener("state", ({ detail }) => {
   }
   panel.show(detail, mine);
   panel.showCamera(view, detail.view.size);
+  $("connection").dataset.state = detail.trouble ? "disconnected" : "connected";
+  $("connection").textContent = detail.trouble ? "no frames" : "connected";
   if (detail.trouble) notice("error", "The device has failed", detail.trouble);
   else if (detail.scene.number === 0) notice("hint", "No scene yet", `Drop a file on the picture: ${connection.hello.suffixes.join(" ")}`);
   else if (["hint"].includes($("notice").dataset.kind)) dismiss();

@@ -8,7 +8,8 @@ export const PRESETS = [
   ["Corner", [-0.62, -0.68, -1]], ["Front", [0, 0, -1]], ["Back", [0, 0, 1]], ["Left", [1, 0, 0]], ["Right", [-1, 0, 0]],
   ["Top", [0, -1, 0]], ["Bottom", [0, 1, 0]],
 ];
-const FEATURES = { flat: "Flat colours", light: "Shadows", mirrors: "Mirrors" };
+const FEATURES = { light: "Shadows", mirrors: "Mirrors" };
+const SHADINGS = { faces: "By face", flat: "Flat colours", report: "By angle" };
 const SIZES = [[320, 240], [512, 512], [640, 480], [800, 600], [1280, 720], [1920, 1080]];
 const SAVED = "voxrt.views";
 
@@ -82,6 +83,8 @@ export class Panel {
     $("library").replaceChildren();
     for (const name of scenes) button($("library"), name, () => this.app.load(name)).dataset.scene = name;
     $("features").replaceChildren();
+    for (const [name, label] of Object.entries(SHADINGS))
+      button($("features"), label, () => this.app.set({ shading: name })).dataset.shading = name;
     for (const [name, label] of Object.entries(FEATURES)) {
       if (!device.features.includes(name)) continue;
       const toggle = button($("features"), label, () => {
@@ -103,7 +106,7 @@ export class Panel {
     const { view, scene } = state;
     $("scene").textContent = `${scene.name} · ${2 ** scene.depth}³ voxels · ${scene.words.toLocaleString()} words`;
     for (const made of $("library").children) made.classList.toggle("chosen", made.dataset.scene === scene.name);
-    for (const made of $("features").children) pressed(made, view.features.includes(made.dataset.feature));
+    for (const made of $("features").children) pressed(made, made.dataset.shading === view.shading || view.features.includes(made.dataset.feature));
     if (document.activeElement !== $("background"))
       $("background").value = `#${view.background.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
     if (document.activeElement !== $("bounces")) $("bounces").value = view.bounces;

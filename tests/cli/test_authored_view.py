@@ -40,7 +40,7 @@ def test_the_preview_has_the_light(yard, tmp_path):
     assert lit.warnings == ()
     origin, voxel = np.array(lit.rom.grid.origin), lit.rom.grid.voxel_size
     place = tuple(int(x) for x in np.rint((np.array([4, 6, 1]) - origin) / voxel * 16))
-    assert lit.lighting == Lighting(place, 32, on=True)
+    assert lit.lighting == Lighting(place, 90, on=True)
     expected = render_frame(lit.rom, lit.preview.camera, SIZE, engine="model", lighting=Lighting(place, on=True))
     assert np.array_equal(lit.preview.frame.colour, expected.colour)
     yard.write_text(YARD.replace("[light]\nposition = [4, 6, 1]\n", ""))
@@ -77,7 +77,7 @@ def test_camera_and_light_stand_in_manifest_blob_and_board(yard, tmp_path):
 
 
 def test_what_cannot_be_seen_is_counted(yard, tmp_path):
-    yard.write_text(YARD.replace("[6, 5, 7]", "[0, 9, 0]").replace("[4, 6, 1]", "[1e9, 0, 0]"))
+    yard.write_text(YARD.replace("[6, 5, 7]", "[1e9, 5, 7]").replace("[4, 6, 1]", "[1e9, 0, 0]"))
     built = voxrt.build(yard, tmp_path, depth=5)
     assert [one.kind for one in built.warnings] == ["camera", "light"]
     assert (built.view, built.lighting) == (None, None)

@@ -31,7 +31,7 @@ def test_a_memory_is_like_its_source(voxrt, built):
     assert result.wrong_pixels == 0
     with Image.open(built / "like.png") as sheet:
         assert sheet.size == (4 * 96, 72)
-    assert "silhouette" in voxrt(*arguments).err
+    assert "silhouette" in voxrt(*arguments).out
 
 
 def test_a_finer_grid_is_liker(voxrt, built):

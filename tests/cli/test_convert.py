@@ -82,11 +82,11 @@ def test_a_listing_with_its_materials(voxrt, folder):
         (["house.mem", "house.blob", "--material", "Roof=red"], 2, "NAME=RRGGBB"),
         (["house.mem", "house.obj/deeper.blob"], 2, "is a file, not a folder"),
         (["nothing.mem", "house.blob"], 3, "nothing.mem"),
-        (["house.obj", "house.blob"], 3, "house.obj"),
+        (["broken.obj", "house.blob"], 3, "broken.obj"),
     ],
 )
-@pytest.mark.usefixtures("built")
-def test_refusals(voxrt, arguments, code, said):
+def test_refusals(voxrt, built, arguments, code, said):
+    (built / "broken.obj").write_text("f 1 2 3\n")
     finished = voxrt("convert", *arguments)
     assert finished.code == code
     assert said in finished.error

@@ -18,8 +18,8 @@ needs_yosys = pytest.mark.skipif(
 
 def test_it_lists_the_configurations(voxrt):
     finished = voxrt("core")
-    assert (finished.code, finished.out) == (0, "")
-    listed = {line.split()[0]: line.split()[1:] for line in finished.err.splitlines()[1:]}
+    assert (finished.code, finished.err) == (0, "")
+    listed = {line.split()[0]: line.split()[1:] for line in finished.out.splitlines()[1:]}
     assert list(listed) == list(read_configurations())
     assert listed["octo"] == ["8", "10", "32,769", "private"]
     assert listed["lit"] == ["1", "16", "32,769", "private", "flat", "light", "mirrors"]

@@ -6,6 +6,7 @@ import json
 import sys
 
 import msgspec
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -143,28 +144,65 @@ def test_check_counts_wrong_pixels(voxrt):
 @pytest.mark.usefixtures("ray_tracer", "built")
 def test_check_fails_where_the_engines_differ(voxrt, monkeypatch):
     module = sys.modules["voxrt.sim.rendering"]
-    render = module.render
+    render = module._render_one
 
     def wrong(*arguments, engine, **options):
         frame = render(*arguments, engine=engine, **options)
         frame.face[7, 5] ^= engine == "model"
         return frame
 
-    monkeypatch.setattr(module, "render", wrong)
+    monkeypatch.setattr(module, "_render_one", wrong)
     finished = voxrt("render", "house.mem", "--size", "64x48", "--check", "--json")
     assert finished.code == 5
     assert json.loads(finished.out)["wrong_pixels"] == 1
     assert "1 pixels differ" in finished.error
 
 
-def test_light_bounces_and_flat_colours(voxrt, built):
+def test_light_bounces_and_shading(voxrt, built):
     pictures = []
-    for options in ([], ["--light", "-20,90.5,-31", "--ambient", "5"], ["--flat"], ["--bounces", "2"]):
+    for options in (
+        [],
+        ["--light", "-20,90.5,-31", "--ambient", "5"],
+        ["--shading", "flat"],
+        ["--shading", "report"],
+        ["--bounces", "2"],
+    ):
         finished = voxrt("render", "house.mem", *MODEL, *options)
         assert finished.code == 0, finished.err
         pictures.append((built / "house.png").read_bytes())
-    assert len(set(pictures[:3])) == 3
+    assert len(set(pictures[:4])) == 4
     for options in (["--bounces", "16"], ["--light", "1,2,3", "--ambient", "256"]):
         finished = voxrt("render", "house.mem", *MODEL, *options)
         assert finished.code == 5
         assert finished.error.startswith("voxrt: error: ")
+
+
+def test_samples_and_backgrounds(voxrt, built):
+    pictures = {}
+    for options in ((), ("--samples", "2"), ("--background", "light"), ("--background", "#102030")):
+        finished = voxrt("render", "house.mem", *MODEL, *options)
+        assert finished.code == 0, finished.err
+        with Image.open(built / "house.png") as picture:
+            assert picture.mode == "RGB"
+            pictures[options] = np.array(picture)
+    assert len({picture.tobytes() for picture in pictures.values()}) == 4
+    assert pictures["--background", "light"][0, 0].tolist() == [236, 240, 244]
+    assert pictures["--background", "#102030"][0, 0].tolist() == [16, 32, 48]
+    finished = voxrt("render", "house.mem", *MODEL, "--background", "transparent", "--samples", "4")
+    assert finished.code == 0, finished.err
+    with Image.open(built / "house.png") as picture:
+        opacity = np.array(picture)[..., 3]
+    assert {0, 255} < set(np.unique(opacity).tolist())
+    for wrong, message in ((("--samples", "3"), "1, 2"), (("--background", "blue"), "dark, light, transparent or a")):
+        finished = voxrt("render", "house.mem", *MODEL, *wrong)
+        assert finished.code == 2
+        assert message in finished.err
+
+
+@pytest.mark.usefixtures("ray_tracer")
+def test_every_sample_is_compared(voxrt, built):
+    finished = voxrt("render", "house.mem", "--size", "40x30", "--check", "--samples", "2", "--json")
+    assert finished.code == 0, finished.err
+    assert json.loads(finished.out)["wrong_pixels"] == 0
+    assert json.loads(finished.out)["rays"] == 4 * 40 * 30
+    assert (built / "house.png").exists()

@@ -20,9 +20,9 @@ def test_what_a_ray_reads(voxrt, folder):
     assert result.material == material_at(rom.octree, result.voxel) != 0
     assert result.face in {"x", "y", "z"}
     for_people = voxrt("trace", "house.mem", "--pixel", "32,24", "--size", "64x48")
-    assert for_people.out == ""
-    lines = for_people.err.splitlines()
-    assert f"reads      {len(result.readings)} words" in for_people.err
+    assert for_people.err == ""
+    lines = for_people.out.splitlines()
+    assert f"reads      {len(result.readings)} words" in for_people.out
     for number, reading in enumerate(result.readings, 1):
         line = lines[len(lines) - len(result.readings) + number - 1].split()
         assert line[:3] == [str(number), f"0x{reading.address:X}", f"0x{reading.word:08X}"]
@@ -34,7 +34,7 @@ def test_what_a_ray_reads(voxrt, folder):
 
 def test_a_miss_and_a_camera_within_a_solid(voxrt, folder):
     assert voxrt("build", "house.obj", "--depth", "5").code == 0
-    assert "hits       nothing" in voxrt("trace", "house.mem", "--pixel", "0,0").err
+    assert "hits       nothing" in voxrt("trace", "house.mem", "--pixel", "0,0").out
     away = ("--position", "-9,5,5", "--look", "-1,0,0")
     missed = msgspec.json.decode(voxrt("trace", "house.mem", "--pixel", "320,240", *away, "--json").out)
     assert (missed["readings"], missed["material"], missed["face"], missed["voxel"]) == ([], 0, None, None)
@@ -44,8 +44,8 @@ def test_a_miss_and_a_camera_within_a_solid(voxrt, folder):
         if material_at(read_rom(folder / "house.mem")[0].octree, voxel)
     )
     within = voxrt("trace", "house.mem", "--pixel", "9,9", "--position", f"{x}.5,{y}.5,{z}.5")
-    assert f"hits       voxel {x}, {y}, {z}, from within: material" in within.err
-    assert "the eye" in within.err
+    assert f"hits       voxel {x}, {y}, {z}, from within: material" in within.out
+    assert "the eye" in within.out
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ import pytest
     [
         (["frob"], 'Unknown command "frob"'),
         (["build"], "ASSET requires an argument"),
-        (["build", "house.obj", "more.obj"], "more.obj"),
         (["build", "house.obj", "--bogus"], "--bogus"),
         (["build", "house.obj", "--dept", "3"], "Did you mean --depth?"),
         (["build", "house.obj", "--depth", "3.5"], "'3.5' is not a whole number"),
@@ -31,7 +30,9 @@ import pytest
         (["build", "house.obj", "--board", "abacus"], "there are pynq-z1"),
         (["build", "house.obj", "--time", "inf"], "not a finite number"),
         (["build", "house.obj", "--fill", "half"], '"solid", "surface"'),
-        (["build", "house.obj", "--size", "640"], "is not WIDTHxHEIGHT"),
+        (["build", "house.obj", "--size", "640x480x3"], "is not WIDTHxHEIGHT"),
+        (["build", "house.obj", "--voxel-size", "cm"], "is not a number"),
+        (["build", "house.obj", "--up", "w"], '"x", "y", "z"'),
         (["build", "house.obj", "--size", "0x480"], "is not between 1x1 and"),
         (["build", "house.obj", "--size", "99999x99999"], "is not between 1x1 and"),
         (["build", "house.obj", "--preview", "picture.jpg"], "ends in .png"),
@@ -65,6 +66,7 @@ def test_usage(voxrt, arguments, said):
     ("arguments", "said"),
     [
         (["build", "nothing.glb"], "nothing.glb: no such file"),
+        (["build", "house.obj", "more.obj"], "more.obj: no such file; check the path; nothing was built"),
         (["build", "."], "unknown kind of file"),
         (["build", "folder.glb"], "folder.glb: is a folder"),
         (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz"),

@@ -3,6 +3,7 @@ import shutil
 import struct
 import subprocess
 import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,17 @@ def blob(view=VIEW, lighting=LIGHTING, grid=Grid(2, (1.5, -2.0, 0.1), 0.25)):  #
     return export.Blob(Rom("scene \N{SNOWMAN}", octree.from_dense(cube), MATERIALS, grid), view, lighting)
 
 
-@pytest.mark.parametrize("change", [{}, {"view": None}, {"lighting": None}, {"grid": None}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"view": None},
+        {"lighting": None},
+        {"grid": None},
+        {"lighting": Lighting(faces=(1, 2, 3, 4, 5, 255))},
+        {"lighting": Lighting(faces=None, flat=True)},
+    ],
+)
 def test_round_trip(tmp_path, change):
     written = blob(**change)
     export.write_blob(tmp_path / "a.blob", written)
@@ -52,13 +63,13 @@ def test_any_world_survives(tmp_path_factory, cube):
 
 
 def test_the_kaitai_description_reads_what_is_written():
-    written = blob()
+    written = blob(lighting=replace(LIGHTING, faces=(1, 2, 3, 4, 5, 255)))
     data = export.blob_bytes(written)
     read = Description((DOCS / "voxrt_blob.ksy").read_text()).read(data)
     assert (read["version"], read["len_file"]) == (1, len(data))
     assert read["table_crc32"] == zlib.crc32(data[24 : 24 + 16 * read["num_sections"]])
     sections = {section["name"]: section for section in read["sections"]}
-    assert list(sections) == ["NAME", "WRLD", "MATL", "WORD", "VIEW", "LITE"]
+    assert list(sections) == ["NAME", "WRLD", "MATL", "WORD", "VIEW", "LITE", "FACE"]
     for section in sections.values():
         body = data[section["ofs_body"] : section["ofs_body"] + section["len_body"]]
         assert section["crc32"] == zlib.crc32(body)
@@ -74,6 +85,7 @@ def test_the_kaitai_description_reads_what_is_written():
     assert body["WORD"]["words"] == written.rom.octree.words.tolist()
     assert body["VIEW"] == {"position": [-1, 2, 3], "look": [0, 0, 90], "right": [1, 0, 0], "up": [0, -32768, 0]}
     assert body["LITE"] == {"position": [5, -6, 7], "ambient": 9, "flags": 1, "bounces": 3, "zero": 0}
+    assert body["FACE"] == {"brightness": [1, 2, 3, 4, 5, 255]}
 
 
 PROGRAM = r"""

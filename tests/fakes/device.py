@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import threading
 
 import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
-from voxrt.board.errors import DeviceError
+from voxrt.board.errors import DeviceError, TooSlow
 from voxrt.board.scene import Scene
 
 CAPACITY = 4096
@@ -45,7 +46,8 @@ class FakeDevice:
         self.closed = False
         self.fail_write_at: int | None = None  # the write that fails, counted from 0
         self.forget_write_at: int | None = None  # the write that leaves a wrong word
-        self.fail_frames = False
+        self.fail_frames: Exception | None = None
+        self.stopped = False
         self.may_finish = threading.Event()
         self.may_finish.set()
         self.busy = threading.Lock()
@@ -94,12 +96,16 @@ class FakeDevice:
                 paths += [((*path, i), word + i) for i in range(8)]
         return found
 
-    def frame(self, view):
+    def frame(self, view, seconds=math.inf):
         assert self.busy.acquire(blocking=False), "two calls at a time"
         try:
-            assert self.may_finish.wait(10)
+            if not self.may_finish.wait(min(seconds, 10)):
+                assert seconds < 10
+                raise TooSlow(f"the frame took more than {seconds:.1f} s")
+            if self.stopped:
+                raise DeviceError("the frame was stopped")
             if self.fail_frames:
-                raise DeviceError("the lanes hang")
+                raise self.fail_frames
             self.frames += 1
             self.calls.append("frame")
             word = int(self.memory[self.root])
@@ -111,5 +117,19 @@ class FakeDevice:
         finally:
             self.busy.release()
 
+    def stop(self):
+        self.stopped = True
+        self.may_finish.set()
+
     def close(self):
         self.closed = True
+
+
+def never_merged(depth: int, name: str = "endless") -> Scene:
+    """Empty space whose equal octants were never merged: 8 words per level, and rays that visit every voxel."""
+    words = np.full(1 + 8 * depth, 0xFFFFFF00, dtype=np.uint32)
+    words[0] = 1
+    for level in range(depth - 1):
+        words[1 + 8 * level : 9 + 8 * level] = 9 + 8 * level
+    base = scene(name)
+    return Scene(name, depth, words, base.colours, base.mirrors)

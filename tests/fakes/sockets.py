@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import socket
 
 
 @contextlib.asynccontextmanager
@@ -24,3 +25,9 @@ async def ended(reader):
         return await reader.read() == b""
     except ConnectionError:
         return True
+
+
+def free_port():
+    """A TCP port on which nobody listens."""
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        return listening.getsockname()[1]

@@ -14,7 +14,11 @@ from oracles.ray import FACE_NONE, first_cell
 
 @dataclass
 class Shader:
-    """What shades: `mirrors` a set of materials, `light` three integers in 1/16 voxel or None."""
+    """What shades: `mirrors` a set of materials, `light` three integers in 1/16 voxel or None.
+
+    `faces` is None, where brightness depends on the angle, or the brightness of the faces along -x, +x, -y, +y, -z, +z
+    in 1/255.
+    """
 
     palette: object
     bounces: int = 0
@@ -22,6 +26,7 @@ class Shader:
     flat: bool = False
     light: tuple | None = None
     ambient: int = 0
+    faces: tuple | None = None
 
 
 def shaded_pixel(voxels, shader, position, direction):
@@ -69,19 +74,31 @@ def walk(voxels, point, direction, cell):
 
 def brightness(voxels, shader, hit, direction, face):
     """Give the factor of the material's colour at a hit."""
+    own = of_face(shader, direction, face)
     if shader.light is None:
-        return Fraction(1) if shader.flat else square_of_cosine(direction, face)
+        return square_of_cosine(direction, face) if own is None else own
     lit = [Fraction(2 * sub_cell(hit[axis] * 16, direction[axis], axis, face) + 1, 32) for axis in range(3)]
     lit[face] = hit[face]
     way = [Fraction(int(light), 16) - own for light, own in zip(shader.light, lit, strict=True)]
     ambient = Fraction(shader.ambient, 256)
+    shadow = ambient if own is None else ambient * own
     if way[face] == 0 or (way[face] > 0) == (direction[face] > 0):
-        return ambient
+        return shadow
     cell = [first_cell(o, d) for o, d in zip(lit, way, strict=True)]
     material, _, _, t = walk(voxels, lit, way, cell)
     if material and t < 1:
-        return ambient
-    return Fraction(1) if shader.flat else max(ambient, square_of_cosine(way, face))
+        return shadow
+    return max(ambient, square_of_cosine(way, face)) if own is None else own
+
+
+def of_face(shader, direction, face):
+    """Give the brightness of a face that a ray along `direction` enters; None where it depends on the angle."""
+    if shader.flat:
+        return Fraction(1)
+    if shader.faces is None:
+        return None
+    normal = ("-x", "+x", "-y", "+y", "-z", "+z").index(("+" if direction[face] < 0 else "-") + "xyz"[face])
+    return Fraction(int(shader.faces[normal]), 255)
 
 
 def square_of_cosine(direction, face):

@@ -17,7 +17,6 @@ DEFAULTS = {
     "MemoryForm": 0,
     "L1SetBits": 5,
     "L2SetBits": 9,
-    "Flat": 0,
     "Light": 0,
     "Mirrors": 0,
     "SimulationBlockBits": 17,

@@ -1,5 +1,6 @@
-"""Light, shadows, mirrors and flat colours of the verilated ray tracer: against the oracle that works with fractions,
-and, where there are more rays than that can follow, against the exact model, which is held against it elsewhere."""
+"""Brightness of faces, light, shadows and mirrors of the verilated ray tracer: against the oracle that works with
+fractions, and, where there are more rays than that can follow, against the exact model, which is held against it
+elsewhere."""
 
 from __future__ import annotations
 
@@ -15,8 +16,15 @@ from voxrt.sim import _model
 rtl = pytest.importorskip("voxrt.sim._rtl", reason="this build has no verilated ray tracer")
 
 MATERIALS = np.random.default_rng(8).integers(0, 256, (256, 3), dtype=np.uint8)
-PLAIN = {"flat": False, "light": None, "ambient": 0, "bounces": 0, "mirrors": np.zeros(256, np.uint8)}
-ALL = {"flat", "light", "mirrors"}
+PLAIN = {
+    "flat": False,
+    "brightness": None,
+    "light": None,
+    "ambient": 0,
+    "bounces": 0,
+    "mirrors": np.zeros(256, np.uint8),
+}
+ALL = {"light", "mirrors"}
 TRACERS = {name: rtl.Tracer(name) for name in rtl.CONFIGS}
 SHADING = [name for name in TRACERS if set(rtl.FEATURES[name]) == ALL]
 needs_shading = pytest.mark.parametrize("config", SHADING)
@@ -32,6 +40,13 @@ def at(*position):
     return np.array(position, np.int32)
 
 
+def configurations_with(shading):
+    """Name the configurations that have what a picture needs."""
+    wanted = {"light": shading["light"] is not None, "mirrors": shading["bounces"] > 0}
+    needed = {name for name, is_wanted in wanted.items() if is_wanted}
+    return [name for name in TRACERS if needed <= set(rtl.FEATURES[name])]
+
+
 def assert_equal(got, colour, material, face, note):
     np.testing.assert_array_equal(got["material"], material, note)
     np.testing.assert_array_equal(got["face"], face, note)
@@ -40,8 +55,9 @@ def assert_equal(got, colour, material, face, note):
 
 
 def assert_as_the_oracle(voxels, camera, width, height, *, stall_seed=0, **shading):
-    """Every configuration with shading renders what the oracle does; gives what the last one gave."""
+    """Every configuration that can renders what the oracle does; gives what the last one gave."""
     shading = PLAIN | shading
+    configurations = configurations_with(shading)
     depth = len(voxels).bit_length() - 1
     camera = np.asarray(camera, np.int32)
     light = shading["light"]
@@ -52,6 +68,7 @@ def assert_as_the_oracle(voxels, camera, width, height, *, stall_seed=0, **shadi
         shading["flat"],
         None if light is None else tuple(light.tolist()),
         shading["ambient"],
+        None if shading["brightness"] is None else tuple(shading["brightness"].tolist()),
     )
     colour = np.zeros((height, width, 3), np.uint8)
     material, face = np.zeros((2, height, width), np.uint8)
@@ -59,7 +76,7 @@ def assert_as_the_oracle(voxels, camera, width, height, *, stall_seed=0, **shadi
     for row, column in np.ndindex(height, width):
         found = shaded_pixel(voxels, shader, camera[0], directions[row, column])
         colour[row, column], material[row, column], face[row, column] = found
-    for config in SHADING:
+    for config in configurations:
         TRACERS[config].load(words_of(voxels))
         got = TRACERS[config].render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed, **shading)
         assert_equal(got, colour, material, face, config)
@@ -78,11 +95,16 @@ def random_shading(rng, side, camera):
     light = at(*(rng.choice(places)() for _ in range(3))) if rng.integers(8) else camera[0].copy()
     return {
         "flat": bool(rng.integers(4) == 0),
+        "brightness": some_brightness(rng) if rng.integers(2) else None,
         "light": light if rng.integers(4) else None,
         "ambient": int(rng.choice([0, 32, 255, rng.integers(256)])),
         "bounces": int(rng.choice([0, 1, 2, 7, 15])),
         "mirrors": (rng.random(256) < rng.choice([0, 0.3, 0.7, 1])).astype(np.uint8),
     }
+
+
+def some_brightness(rng):
+    return rng.choice([0, 255, *rng.integers(256, size=4)], 6).astype(np.uint8)
 
 
 @pytest.mark.parametrize("seed", range(25))
@@ -95,6 +117,38 @@ def test_random_worlds_and_troublesome_lights(seed):
         stall_seed = int(rng.integers(2) * rng.integers(2**32))
         shading = random_shading(rng, len(voxels), camera)
         assert_as_the_oracle(voxels, camera, width, height, stall_seed=stall_seed, **shading)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_faces_have_their_brightness_in_every_configuration(seed):
+    rng = np.random.default_rng([seed, 4])
+    voxels = random_voxels(rng, int(rng.integers(1, 5)), rng.choice([0.01, 0.1, 0.4]))
+    for flat in (False, True):
+        width, height = (int(n) for n in rng.integers(1, 16, 2))
+        stall_seed = int(rng.integers(2) * rng.integers(2**32))
+        camera = random_camera(rng, len(voxels))
+        assert_as_the_oracle(
+            voxels, camera, width, height, stall_seed=stall_seed, brightness=some_brightness(rng), flat=flat
+        )
+
+
+def test_the_default_brightness_of_each_side_of_a_block():
+    """By hand: white, seen along each axis from both sides; 1/255, rounded half up, leaves the register itself."""
+    voxels = np.zeros((4, 4, 4), np.uint8)
+    voxels[1, 1, 1] = 9
+    white = np.full((256, 3), 255, np.uint8)
+    faces = np.array([189, 188, 140, 255, 219, 218], np.uint8)
+    seen = {}
+    for axis in range(3):
+        for upper in (0, 1):
+            position, look = [24, 24, 24], [0, 0, 0]
+            position[axis], look[axis] = (200, -9) if upper else (-100, 9)
+            camera = np.array([position, look, [0, 0, 0], [0, 0, 0]], np.int32)
+            for config, design in TRACERS.items():
+                design.load(words_of(voxels))
+                got = design.render(camera, 1, 1, 2, white, brightness=faces)
+                seen[config, 2 * axis + upper] = got["colour"][0, 0].tolist()
+    assert seen == {(config, face): [value] * 3 for config in TRACERS for face, value in enumerate(faces.tolist())}
 
 
 @pytest.mark.parametrize("config", SHADING)
@@ -292,7 +346,10 @@ def test_shading_of_one_frame_does_not_show_in_the_next(config):
     design.load(words_of(room()))
     camera = np.array(INTO_THE_ROOM, np.int32)
     plain = design.render(camera, 30, 30, 3, MATERIALS)
-    design.render(camera, 30, 30, 3, MATERIALS, light=at(40, 90, 40), bounces=3, mirrors=flags(1), flat=True)
+    brightness = np.array([189, 189, 140, 255, 219, 219], np.uint8)
+    design.render(
+        camera, 30, 30, 3, MATERIALS, light=at(40, 90, 40), bounces=3, mirrors=flags(1), brightness=brightness
+    )
     again = design.render(camera, 30, 30, 3, MATERIALS, mirrors=flags(1))
     for key in plain:
         np.testing.assert_array_equal(plain[key], again[key])
@@ -303,7 +360,7 @@ def test_what_is_not_built_in_is_refused(config):
     design = TRACERS[config]
     design.load(np.array([0xFFFFFF01], np.uint32))
     camera = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], np.int32)
-    asked = {"flat": {"flat": True}, "light": {"light": at(1, 2, 3)}, "mirrors": {"bounces": 1}}
+    asked = {"light": {"light": at(1, 2, 3)}, "mirrors": {"bounces": 1}}
     for feature in ALL - set(rtl.FEATURES[config]):
         with pytest.raises(ValueError, match="not been built with"):
             design.render(camera, 1, 1, 1, MATERIALS, **asked[feature])

@@ -31,6 +31,11 @@ def test_origins():
     assert status_of(access, "http://[2001:db8::7]:8080", address=("2001:db8::7", 8080)) is None
     assert status_of(access, "http://192.0.2.7:8080", address=("::ffff:192.0.2.7", 8080)) is None
     assert status_of(AccessControl(None, ("http://pynq.local",)), "http://pynq.local") is None
+    named = AccessControl(None, hosts=("pynq", "pynq.local"))
+    assert status_of(named, "http://pynq.local", address=("192.0.2.7", 80)) is None
+    assert status_of(named, "http://pynq", address=("127.0.0.1", 80)) is None
+    assert status_of(named, "http://localhost", address=("127.0.0.1", 80)) is None
+    assert status_of(named, "http://localhost", address=("192.0.2.7", 80)) == 403
 
 
 def test_tokens():

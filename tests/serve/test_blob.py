@@ -12,7 +12,7 @@ from fakes.device import scene
 from voxrt.board.errors import Refused
 from voxrt.board.view import Camera, Lighting
 from voxrt.serve.blob import read_blob
-from voxrt.serve.scene_files import MemoryReader
+from voxrt.serve.scene_files import read_memory
 
 MADE = scene("föhn", blocks=3)
 SECTIONS = {
@@ -37,8 +37,9 @@ def encode(sections):
     return struct.pack("<8sIIII", b"VOXRTBLB", 1, len(sections), start + len(body), zlib.crc32(table)) + table + body
 
 
-def test_blob():
-    read = MemoryReader()({"any.name": encode(SECTIONS)}, lambda *_: None)
+def test_blob(tmp_path):
+    (tmp_path / "any.name").write_bytes(encode(SECTIONS))
+    read = read_memory([tmp_path / "any.name"], lambda *_: None)
     assert (read.name, read.depth, read.background) == ("föhn", 3, (1, 2, 3))
     assert (read.words == MADE.words).all()
     assert read.colours[1].tolist() == [200, 100, 50]
@@ -47,6 +48,14 @@ def test_blob():
     assert read.lighting == Lighting((1, -2, 3), 40, on=True, bounces=2)
     bare = read_blob(encode({name: SECTIONS[name] for name in (b"NAME", b"WRLD", b"MATL", b"WORD")}))
     assert (bare.camera, bare.lighting) == (None, None)
+
+
+def test_the_shading_of_a_blob():
+    def lighting(flags):
+        return read_blob(encode({**SECTIONS, b"LITE": struct.pack("<3i4B", 1, -2, 3, 40, flags, 0, 0)})).lighting
+
+    assert [lighting(flags).shading for flags in (0, 2, 4)] == ["faces", "flat", "report"]
+    assert read_blob(encode({**SECTIONS, b"FACE": bytes([1, 2, 3, 4, 5, 255])})).lighting.faces == (1, 2, 3, 4, 5, 255)
 
 
 @pytest.mark.parametrize("name", [b"NAME", b"WRLD", b"MATL", b"WORD"])
@@ -66,6 +75,7 @@ def test_missing_sections(name):
         (b"WORD", b"abc"),
         (b"VIEW", bytes(47)),
         (b"LITE", bytes(17)),
+        (b"FACE", bytes(5)),
     ],
 )
 def test_other_layouts(name, data):

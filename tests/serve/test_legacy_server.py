@@ -10,10 +10,11 @@ from fakes.sockets import ended, raw_connection
 from hypothesis import given
 from hypothesis import strategies as st
 
+from voxrt.board.errors import DeviceError
 from voxrt.board.view import Camera
 from voxrt.serve.legacy_server import read_legacy_request
-from voxrt.serve.scene_files import MemoryReader
 from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions
 
@@ -44,7 +45,7 @@ def test_request(position, look, right, up, background):
 def test_pictures(run):
     async def check():
         device = FakeDevice(size=(640, 512))
-        library, options = SceneLibrary(MemoryReader()), ServerOptions(legacy_port=0)
+        library, options = SceneLibrary(memory_reader()), ServerOptions(legacy_port=0)
         async with FrameServer(device, library, options) as server:
             await server.session.renderer.load(scene(material=9), lambda *_: None)
             before = server.session.renderer.view
@@ -59,7 +60,7 @@ def test_pictures(run):
                     assert len({picture[i : i + 3] for i in range(0, len(picture), 3)}) == 1
                 assert server.session.renderer.view == before
                 # An incomplete request, a failing device, too many clients: the server closes each connection.
-                device.fail_frames = True
+                device.fail_frames = DeviceError("the lanes hang")
                 async with raw_connection(server.legacy_port) as (other_reader, other):
                     other.write(b"\0" * 27)
                     other.write_eof()

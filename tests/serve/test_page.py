@@ -8,11 +8,12 @@ from contextlib import contextmanager
 
 import numpy as np
 from fakes.browser import chromium
+from fakes.scene_reader import ReadyScenes
 from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import AssetReader, board_scene
+from voxrt.board_scenes import asset_reader, board_scene
 from voxrt.export import Blob, write_rom
 from voxrt.octree import Octree, Rom
 from voxrt.serve.scene_library import SceneLibrary
@@ -41,7 +42,8 @@ def serving(scene, port=0):
 
     async def serve():
         kept["stop"] = asyncio.Event()
-        library = SceneLibrary(AssetReader(depth=4), {scene.name: lambda: scene})
+        own = ReadyScenes(**{scene.name: scene})
+        library = SceneLibrary(asset_reader(depth=4), own.files, own)
         async with FrameServer(ModelDevice(), library, ServerOptions(port=port)) as server:
             await server.session.renderer.load(scene, lambda *_: None)
             kept["server"] = server
@@ -120,7 +122,7 @@ def test_page(tmp_path):
         browser.run("document.querySelector('#notice button').click()")
 
         # Controls of the panel: flat colours, background, flip, a preset.
-        for selector in ("[data-feature=flat]", "#flip-x", "#presets button:nth-child(2)", "[data-scene=first]"):
+        for selector in ("[data-shading=flat]", "#flip-x", "#presets button:nth-child(2)", "[data-scene=first]"):
             browser.run("document.querySelector(arguments[0]).click()", selector)
         assert browser.until("document.querySelector('#scene').innerText.startsWith('first')")
         browser.run(
@@ -128,7 +130,7 @@ def test_page(tmp_path):
         )
         assert browser.until(idle)
         assert server.session.renderer.view.background == (0x20, 0x40, 0x60)
-        assert server.session.renderer.view.lighting.features == {"flat"}
+        assert server.session.renderer.view.lighting.shading == "flat"
         assert shown(server, browser)
         assert browser.faults() == []
 

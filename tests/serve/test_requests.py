@@ -22,11 +22,14 @@ CAMERA = {"position": [-160, 0, 16], "look": [0, 0, -90], "right": [1, 0, 0], "u
 
 def test_requests():
     assert read_request('{"type": "take", "request": 7}') == (7, TakeControl())
-    change = {"type": "view", "camera": CAMERA, "features": ["flat"], "nonstop": True}
+    change = {"type": "view", "camera": CAMERA, "features": ["light"], "shading": "flat", "nonstop": True}
     assert read_request(json.dumps(change)) == (
         0,
         ChangeView(
-            camera=Camera((-160, 0, 16), (0, 0, -90), (1, 0, 0), (0, 1, 0)), features=frozenset({"flat"}), nonstop=True
+            camera=Camera((-160, 0, 16), (0, 0, -90), (1, 0, 0), (0, 1, 0)),
+            features=frozenset({"light"}),
+            shading="flat",
+            nonstop=True,
         ),
     )
     upload = {"type": "upload", "files": [{"name": "a.mem", "size": 9, "crc32": 1}], "check_only": True}
@@ -50,7 +53,9 @@ def test_requests():
         (json.dumps({"type": "view", "camera": {**CAMERA, "look": [0, 0, 32768]}}), "camera.look 32768"),
         (json.dumps({"type": "view", "camera": {**CAMERA, "look": [0, 0, 0.5]}}), "camera.look 0.5"),
         ('{"type": "view", "size": [0, 1]}', "size 0"),
-        ('{"type": "view", "features": ["fog"]}', "features is not a list of flat, light, mirrors"),
+        ('{"type": "view", "features": ["fog"]}', "features is not a list of light, mirrors"),
+        ('{"type": "view", "shading": "gouraud"}', "shading 'gouraud' is not faces, report or flat"),
+        ('{"type": "view", "shading": ["flat"]}', "shading .* is not faces"),
         ('{"type": "view", "nonstop": 1}', "nonstop 1 is not true or false"),
         ('{"type": "upload", "files": []}', "files is not a list of 1 to 64 files"),
         ('{"type": "upload", "files": [{"name": "a", "size": 1}]}', "a file of an upload is not"),

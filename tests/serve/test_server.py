@@ -13,16 +13,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fakes.device import FakeDevice, scene, wide_scene
+from fakes.scene_reader import ReadyScenes
 from fakes.sockets import ended, raw_connection
 from websockets.asyncio.client import connect
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from voxrt.board.errors import Refused
+from voxrt.board.errors import DeviceError, Refused
 from voxrt.serve.clients import Client
 from voxrt.serve.frame_client import open_client
 from voxrt.serve.packets import CHUNK_LIMIT, Chunk, pack_chunk
-from voxrt.serve.scene_files import MemoryReader
 from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.scene_process import memory_reader
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import Limits, ServerOptions
 
@@ -45,7 +46,8 @@ def mem_files(made, name=None):
 @asynccontextmanager
 async def served(device=None, loaded=None, scenes=None, reader=None, **options):
     device = device or FakeDevice()
-    library = SceneLibrary(reader or MemoryReader(), scenes or {})
+    own = ReadyScenes(**scenes or {})
+    library = SceneLibrary(reader or memory_reader(), own.files, own)
     async with FrameServer(device, library, ServerOptions(**options)) as server:
         if loaded is not None:
             await server.session.renderer.load(loaded, ignore)
@@ -170,7 +172,7 @@ def test_upload(run):
             assert server.session.renderer.scene.name == "scene"
             done = await client.upload(mem_files(new), lambda stage, _d, _t: stages.append(stage))
             assert done["scene"] == {"name": "new", "depth": 3, "words": 25, "crc32": new.crc32}
-            assert set(stages) == {"send", "read", "write", "verify"}
+            assert set(stages) == {"send", "read", "write", "verify", "render"}
             packet = await frame_where(client, lambda packet: packet.scene == 2)
             assert pixel(packet)[0] == 6
 
@@ -272,21 +274,18 @@ def test_a_controller_that_leaves_in_the_middle(run):
 
 def test_control_lost_while_a_scene_is_made(run):
     async def check():
-        reading, may_read = asyncio.Event(), asyncio.Event()
-        loop = asyncio.get_running_loop()
+        reading = asyncio.Event()
 
-        class SlowReader(MemoryReader):
-            def __call__(self, files, progress):
-                loop.call_soon_threadsafe(reading.set)
-                asyncio.run_coroutine_threadsafe(may_read.wait(), loop).result()
-                return super().__call__(files, progress)
+        class SlowReader(ReadyScenes):
+            async def read(self, _paths, _progress):
+                reading.set()
+                await asyncio.Event().wait()
 
         async with served(loaded=scene(), reader=SlowReader()) as server, open_client(server.url) as client:
             await client.take_control()
             upload = asyncio.create_task(client.upload(mem_files(scene("new")), ignore))
             await reading.wait()
             server.session.control.release(client.hello["viewer"])
-            may_read.set()
             with pytest.raises(Refused, match="another viewer took control"):
                 await upload
             assert server.session.renderer.scene.name == "scene"
@@ -296,7 +295,7 @@ def test_control_lost_while_a_scene_is_made(run):
 
 def test_library(run):
     async def check():
-        scenes = {"a": lambda: scene("a", material=6)}
+        scenes = {"a": scene("a", material=6)}
         async with served(loaded=scene(), scenes=scenes) as server, open_client(server.url) as client:
             assert client.hello["scenes"] == ["a"]
             await client.take_control()
@@ -317,16 +316,21 @@ def test_trouble_is_told_and_passes(run):
         async with served(device, scene()) as server, open_client(server.url) as client:
             await client.take_control()
             await client.next_frame()
-            device.fail_frames = True
-            await client.request("view", camera=CAMERA, nonstop=True)
-            while not client.state or client.state["trouble"] != "the lanes hang":
-                await client._receive()
-            device.fail_frames = False
-            request = await client.send("view", camera=CAMERA)
-            await frame_where(client, lambda packet: packet.request == request)
-            while client.state["trouble"] is not None:
-                await client._receive()
-            assert server.session.renderer.trouble is None
+            for failure, trouble in (
+                (DeviceError("the lanes hang"), "the lanes hang"),
+                (MemoryError(), "there is not enough memory for a frame; choose a smaller picture"),
+                (ValueError("?"), "the frame failed: ValueError: ?; please report this"),
+            ):
+                device.fail_frames = failure
+                await client.request("view", camera=CAMERA, nonstop=True)
+                while client.state.get("trouble") != trouble:
+                    await client._receive()
+                device.fail_frames = None
+                request = await client.send("view", camera=CAMERA)
+                await frame_where(client, lambda packet, request=request: packet.request == request)
+                while client.state["trouble"] is not None:
+                    await client._receive()
+                assert server.session.renderer.trouble is None
 
     run(check())
 
@@ -362,7 +366,7 @@ def test_access(run):
                 return error.response.status_code
 
         with pytest.raises(Refused, match=r"0\.0\.0\.0 can be reached from other machines; give a token"):
-            FrameServer(FakeDevice(), SceneLibrary(MemoryReader()), ServerOptions(host="0.0.0.0"))
+            FrameServer(FakeDevice(), SceneLibrary(memory_reader()), ServerOptions(host="0.0.0.0"))
         async with served(token="sesame") as server:
             assert await status(server) == 401
             assert await status(server, "?token=sesame") == 101
@@ -400,7 +404,12 @@ def test_page(run):
                 assert b" 200 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             for name in (b"nothing", b"../server.py", b"%2e%2e/server.py", b"page_files.py"):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
-            assert b" 426 " in await http(server.port, b"GET /v2 HTTP/1.1\r\nHost: x\r\n\r\n")
+            # The page asks why it was refused: it would be, under a name that is not this machine's.
+            asked = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
+            assert b" 426 " in await http(server.port, asked % (b"127.0.0.1:%d" % server.port))
+            refused = await http(server.port, asked % b"x")
+            assert refused.startswith(b"HTTP/1.1 403 ")
+            assert b"pages of http://x may not connect; start the server with --origin http://x" in refused
 
     run(check())
 
@@ -410,10 +419,14 @@ def test_malformed_and_excess_connections(run):
 
     async def check():
         random = np.random.default_rng(7)
+        limits = Limits(
+            connections=120,
+            strangers_per_address=200,
+            new_connections_per_address_and_second=1000,
+            handshake_seconds=0.5,
+        )
         async with (
-            served(
-                loaded=scene(), limits=Limits(connections=120, new_clients_per_second=1000, handshake_seconds=0.5)
-            ) as server,
+            served(loaded=scene(), limits=limits) as server,
             open_client(server.url) as correct,
         ):
             await correct.take_control()
@@ -442,9 +455,11 @@ def test_malformed_and_excess_connections(run):
                     await malformed.send(random.bytes(int(random.integers(0, 200))))
                     await malformed.send('{"type": "view", "camera": 3}')
                 await malformed.send(bytes(CHUNK_LIMIT + 100))
-                await malformed.wait_closed()
+                with contextlib.suppress(ConnectionClosed):
+                    while True:
+                        await malformed.recv()
                 assert malformed.close_code == 1009
-            while len(server.connections) > 1:
+            while server.connections > 1:
                 await correct.request("counters")
             request = await correct.send("view", camera=CAMERA)
             await frame_where(correct, lambda packet: packet.request == request)
@@ -459,7 +474,7 @@ def test_backlog_of_answers(run):
             async def send(self, _message):
                 await asyncio.Event().wait()
 
-        client = Client(1, lambda: None, dict)
+        client = Client(1, lambda: None, str, lambda: None)
         sending = asyncio.create_task(client.send_all(BlockedConnection()))
         for number in range(1000):
             client.queue_answer({"type": "done", "request": number})

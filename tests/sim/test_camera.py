@@ -79,8 +79,11 @@ def test_the_whole_scene_is_in_view_and_fills_it(corner, extent, size):
     assert row.min() >= 0
     assert row.max() <= size[1] - 1
     if min(extent) >= 8:  # below that, 1/16 voxel of the camera's position is more than a pixel
-        filled = max(np.ptp(column) / size[0], np.ptp(row) / size[1])
-        assert filled > 0.8
+        # Left free on each side of the tighter axis, and at least on each side of the other.
+        tighter = min((size[0] - np.ptp(column)) / size[0], (size[1] - np.ptp(row)) / size[1]) / 2
+        assert 0.08 <= tighter <= 0.2
+        free = column.min() / size[0], 1 - column.max() / size[0], row.min() / size[1], 1 - row.max() / size[1]
+        assert min(free) > 0.07
     assert np.abs(camera.position).max() < 1 << 16
     eye = np.array(camera.position) / 16
     assert np.all(eye > (low + high) / 2)  # right, above, in front

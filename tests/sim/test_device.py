@@ -78,22 +78,25 @@ def test_features_and_background(opened):
         device = opened()
     except SimulatorError as error:
         pytest.skip(str(error))
-    assert device.identity.features == {"flat", "light", "mirrors"}
+    assert device.identity.features == {"light", "mirrors"}
     SceneMemory(device).load(scene, ignore)
     size = (80, 60)
     seen = refit(scene.camera, (640, 480), size)
     pictures = set()
     for lighting in (
         Lighting(),
+        Lighting(faces=(1, 2, 3, 250, 99, 98)),
+        Lighting(faces=None),
         Lighting(flat=True),
         Lighting((400, 900, -100), 20, on=True),
         Lighting((400, 900, -100), 20, on=True, bounces=3),
+        Lighting((400, 900, -100), 20, on=True, bounces=3, faces=None),
     ):
         view = View(seen, size, (1, 2, 3), lighting)
         picture = device.frame(view).colour
         assert (picture == render(rom, seen, size, engine="model", lighting=lighting).colour).all()
         pictures.add(picture.tobytes())
-    assert len(pictures) == 4
+    assert len(pictures) == 7
 
 
 def test_a_core_without_features():

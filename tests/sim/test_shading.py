@@ -32,6 +32,16 @@ WORLDS = {
 }
 SHADERS = {
     "flat": {"flat": True},
+    "faces": {"brightness": (1, 37, 140, 255, 219, 0)},
+    "faces, flat": {"brightness": (1, 37, 140, 255, 219, 0), "flat": True},
+    "faces, light": {"brightness": (189, 37, 140, 255, 219, 254), "light": (61, 70, 77), "ambient": 90},
+    "faces, light, two bounces": {
+        "brightness": (189, 37, 140, 255, 219, 0),
+        "light": (70, 300, 50),
+        "ambient": 255,
+        "bounces": 2,
+    },
+    "faces, fifteen bounces": {"brightness": (9, 250, 140, 255, 1, 219), "bounces": 15},
     "light above": {"light": (70, 300, 50), "ambient": 40},
     "light within": {"light": (61, 70, 77), "ambient": 0},
     "light on a corner of the grid": {"light": (64, 64, 64), "ambient": 9},
@@ -52,6 +62,7 @@ def rendered(voxels, registers, options, **cut):
         registers,
         *SIZE,
         flat=options.get("flat", False),
+        brightness=np.array(options["brightness"], np.uint8) if "brightness" in options else None,
         light=None if light is None else np.array(light, np.int32),
         ambient=options.get("ambient", 0),
         bounces=options.get("bounces", 0),
@@ -71,7 +82,8 @@ def cameras_of(voxels, seed):
 @pytest.mark.parametrize("world", WORLDS)
 def test_every_pixel_has_the_oracles_colour(world, shader):
     voxels, options = WORLDS[world], SHADERS[shader]
-    oracle = Shader(PALETTE, mirrors=EVERY_OTHER, **options)
+    asked = {{"brightness": "faces"}.get(name, name): value for name, value in options.items()}
+    oracle = Shader(PALETTE, mirrors=EVERY_OTHER, **asked)
     for registers in cameras_of(voxels, seed=len(shader)):
         frame = rendered(voxels, registers, options)
         for (row, column), _ in np.ndenumerate(frame.face):
@@ -81,7 +93,7 @@ def test_every_pixel_has_the_oracles_colour(world, shader):
             assert found == (*colour, material, face), (registers.tolist(), (row, column), direction.tolist())
 
 
-@pytest.mark.parametrize("shader", ["light within", "four bounces, light"])
+@pytest.mark.parametrize("shader", ["light within", "four bounces, light", "faces, light"])
 def test_the_picture_does_not_depend_on_how_the_octree_is_cut(shader):
     voxels = WORLDS["boxes"]
     for registers in cameras_of(voxels, seed=3):

@@ -1,5 +1,9 @@
 """Colliders: rounding to powers of two, analytic solids against exact overlap, hulls, what the warnings say."""
 
+import itertools
+from fractions import Fraction
+
+import hypothesis
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -131,6 +135,89 @@ def test_ellipsoid_lies_between_finer_and_finer_meshes(seed):
     circumscribed = dense(voxelize(scene_of(SceneObject("o", around, transform)), GRID).voxels) != 0
     assert not (inscribed & ~filled).any()
     assert not (filled & ~circumscribed).any()
+
+
+def least_over_box(matrix, low, high):
+    """The least d^T matrix d over a box, exactly: the least of the planes, lines and points of its faces that has its
+    place within them (Fraction)."""
+    best = None
+    for fixed in itertools.product((None, 0, 1), repeat=3):
+        held = {i: Fraction((low, high)[end][i]) for i, end in enumerate(fixed) if end is not None}
+        free = [i for i in range(3) if i not in held]
+        known = [-sum(matrix[i][k] * value for k, value in held.items()) for i in free]
+        place = dict(held) | dict(zip(free, solved([[matrix[i][j] for j in free] for i in free], known), strict=True))
+        if all(low[i] <= place[i] <= high[i] for i in range(3)):
+            value = sum(matrix[i][j] * place[i] * place[j] for i in range(3) for j in range(3))
+            best = value if best is None else min(best, value)
+    return best
+
+
+def solved(matrix, right):
+    """Gauss' elimination in fractions."""
+    rows = [[*map(Fraction, row), Fraction(value)] for row, value in zip(matrix, right, strict=True)]
+    for k in range(len(rows)):
+        pivot = next(i for i in range(k, len(rows)) if rows[i][k])
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        rows[k] = [value / rows[k][k] for value in rows[k]]
+        for i in range(len(rows)):
+            if i != k:
+                rows[i] = [a - rows[i][k] * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return [row[-1] for row in rows]
+
+
+def inverse_of_shape(linear):
+    shape = [[sum(Fraction(int(a) * int(b)) for a, b in zip(p, q, strict=True)) for q in linear] for p in linear]
+    columns = [solved(shape, [int(i == j) for i in range(3)]) for j in range(3)]
+    return [[columns[j][i] for j in range(3)] for i in range(3)]
+
+
+entry = st.integers(-6, 6) | st.integers(-6 * UNIT, 6 * UNIT).map(lambda units: Fraction(units, UNIT))
+
+
+@settings(max_examples=25)
+@given(st.lists(st.lists(entry, min_size=3, max_size=3), min_size=3, max_size=3), st.tuples(*[st.integers(0, 4)] * 3))
+def test_ellipsoid_is_exact(linear, centre):
+    """Voxels around the surface, by rational arithmetic: touching does not count."""
+    in_units = [[int(value * UNIT) for value in row] for row in linear]
+    hypothesis.assume(abs(np.linalg.det(np.array(linear, float))) > 1e-6)
+    transform = np.eye(4)
+    transform[:3, :3], transform[:3, 3] = np.array(linear, float), centre
+    grid = Grid(2, (0, 0, 0), 1.0)
+    solid = SphereCollider(np.zeros(3), 1.0)
+    filled = dense(voxelize(collider_scene(solid, transform=transform), grid).voxels) == 3
+    shell = dense(voxelize(collider_scene(solid, transform=transform), grid, fill="surface").voxels) == 3
+    inverse = inverse_of_shape(in_units)
+    for cell in np.ndindex(filled.shape):
+        low = [(cell[i] - centre[i]) * UNIT for i in range(3)]
+        high = [value + UNIT for value in low]
+        assert filled[cell] == (least_over_box(inverse, low, high) < 1), cell
+        corners = itertools.product(*zip(low, high, strict=True))
+        within = all(sum(inverse[i][j] * d[i] * d[j] for i in range(3) for j in range(3)) <= 1 for d in corners)
+        assert shell[cell] == (filled[cell] and not within), cell
+
+
+@pytest.mark.parametrize("radii", [(10, 5, 5), (3, 4, 5), (1, 7, 2), (6, 6, 1)])
+def test_ellipsoid_that_touches_planes_between_voxels(radii):
+    transform = np.diag([*map(float, radii), 1.0])
+    transform[:3, 3] = 12
+    grid = Grid(5, (0, 0, 0), 1.0)
+    filled = dense(voxelize(collider_scene(SphereCollider(np.zeros(3), 1.0), transform=transform), grid).voxels) == 3
+    near = np.array([max(0, v - 12, 12 - v - 1) for v in range(32)], dtype=object)
+    square = [near**2 * (np.prod(radii, dtype=object) // r) ** 2 for r in radii]
+    sums = square[0][:, None, None] + square[1][None, :, None] + square[2][None, None, :]
+    np.testing.assert_array_equal(filled, sums < np.prod(radii, dtype=object) ** 2)
+
+
+@pytest.mark.parametrize("thin", [0.0, 1e-9, 1e-4, 1e-2])
+def test_needles_and_discs(thin):
+    """Thinner than a fraction of a voxel, in any direction: the voxels along them, each connected to the next."""
+    turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
+    for scale, least, most in (([20, thin, thin], 30, 150), ([20, 20, thin], 700, 4000)):
+        transform = np.eye(4)
+        transform[:3, :3], transform[:3, 3] = turn @ np.diag(scale), 32
+        grid = Grid(6, (0, 0, 0), 1.0)
+        result = voxelize(collider_scene(SphereCollider(np.zeros(3), 1.0), transform=transform), grid)
+        assert least < result.objects[0].voxels < most
 
 
 @settings(max_examples=40)

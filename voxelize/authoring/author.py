@@ -204,7 +204,8 @@ class Author:
             path = f"{name}/{one.name.strip('/')}"
             with np.errstate(over="ignore", invalid="ignore"):
                 placed = outer @ one.transform
-            self._enter(SceneObject(path, mesh, _finite(path, placed), colliders, filling or 1))
+            flags = (one.hidden and not (collider and filling), one.represented)
+            self._enter(SceneObject(path, mesh, _finite(path, placed), colliders, filling or 1, *flags))
         for warning in asset.warnings:
             self._log.add(warning.kind, f"{name}: {warning.message}", warning.count)
 
@@ -228,7 +229,7 @@ class Author:
             raise AuthoringError("the camera's eye and target must differ")
         if field_of_view is not None:
             field_of_view = arguments.real("field_of_view", field_of_view, above=0, below=180)
-        self._viewpoint = Viewpoint(eye, target, field_of_view)
+        self._viewpoint = Viewpoint(eye, target, field_of_view, name="camera")
 
     def light(self, position: Sequence[float]) -> None:
         """Set the point light's position, in metres.
@@ -239,6 +240,10 @@ class Author:
             A position that is not three finite numbers.
         """
         self._light = PointLight(arguments.vector("position", position))
+
+    def warn(self, kind: str, message: str) -> None:
+        """Count one more case of a warning about how the scene was written."""
+        self._log.add(kind, message)
 
     def build(self) -> Scene:
         """Return the scene.
@@ -259,6 +264,7 @@ class Author:
             self._log.warnings(),
             self._viewpoint,
             self._light,
+            () if self._viewpoint is None else (self._viewpoint,),
         )
 
     @property

@@ -1,6 +1,7 @@
 #include "voxelizer.h"
 
 #include "convex_solids.h"
+#include "ellipsoid.h"
 #include "material_raster.h"
 #include "solid_fill.h"
 #include "tile_order.h"

@@ -1,22 +1,23 @@
 """The commands: ``voxrt``, ``voxrt-build`` and ``python -m voxrt``.
 
-Standard output carries the result of ``--json`` and nothing else; all else goes to standard error.
+Standard output carries what was asked for: the result of ``--json``, and what ``info``, ``trace``, ``diff``,
+``compare`` and ``core`` print. All else goes to standard error.
 """
 
 from __future__ import annotations
 
 import sys
 
-from voxrt.cli.app import run
+from voxrt.cli.start import start
 
 __all__ = ["main", "main_build"]
 
 
 def main() -> None:
     """Run ``voxrt`` and exit."""
-    sys.exit(run(sys.argv[1:]))
+    start(sys.argv[1:])
 
 
 def main_build() -> None:
     """Run ``voxrt-build``, which is ``voxrt build``, and exit."""
-    sys.exit(run(["build", *sys.argv[1:]]))
+    start(["build", *sys.argv[1:]])

@@ -6,6 +6,7 @@ import os
 import platform
 import signal
 import sys
+import threading
 import traceback
 from enum import IntEnum
 from typing import TYPE_CHECKING, NoReturn
@@ -14,7 +15,7 @@ import cyclopts
 
 import voxrt
 from voxrt.cli.arguments import UsageError, bind_preview
-from voxrt.cli.messages import complain
+from voxrt.cli.messages import complain, discard_output, set_verbosity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,18 +31,20 @@ class ExitCode(IntEnum):
     ASSET = 3
     DOES_NOT_FIT = 4
     SIMULATOR = 5
+    HUNG_UP = 128 + signal.SIGHUP
     INTERRUPTED = 128 + signal.SIGINT
     PIPE_CLOSED = 128 + signal.SIGPIPE
     TERMINATED = 128 + signal.SIGTERM
 
 
 class Terminated(BaseException):
-    """SIGTERM arrived: unwind, clean up, leave."""
+    """SIGTERM or SIGHUP arrived: unwind, clean up, leave."""
 
 
 app = cyclopts.App(
     name="voxrt",
     version=voxrt.__version__,
+    version_flags=("--version", "-V"),
     help="Meshes to voxels to an octree memory to pictures ray-traced by hardware.",
     help_epilogue="Example: voxrt build courtyard.glb -o out --preview",
     help_format="plaintext",
@@ -110,29 +113,58 @@ _add_command(
 _add_command("diff", "Compare the voxels of two memories.", "voxrt diff before.mem after.mem")
 
 
+_add_command("help", "Print the help of a command, or of all.", "voxrt help build")
+
+
 def run(arguments: Sequence[str]) -> ExitCode:
     """Run a command line and tell its exit code; an error is one line on standard error."""
-    signal.signal(signal.SIGTERM, _terminate)
     try:
-        app(bind_preview(arguments))
+        _take_signals()
+        command, bound, _ = app.parse_args(bind_preview(arguments))
+        set_verbosity(bound.arguments.get("reporting"))
+        command(*bound.args, **bound.kwargs)
         sys.stdout.flush()
     except KeyboardInterrupt:
         complain("interrupted: every file is as it was, or complete")
         return ExitCode.INTERRUPTED
-    except Terminated:
+    except Terminated as signalled:
         complain("terminated: every file is as it was, or complete")
-        return ExitCode.TERMINATED
+        return ExitCode(128 + signalled.args[0])
     except SystemExit:
         return ExitCode.PIPE_CLOSED  # rich, showing help, found that nobody reads
     except BrokenPipeError:
-        # Nobody reads standard output any more: let the interpreter's last flush go nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        discard_output()  # nobody reads it any more
         return ExitCode.PIPE_CLOSED
     except Exception as error:  # noqa: BLE001 - the outermost frame: everything becomes a line and an exit code
         if "--debug" in arguments:
             traceback.print_exc()
         return _explain(error, arguments)
     return ExitCode.DONE
+
+
+def _take_signals() -> None:
+    """Let signals unwind what runs. Those that whoever started the process ignores stay ignored."""
+    for number, handler in (
+        (signal.SIGINT, signal.default_int_handler),
+        (signal.SIGTERM, _terminate),
+        (signal.SIGHUP, _terminate),
+    ):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
+    sys.unraisablehook = _raise_again
+
+
+def _raise_again(unraisable: sys.UnraisableHookArgs) -> None:
+    """Send a signal again whose exception came where Python can only report it, as in the callback of a reference."""
+    match unraisable.exc_value:
+        case KeyboardInterrupt():
+            number = signal.SIGINT
+        case Terminated():
+            number = signal.Signals(unraisable.exc_value.args[0])
+        case _:
+            sys.__unraisablehook__(unraisable)
+            return
+    threading.Timer(0.01, os.kill, (os.getpid(), number)).start()
 
 
 def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
@@ -154,6 +186,10 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
             problem, code = "out of memory; use a smaller --depth or a larger --voxel-size", ExitCode.DOES_NOT_FIT
         case voxrt.SimulatorError() | voxrt.ViewerError() | voxrt.ToolError():
             code = ExitCode.SIMULATOR
+        case OSError():  # the machine's fault: no room, no more files, a stream that is closed
+            if not error.filename:
+                discard_output()
+            problem, code = f"{error.filename or 'standard output'}: {error.strerror or problem}", ExitCode.USAGE
         case _:
             system = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"
             problem = (
@@ -164,5 +200,5 @@ def _explain(error: Exception, arguments: Sequence[str]) -> ExitCode:
     return code
 
 
-def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise Terminated
+def _terminate(number: int, _frame: FrameType | None) -> NoReturn:
+    raise Terminated(number)

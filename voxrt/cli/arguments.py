@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from decimal import Decimal
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from cyclopts import Parameter
+
+from voxrt.backgrounds import read_background
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,6 +21,17 @@ if TYPE_CHECKING:
 SIZE_LIMIT = 1 << 14
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
+_TIMES = "xX\N{MULTIPLICATION SIGN}"
+_UNITS = {
+    "mm": Decimal("0.001"),
+    "cm": Decimal("0.01"),
+    "m": Decimal(1),
+    "in": Decimal("0.0254"),
+    "ft": Decimal("0.3048"),
+}
+_LENGTH = re.compile(
+    rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
+)
 
 
 class UsageError(Exception):
@@ -25,14 +39,25 @@ class UsageError(Exception):
 
 
 @dataclass(frozen=True)
-class Reporting:
+class Messages:
+    """How much a command says."""
+
+    verbose: Annotated[bool, Parameter(("--verbose", "-v"))] = False
+    """Print every warning, and the time of each stage as it ends."""
+
+    quiet: Annotated[bool, Parameter(("--quiet", "-q"))] = False
+    """Print nothing but answers, warnings and errors."""
+
+    debug: bool = False
+    """Show the traceback of an error."""
+
+
+@dataclass(frozen=True)
+class Reporting(Messages):
     """How a command prints its results."""
 
     json: bool = False
     """Print the result as JSON on standard output."""
-
-    debug: bool = False
-    """Show the traceback of an error."""
 
 
 def bind_preview(arguments: Sequence[str]) -> list[str]:
@@ -91,12 +116,56 @@ def words(kind: type, tokens: Sequence[Token]) -> int:
     return number
 
 
-def metres(kind: type, tokens: Sequence[Token]) -> float:
-    """Read a length."""
-    number = seconds(kind, tokens)
-    if number <= 0:
-        raise ValueError(f"{tokens[0].value} is not a positive number of metres")
-    return number
+def choice(kind: Any, tokens: Sequence[Token]) -> str:  # noqa: ANN401 - a Literal
+    """Read one of a few names, in whichever case, with dashes or underscores."""
+    names: list[str] = [name for one in (kind, *get_args(kind)) for name in get_args(one) if isinstance(name, str)]
+    said = _plain(tokens[0].value)
+    for name in names:
+        if _plain(name) == said:
+            return name
+    raise ValueError(f"{tokens[0].value!r} is none of " + ", ".join(f'"{name}"' for name in names))
+
+
+def board_name(_type: type, tokens: Sequence[Token]) -> str:
+    """Read the name of a board, however it is spelled."""
+    from voxrt.octree import BOARDS  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    for name in BOARDS:
+        if _plain(name) == _plain(tokens[0].value):
+            return name
+    raise ValueError(f"no board {tokens[0].value!r}; there are {', '.join(sorted(BOARDS))}")
+
+
+def _plain(name: str) -> str:
+    return "".join(c for c in name.lower() if c.isalnum())
+
+
+def metres(_type: type, tokens: Sequence[Token]) -> float:
+    """Read a length, ``0.05``, ``5cm`` or ``2 in``."""
+    return _length(tokens[0].value, alone=False)
+
+
+def metres_per_unit(_type: type, tokens: Sequence[Token]) -> float:
+    """Read a unit of length: its name, or its length in metres."""
+    return _length(tokens[0].value, alone=True)
+
+
+def _length(text: str, *, alone: bool) -> float:
+    """Read a length, or where the unit may stand `alone` its name for one of it."""
+    found = _LENGTH.fullmatch(text.strip())
+    number, unit = found.groups() if found else (None, None)
+    if found is None or not (number or (alone and unit)):
+        units = f", nor one of the units {', '.join(_UNITS)}" if alone else f", with one of {', '.join(_UNITS)} or none"
+        raise ValueError(f"{text!r} is not a number{units}")
+    try:
+        length = float(Decimal(number or 1) * _UNITS[unit.lower() if unit else "m"])
+    except ArithmeticError:
+        length = inf
+    if not isfinite(length):
+        raise ValueError(f"{text} is not a finite number")
+    if length <= 0:
+        raise ValueError(f"{text} is not a positive number of metres")
+    return length
 
 
 def seconds(_type: type, tokens: Sequence[Token]) -> float:
@@ -110,12 +179,27 @@ def seconds(_type: type, tokens: Sequence[Token]) -> float:
     return number
 
 
+def corners(_type: object, tokens: Sequence[Token]) -> tuple[float, ...]:
+    """Read the lowest and the highest corner of a box, ``-1,0,-1,1,2.5,1``."""
+    text = tokens[0].value
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 6 or not all(map(isfinite, values)):
+        raise ValueError(f"{text!r} is not X,Y,Z,X,Y,Z: two corners in metres, with commas and no spaces between")
+    if not all(low < high for low, high in zip(values[:3], values[3:], strict=True)):
+        raise ValueError(f"{text!r} is not a lowest and a highest corner: each number must be below its partner")
+    return values
+
+
 def pixels(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
-    """Read a picture's size, ``640x480``."""
-    parts = tokens[0].value.lower().split("x")
-    if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
-        raise ValueError(f"{tokens[0].value!r} is not WIDTHxHEIGHT, such as 640x480")
-    width, height = (int(part) for part in parts)
+    """Read a picture's size, ``640x480``, or its width alone: a picture of 4 to 3."""
+    parts = _parts(tokens[0].value, _TIMES)
+    if len(parts) not in {1, 2} or not all(part.isdecimal() and len(part) < 8 for part in parts):
+        raise ValueError(f"{tokens[0].value!r} is not WIDTHxHEIGHT, such as 640x480, or WIDTH")
+    width = int(parts[0])
+    height = int(parts[1]) if len(parts) == 2 else max(1, round(width * 3 / 4))
     if not (1 <= width <= SIZE_LIMIT and 1 <= height <= SIZE_LIMIT):
         raise ValueError(f"{tokens[0].value} is not between 1x1 and {SIZE_LIMIT}x{SIZE_LIMIT} pixels")
     return width, height
@@ -125,6 +209,11 @@ def place(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
     """Read a position in voxels, ``10,-2.5,3``, to 1/16 voxel."""
     x, y, z = (_sixteenths(part) for part in _three(tokens[0].value))
     return x, y, z
+
+
+def background(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int] | Literal["transparent"]:
+    """Read a background: a name or a colour."""
+    return read_background("the background", tokens[0].value)
 
 
 def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
@@ -140,7 +229,7 @@ def register(_type: object, tokens: Sequence[Token]) -> tuple[int, int, int]:
 
 def pixel(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     """Read a pixel's place, ``320,240``."""
-    parts = tokens[0].value.split(",")
+    parts = _parts(tokens[0].value, _TIMES)
     if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
         raise ValueError(f"{tokens[0].value!r} is not COLUMN,ROW, such as 320,240")
     return int(parts[0]), int(parts[1])
@@ -154,10 +243,15 @@ def png(path: Path) -> Path:
 
 
 def _three(text: str) -> list[str]:
-    parts = text.split(",")
+    parts = _parts(text)
     if len(parts) != 3:
-        raise ValueError(f"{text!r} is not X,Y,Z: three numbers with commas and no spaces between")
+        raise ValueError(f"{text!r} is not X,Y,Z: three numbers with commas between, or with spaces and quotes around")
     return parts
+
+
+def _parts(text: str, between: str = "") -> list[str]:
+    """Split numbers as people write them: with commas or spaces between, or what else may stand there."""
+    return re.sub(rf"[,;\s{between}]+", " ", text.strip().strip("()[]")).split()
 
 
 def _sixteenths(text: str) -> int:
@@ -168,12 +262,17 @@ def _sixteenths(text: str) -> int:
     if not value.is_finite() or abs(value) >= _POSITION_LIMIT:
         raise ValueError(f"{text} voxels is out of range")
     if value != int(value):
-        raise ValueError(f"{text} is not a multiple of 1/16 voxel (0.0625)")
+        near = float(round(value)) / 16
+        raise ValueError(f"{text} is not a multiple of 1/16 voxel (0.0625); the nearest is {near:g}")
     return int(value)
 
 
 Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]
 Pixel = Annotated[tuple[int, int], Parameter(converter=pixel, n_tokens=1, metavar="X,Y", show_default=False)]
+Backdrop = Annotated[
+    tuple[int, int, int] | Literal["transparent"] | None,
+    Parameter(converter=background, n_tokens=1, metavar="COLOUR", show_default=False),
+]
 Depth = Annotated[int | None, Parameter(converter=levels, metavar="N")]
 _Register = Annotated[
     tuple[int, int, int] | None,

@@ -10,6 +10,8 @@ class ServeResult(msgspec.Struct, frozen=True):
 
     url: str
     """The page's address, with the token where there is one."""
+    urls: tuple[str, ...]
+    """All of its addresses: those of this machine, its names, and loopback."""
     port: int
     legacy_port: int | None
 

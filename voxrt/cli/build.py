@@ -3,15 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
-from voxrt.cli.arguments import Pixels, Reporting, UsageError, levels, metres, png, seconds, shades, words
-from voxrt.cli.messages import picture_cost, stage_bar, summarize, tabulate, warn
+from voxrt.cli.arguments import (
+    Backdrop,
+    Pixels,
+    Reporting,
+    UsageError,
+    board_name,
+    choice,
+    corners,
+    levels,
+    metres,
+    metres_per_unit,
+    png,
+    seconds,
+    shades,
+    words,
+)
+from voxrt.cli.arguments import background as read_colour
+from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
+from voxrt.cli.progress import build_bar
 from voxrt.cli.results import build_report, print_json
 
 _ASSET = (
@@ -25,37 +42,56 @@ def _option(name: str, *names: str, **said: Any) -> Parameter:  # noqa: ANN401 -
 
 
 def build(
-    asset: Annotated[Path, Parameter(metavar="ASSET", help=_ASSET)],
+    assets: Annotated[tuple[Path, ...], Parameter(name="ASSET", help=_ASSET)],
     /,
     *,
     output: Annotated[
         Path,
-        Parameter(("--output", "-o"), metavar="DIR", help="Folder for the files. It is made if it is missing."),
+        Parameter(
+            ("--output", "-o"),
+            metavar="DIR|FILE",
+            help="Folder for the files, or the file of words itself: NAME.mem, .coe, .mif or .bin.",
+        ),
     ] = Path(),
     depth: Annotated[int | None, _option("depth", converter=levels, metavar="N")] = BuildOptions.depth,
     voxel_size: Annotated[
-        float | None, _option("voxel_size", converter=metres, metavar="METRES")
+        float | None, _option("voxel_size", converter=metres, metavar="LENGTH")
     ] = BuildOptions.voxel_size,
-    fill: Annotated[Fill, _option("fill")] = BuildOptions.fill,
+    fill: Annotated[Fill, _option("fill", converter=choice)] = BuildOptions.fill,
     interior: Annotated[str, _option("interior", metavar="keep|any|MATERIAL")] = str(BuildOptions.interior),
-    geometry: Annotated[Geometry, _option("geometry")] = BuildOptions.geometry,
-    pow2: Annotated[Pow2, _option("pow2")] = BuildOptions.pow2,
-    up: Annotated[UpAxis | None, _option("up")] = BuildOptions.up,
-    unit: Annotated[float | None, _option("unit", converter=metres, metavar="METRES")] = BuildOptions.unit,
+    geometry: Annotated[Geometry, _option("geometry", converter=choice)] = BuildOptions.geometry,
+    pow2: Annotated[Pow2, _option("pow2", converter=choice)] = BuildOptions.pow2,
+    up: Annotated[UpAxis | None, _option("up", converter=choice)] = BuildOptions.up,
+    unit: Annotated[
+        float | None, _option("unit", converter=metres_per_unit, metavar="mm|cm|m|in|ft|METRES")
+    ] = BuildOptions.unit,
     time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
+    ignore: Annotated[tuple[str, ...], _option("ignore", metavar="NAME", show_default=False)] = (),
+    bounds: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        _option("bounds", converter=corners, n_tokens=1, metavar="X,Y,Z,X,Y,Z", allow_leading_hyphen=True),
+    ] = BuildOptions.bounds,
+    allow_empty: Annotated[bool, _option("allow_empty", show_default=False)] = BuildOptions.allow_empty,
     allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
     colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
     budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
     board: Annotated[
         str | None,
-        Parameter(metavar="NAME", help="Name of a board, such as pynq-z1. Its memory is the budget."),
+        Parameter(
+            converter=board_name, metavar="NAME", help="Name of a board, such as pynq-z1. Its memory is the budget."
+        ),
     ] = None,
     preview: Annotated[str | None, _option("preview", metavar="[FILE]")] = None,
     size: Annotated[Pixels, _option("size")] = BuildOptions.size,
-    engine: Annotated[Engine, _option("engine")] = BuildOptions.engine,
-    dialect: Annotated[Dialect, _option("dialect")] = BuildOptions.dialect,
+    camera: Annotated[str | None, _option("camera", metavar="NAME")] = BuildOptions.camera,
+    samples: Annotated[Literal[1, 2, 4], _option("samples")] = 1,
+    background: Annotated[
+        Backdrop, _option("background", converter=read_colour, n_tokens=1, metavar="COLOUR", show_default=False)
+    ] = None,
+    engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
+    dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -68,8 +104,7 @@ def build(
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    if board is not None and board not in voxrt.BOARDS:
-        raise UsageError(f"no board {board!r}; there are {', '.join(sorted(voxrt.BOARDS))}")
+    _check_company(assets, output, preview)
     options = BuildOptions(
         depth=depth,
         voxel_size=voxel_size,
@@ -82,39 +117,77 @@ def build(
         time=time,
         animation=animation,
         variants=variants,
+        ignore=ignore,
+        bounds=bounds,
+        allow_empty=allow_empty,
         allow_outside=allow_outside,
         colours=colours,
         budget=board or budget,
         dialect=dialect,
         preview=png(Path(preview)) if preview else preview is not None,
         size=size,
+        camera=camera,
+        samples=samples,
+        background=background,
         engine=engine,
         strict=strict,
     )
-    stages = 6 + bool(options.preview) + (interior != "keep") + (options.budget is not None)
-    with stage_bar(stages) as progress:
-        result = voxrt.build(asset, output, options, progress=progress)
-    warn(result.warnings)
+    reports = []
+    for asset in assets:
+        with build_bar() as bar:
+            result = voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+        warn(result.warnings)
+        if result.budget is not None and (loss := _loss(result.budget)):
+            warn((voxrt.SceneWarning("budget", loss),))
+        if reporting.json:
+            reports.append(build_report(result))
+        else:
+            summarize(f"{asset.name}:", _rows(result))
+        if profile:
+            _print_profile(result)
     if reporting.json:
-        print_json(build_report(result))
-    else:
-        summarize(f"{asset.name}:", _rows(result))
-    if profile:
-        total = sum(result.seconds.values())
-        rows = [
-            row
-            for stage, took in result.seconds.items()
-            for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
-        ]
-        percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
-        tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])
+        print_json(reports[0] if len(reports) == 1 else reports)
+
+
+def _check_company(assets: tuple[Path, ...], output: Path, preview: str | None) -> None:
+    """Refuse several assets that would write the same files."""
+    if len(assets) == 1:
+        return
+    if preview:
+        raise UsageError(f"--preview {preview} is one picture for {len(assets)} assets; leave the file out")
+    if output.suffix.lower() in voxrt.export.WORD_SUFFIXES and not output.is_dir():
+        raise UsageError(f"-o {output} is one file for {len(assets)} assets; name a folder")
+    from voxrt.asset_source import asset_name  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    names: dict[str, Path] = {}
+    for asset in assets:
+        if not asset.is_file():
+            raise voxrt.AssetError(asset, "no such file", fix="check the path; nothing was built")
+        name = asset_name(asset)
+        if name.casefold() in names:
+            raise UsageError(
+                f"{names[name.casefold()]} and {asset} would both be written to {output / name}.mem; build them one "
+                "by one, each with an -o of its own"
+            )
+        names[name.casefold()] = asset
+
+
+def _print_profile(result: voxrt.BuildResult) -> None:
+    total = sum(result.seconds.values())
+    rows = [
+        row
+        for stage, took in result.seconds.items()
+        for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
+    ]
+    percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
+    tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])
 
 
 def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     rom, total = result.rom, sum(result.seconds.values())
-    size, shown = len(rom.octree.words), rom.materials[1:5]
+    size, shown = len(rom.octree.words), rom.materials[1:]
     voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
-    names = ", ".join(material.name for material in shown) + (", ..." if len(rom.materials) > 5 else "")
+    names = ", ".join(material.name for material in shown)
     stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
     return [
         ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
@@ -132,6 +205,17 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
 def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
     made = "of any material" if interior.material is None else f"of {rom.materials[interior.material].name}"
     return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
+
+
+def _loss(budget: voxrt.BudgetFit) -> str:
+    """Say what a memory that does not fit gives up, and which depth does; nothing if it gives up little."""
+    if budget.lossless is None:
+        return ""
+    depth, words = budget.lossless
+    return (
+        f"{budget.words:,} words give up {budget.fit.percent_changed:.0f} % of the surface; "
+        f"--depth {depth} fits without loss, in {words:,} words"
+    )
 
 
 def _budget(budget: voxrt.BudgetFit) -> str:

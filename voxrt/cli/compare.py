@@ -81,16 +81,16 @@ def compare(
     rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in asdict(found.likeness).items()]
     if wrong is not None:
         rows.append(("hardware", f"{wrong} pixels differ from the exact model"))
-    summarize(f"{rom.name} and {asset.name}:", rows + [("wrote", str(path)) for path in outputs.values()])
+    summarize(f"{rom.name} and {asset.name}:", rows + [("wrote", str(path)) for path in outputs.values()], answer=True)
     if points:
         heads = ("depth", "words", "silhouette IoU", "mean depth error, voxels", "SSIM", "PSNR, dB")
-        tabulate(heads, [_row(point) for point in points])
+        tabulate(heads, [_row(point) for point in points], answer=True)
 
 
 def _hardware(memory: Rom, camera: Camera, size: tuple[int, int]) -> EngineCheck | None:
     """Render by both engines; None where the simulated hardware is missing or cannot hold the memory."""
     try:
-        return voxrt.check(memory, camera, size)
+        return voxrt.check(memory, camera, size, lighting=voxrt.Lighting(faces=None))
     except voxrt.SimulatorError as error:
         complain(f"without the hardware's picture: {error}")
         return None

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Literal
 
 from voxrt.cli import app
+from voxrt.cli.messages import print_answer
 
 
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
@@ -16,4 +16,4 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
     shell
         Whose script.
     """
-    sys.stdout.write(app.app.generate_completion(prog_name="voxrt", shell=shell))
+    print_answer(app.app.generate_completion(prog_name="voxrt", shell=shell))

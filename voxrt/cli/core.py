@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path  # noqa: TC003 - cyclopts reads the signature
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from voxrt.cli.arguments import UsageError
-from voxrt.cli.messages import stage_bar, summarize, tabulate
+from voxrt.cli.arguments import Messages, UsageError
+from voxrt.cli.messages import print_answer, summarize, tabulate
+from voxrt.cli.progress import stage_bar
 from voxrt.outputs import check_folder, writing
 from voxrt.plain_verilog import STAGES, plain_verilog
 from voxrt.rtl.configurations import RTL, Configuration, read_configurations
@@ -20,7 +20,7 @@ def core(
     path: Annotated[bool, Parameter(show_default=False)] = False,
     config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     verilog: Annotated[Path | None, Parameter(metavar="FILE")] = None,
-    debug: Annotated[bool, Parameter(show_default=False)] = False,  # noqa: ARG001 - read where errors are explained
+    reporting: Annotated[Messages, Parameter(name="*", show_default=False)] = Messages(),  # noqa: ARG001, B008
 ) -> None:
     """Show the configurations of the hardware, or give its sources to a design of your own.
 
@@ -36,15 +36,15 @@ def core(
     verilog
         A .v to write: the configuration as one file of plain Verilog, top module voxrt_core, for tools that do not
         read the SystemVerilog sources. yosys makes it.
-    debug
-        Show the traceback of an error.
+    reporting
+        How results are printed.
     """
     if path and (config or verilog):
         raise UsageError("--path excludes --config and --verilog")
     if (config is None) != (verilog is None):
         raise UsageError("--config and --verilog need each other")
     if path:
-        sys.stdout.write(f"{RTL}\n")
+        print_answer(f"{RTL}\n")
     elif config is not None and verilog is not None:
         _write(config, verilog)
     else:
@@ -65,6 +65,7 @@ def _list() -> None:
             )
             for each in read_configurations().values()
         ],
+        answer=True,
     )
 
 
@@ -78,7 +79,6 @@ def _write(name: str, file: Path) -> None:
     with stage_bar(len(STAGES)) as begin:
         text = plain_verilog(configuration, progress=begin)
     with writing(file):
-        file.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(file, text.encode())
     summarize(f"{name}:", [("top", "voxrt_core, without parameters"), ("wrote", str(file))])
 

@@ -8,13 +8,11 @@ from typing import Annotated
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError
+from voxrt.cli.arguments import Depth, Reporting, UsageError
 from voxrt.cli.memory_results import DiffResult, RegionEntry
-from voxrt.cli.messages import summarize, warn
+from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
-
-SHOWN = 5
-"""The most regions that are printed."""
+from voxrt.cli.source import Source, is_asset, read_source
 
 
 def diff(
@@ -22,6 +20,7 @@ def diff(
     second: Annotated[Path, Parameter(metavar="SECOND")],
     /,
     *,
+    depth: Depth = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Compare the voxels of two memories and print where they differ. The order of their words does not matter.
@@ -29,17 +28,20 @@ def diff(
     Parameters
     ----------
     first
-        A memory in any format.
+        A memory in any format, or an asset, which is built first.
     second
         Another, of the same depth.
+    depth
+        Levels of the octree, for an asset or for a memory without a manifest. An asset has those of the other file if
+        that is a memory.
     reporting
         How results are printed.
     """
-    roms = []
-    for path in (first, second):
-        blob, warnings = voxrt.read_any(path)
-        warn(warnings)
-        roms.append(blob.rom)
+    sources: dict[Path, Source] = {}
+    for path in sorted((first, second), key=is_asset):  # memories first: they know their depth
+        known = depth if depth is not None or not sources else next(iter(sources.values())).rom.octree.depth
+        sources[path] = read_source(path, known if is_asset(path) else depth)
+    roms = [sources[path].rom for path in (first, second)]
     depths = [rom.octree.depth for rom in roms]
     if depths[0] != depths[1]:
         raise UsageError(f"{first} has depth {depths[0]} and {second} {depths[1]}: only equal depths can be compared")
@@ -56,12 +58,9 @@ def diff(
         ("appeared", f"{found.appeared:,}"),
         ("vanished", f"{found.vanished:,}"),
         ("recoloured", f"{found.recoloured:,}"),
-        *(("region", _described(region)) for region in regions[:SHOWN]),
+        *(("region", _described(region)) for region in regions),
     ]
-    if len(regions) > SHOWN:
-        rest = sum(region.voxels for region in regions[SHOWN:])
-        rows.append(("regions", f"{len(regions):,} in all; {rest:,} voxels in those not shown (--json tells all)"))
-    summarize(f"{first.name} to {second.name}:", rows if found.voxels else rows[:1])
+    summarize(f"{first.name} to {second.name}:", rows if found.voxels else rows[:1], answer=True)
 
 
 def _described(region: voxrt.Region) -> str:

@@ -3,41 +3,40 @@
 from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - cyclopts reads the signature
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import Parameter
 
-import voxrt
-from voxrt.cli.arguments import Reporting, levels
+from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
+from voxrt.cli.arguments import Depth, Reporting, choice
 from voxrt.cli.memory_results import info_result
-from voxrt.cli.messages import summarize, tabulate, warn
+from voxrt.cli.messages import summarize, tabulate
 from voxrt.cli.results import print_json
+from voxrt.cli.source import read_source
 
 
 def info(
-    rom: Annotated[Path, Parameter(metavar="ROM")],
+    scene: Annotated[Path, Parameter(metavar="ROM|ASSET")],
     /,
     *,
-    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
-    dialect: Literal["report", "seed-rtl", "msb"] | None = None,
+    depth: Depth = None,
+    dialect: Annotated[Dialect | None, Parameter(converter=choice)] = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Print what a memory holds: its size, levels and materials.
 
     Parameters
     ----------
-    rom
-        A .mem, .coe, .mif or .bin file, with its manifest beside it or without, or a .blob.
+    scene
+        A memory (.mem or another format), with its manifest beside it or without; or an asset, which is built first.
     depth
-        Levels of the octree, for a memory without a manifest.
+        Levels of the octree, for an asset or for a memory without a manifest.
     dialect
         How the memory encodes materials, for a memory without a manifest.
     reporting
         How results are printed.
     """
-    blob, warnings = voxrt.read_any(rom, depth=depth, dialect=dialect)
-    warn(warnings)
-    told = info_result(blob.rom)
+    told = info_result(read_source(scene, depth, dialect).rom)
     if reporting.json:
         print_json(told)
         return
@@ -56,10 +55,11 @@ def info(
     rows += [
         (board.name, f"{'fits' if board.fits else 'does not fit'} its {board.words:,} words") for board in told.boards
     ]
-    summarize(f"{rom.name}:", rows)
+    summarize(f"{scene.name}:", rows, answer=True)
     tabulate(
         ("level", "side", "solid", "empty"),
         [(str(row.level), f"{1 << row.level:,}", f"{row.solid:,}", f"{row.empty:,}") for row in told.levels],
+        answer=True,
     )
     tabulate(
         ("material", "name", "colour", "voxels"),
@@ -67,4 +67,5 @@ def info(
             (str(row.id), row.name, "#{:02x}{:02x}{:02x}".format(*row.colour), f"{row.voxels:,}")
             for row in told.materials
         ],
+        answer=True,
     )

@@ -1,20 +1,32 @@
-"""What the commands say to people, on standard error."""
+"""What the commands say: answers on standard output, all else on standard error."""
 
 from __future__ import annotations
 
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from voxrt.outputs import OutputError
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable
     from pathlib import Path
 
+    from voxrt.cli.arguments import Messages
     from voxrt.sim import CacheCost, Frame
     from voxrt.voxelize import SceneWarning
 
-_SHOWN_OF_A_KIND = 3
+_SHOWN_OF_A_KIND = 20
+"""Warnings of a kind that are printed without --verbose."""
+
+_verbosity = 0  # -1 quiet, 1 verbose: one command runs per process
+
+
+def set_verbosity(reporting: Messages | None) -> None:
+    """Choose how much is said from now on."""
+    global _verbosity  # noqa: PLW0603 - as the signals and the streams are
+    _verbosity = 0 if reporting is None else reporting.verbose - reporting.quiet
 
 
 def printable(text: object) -> str:
@@ -28,37 +40,56 @@ def complain(problem: str) -> None:
 
 
 def warn(warnings: Iterable[SceneWarning]) -> None:
-    """Print warnings, a line each, the first few of a kind; the manifest has them all."""
+    """Print warnings, a line each. Of very many of a kind the first are printed; the manifest has them all."""
     kinds: dict[str, list[SceneWarning]] = {}
     for warning in warnings:
         kinds.setdefault(warning.kind, []).append(warning)
     for kind, alike in kinds.items():
-        for warning in alike[:_SHOWN_OF_A_KIND]:
+        shown = alike if _verbosity > 0 else alike[:_SHOWN_OF_A_KIND]
+        for warning in shown:
             times = f" ({warning.count} times)" if warning.count > 1 else ""
             _print(f"voxrt: warning: {printable(warning.message)}{times}")
-        if len(alike) > _SHOWN_OF_A_KIND:
-            _print(f"voxrt: warning: ... and {len(alike) - _SHOWN_OF_A_KIND} more of the kind {kind!r}")
+        if len(alike) > len(shown):
+            _print(f"voxrt: warning: ... and {len(alike) - len(shown)} more of the kind {kind!r} (-v shows all)")
 
 
-def summarize(title: str, rows: Iterable[tuple[str, str]]) -> None:
-    """Print a result for people: a title and aligned rows of a name and a value."""
-    _print(printable(title))
-    for name, value in rows:
-        _print(f"  {name:<10} {printable(value)}")
+def summarize(title: str, rows: Iterable[tuple[str, str]], *, answer: bool = False) -> None:
+    """Print a title and aligned rows of a name and a value: what was done, or the answer that was asked for."""
+    _say([printable(title), *(f"  {name:<10} {printable(value)}" for name, value in rows)], answer=answer)
 
 
-def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
+def tabulate(heads: tuple[str, ...], rows: list[tuple[str, ...]], *, answer: bool = False) -> None:
     """Print a table, numbers to the right."""
     rows = [tuple(map(printable, row)) for row in rows]
     widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
     right = [
         all(row[column].replace(",", "").replace(".", "").isdigit() for row in rows) for column in range(len(heads))
     ]
+    lines = []
     for row in [heads, *rows]:
         cells = zip(row, widths, right, strict=True)
-        _print(
+        lines.append(
             "  " + "  ".join(cell.rjust(wide) if number else cell.ljust(wide) for cell, wide, number in cells).rstrip()
         )
+    _say(lines, answer=answer)
+
+
+def print_answer(text: str) -> None:
+    """Print text that was asked for on standard output.
+
+    Raises
+    ------
+    OutputError
+        Standard output cannot be written to, other than because nobody reads it any more.
+    """
+    try:
+        sys.stdout.write(text.encode(sys.stdout.encoding, "backslashreplace").decode(sys.stdout.encoding))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        discard_output()
+        raise OutputError(f"standard output: {error.strerror}") from error
 
 
 def picture_cost(frame: Frame, engine: str) -> str:
@@ -78,47 +109,40 @@ def cache_cost(cost: CacheCost, pixels: int) -> str:
     )
 
 
+def discard_output() -> None:
+    """Let what standard output still holds go nowhere, where the interpreter flushes it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def is_verbose() -> bool:
+    """Tell whether --verbose was given."""
+    return _verbosity > 0
+
+
+def is_quiet() -> bool:
+    """Tell whether --quiet was given."""
+    return _verbosity < 0
+
+
+def note(text: str) -> None:
+    """Print a line about what goes on."""
+    if _verbosity >= 0:
+        _print(f"voxrt: {printable(text)}")
+
+
 def name_file(path: Path) -> str:
     """Give a file's name as text, for JSON; bytes of the name that are no text are spelled out."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
-@contextmanager
-def stage_bar(stages: int) -> Iterator[Callable[[str], None]]:
-    """Show which stage a build is in, while standard error is a terminal; yields what to call at each one's begin."""
-    if not sys.stderr.isatty():
-        yield lambda _stage: None
-        return
-    from rich.console import Console  # noqa: PLC0415 - only terminals need it
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
-
-    columns = (SpinnerColumn(), TextColumn("{task.description:<10}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=stages)
-        begun = 0
-
-        def begin(stage: str) -> None:
-            nonlocal begun
-            progress.update(task, description=stage, completed=begun)
-            begun += 1
-
-        yield begin
-
-
-@contextmanager
-def transfer_bar() -> Iterator[Callable[[str, int, int], None]]:
-    """Show how far a transfer is, while standard error is a terminal; yields what to call with stage, done, total."""
-    if not sys.stderr.isatty():
-        yield lambda _stage, _done, _total: None
-        return
-    from rich.console import Console  # noqa: PLC0415 - only terminals need it
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
-
-    columns = (SpinnerColumn(), TextColumn("{task.description:<10}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda stage, done, total: progress.update(task, description=stage, completed=done, total=total)
+def _say(lines: list[str], *, answer: bool) -> None:
+    if answer:
+        print_answer("".join(f"{line}\n" for line in lines))
+    elif _verbosity >= 0:
+        for line in lines:
+            _print(line)
 
 
 def _print(line: str) -> None:
-    print(line, file=sys.stderr)  # noqa: T201 - the one place that does
+    with suppress(OSError):  # nobody listens: the work is done all the same
+        print(line, file=sys.stderr)  # noqa: T201 - the one place that does

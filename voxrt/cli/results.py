@@ -6,13 +6,11 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
-import sys
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from voxrt.cli.messages import name_file
-from voxrt.outputs import OutputError
+from voxrt.cli.messages import name_file, print_answer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -107,6 +105,8 @@ class BudgetEntry(msgspec.Struct, frozen=True):
     psnr: float | None
     """Of the scene's picture against that without a budget, decibel; null where they are equal."""
     ssim: float
+    lossless: tuple[int, int] | None = None
+    """The greatest depth that fits without loss, and its words there, where much was given up."""
 
 
 class InteriorEntry(msgspec.Struct, frozen=True):
@@ -176,6 +176,7 @@ def _budget_entry(budget: BudgetFit) -> BudgetEntry:
         recoloured=fit.recoloured,
         psnr=budget.psnr if math.isfinite(budget.psnr) else None,
         ssim=budget.ssim,
+        lossless=budget.lossless,
     )
 
 
@@ -223,7 +224,7 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct) -> None:
+def print_json(result: msgspec.Struct | list[BuildReport]) -> None:
     """Print a result on standard output.
 
     Raises
@@ -231,11 +232,4 @@ def print_json(result: msgspec.Struct) -> None:
     OutputError
         Standard output cannot be written to, other than because nobody reads it any more.
     """
-    text = msgspec.json.format(msgspec.json.encode(result), indent=2)
-    try:
-        sys.stdout.buffer.write(text + b"\n")
-        sys.stdout.buffer.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        raise OutputError(f"standard output: {error.strerror}") from error
+    print_answer(msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import secrets
 import signal
-from functools import partial
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -22,6 +20,7 @@ if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
     from voxrt.serve.scene_library import SceneLibrary
+    from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions
 
 _port = Parameter(converter=whole, metavar="PORT")
@@ -35,6 +34,7 @@ def serve(
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
     port: Annotated[int, _port] = 8080,
     token: Annotated[str | None, Parameter(metavar="TEXT")] = None,
+    token_file: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     origin: Annotated[tuple[str, ...], Parameter(metavar="ORIGIN")] = (),
     legacy_port: Annotated[int | None, _port] = None,
     depth: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
@@ -58,9 +58,13 @@ def serve(
     port
         TCP port of the page; 0 takes a free one.
     token
-        The token that clients must send. Where one is needed and not given, a random one is made and printed.
+        The token that clients must send. Where one is needed and not given, a random one is made and printed. Other
+        users of this machine see it in the command line.
+    token_file
+        A file whose first line is the token.
     origin
-        Further origins (http://NAME:PORT) whose pages may connect: names by which browsers reach this machine.
+        Further origins (http://NAME:PORT) whose pages may connect, such as that of a reverse proxy. This machine's own
+        addresses and names need no option.
     legacy_port
         TCP port of the legacy protocol, for the desktop client of the original project: 28 bytes in, a raw picture of
         512x512 pixels out, no token.
@@ -69,20 +73,24 @@ def serve(
     reporting
         The form of the output: --json prints the address of the page on standard output.
     """
-    from voxrt.board_scenes import AssetReader  # noqa: PLC0415 - it imports NumPy
-    from voxrt.serve.access_control import is_loopback  # noqa: PLC0415
-    from voxrt.serve.scene_library import SceneLibrary  # noqa: PLC0415
+    from voxrt.board.errors import Refused  # noqa: PLC0415
+    from voxrt.board_scenes import asset_reader  # noqa: PLC0415 - it imports NumPy
+    from voxrt.serve.scene_library import SceneLibrary, scene_names  # noqa: PLC0415
     from voxrt.serve.server_options import ServerOptions  # noqa: PLC0415
+    from voxrt.serve.token import choose_token  # noqa: PLC0415
 
     for option, value in (("--port", port), ("--legacy-port", legacy_port)):
         if value is not None and not 0 <= value < 1 << 16:
             raise UsageError(f"{option} {value} is not 0 to 65535")
     if depth is not None and not 1 <= depth <= 16:
         raise UsageError(f"--depth {depth} is not 1 to 16")
-    if token is None and not is_loopback(host):
-        token = secrets.token_urlsafe(16)
+    try:
+        token = choose_token(host, token, token_file)
+    except Refused as refusal:
+        raise UsageError(str(refusal)) from refusal
     first = _read_first(scenes[0], depth) if scenes else None
-    library = SceneLibrary(AssetReader(depth), {path.stem: partial(_read_listed, path, depth) for path in scenes})
+    named = {name: _files(path) for name, path in scene_names(scenes).items()}
+    library = SceneLibrary(asset_reader(depth), named, asset_reader(depth, memory_depth=depth))
     options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
@@ -118,14 +126,23 @@ def _read_first(path: Path, depth: int | None) -> Scene:
         raise voxrt.RomError(f"{path}: {error}") from error
 
 
-def _read_listed(path: Path, depth: int | None) -> Scene:
-    from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.board_scenes import load_scene  # noqa: PLC0415
+def _files(path: Path) -> list[Path]:
+    """Return the file of a scene, and the manifest of a memory where it has one."""
+    manifest = path.with_suffix(".json")
+    return [path, manifest] if path.suffix.lower() == ".mem" and manifest.exists() else [path]
 
-    try:
-        return load_scene(path, depth)
-    except (voxrt.RomError, voxrt.AssetError, voxrt.DoesNotFitError) as error:
-        raise Refused(str(error)) from error
+
+async def _loaded(server: FrameServer, scene: Scene, interrupted: asyncio.Event) -> bool:
+    """Load the first scene; False where that was interrupted."""
+    loading = asyncio.ensure_future(server.session.renderer.load(scene, lambda _stage, _done, _total: None))
+    ending = asyncio.ensure_future(interrupted.wait())
+    done, _ = await asyncio.wait((loading, ending), return_when=asyncio.FIRST_COMPLETED)
+    ending.cancel()
+    if loading in done:
+        await loading
+        return True
+    loading.cancel()
+    return False
 
 
 async def _serve(
@@ -137,16 +154,16 @@ async def _serve(
     interrupted = asyncio.Event()
     loop = asyncio.get_running_loop()
     try:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, interrupted.set)
         async with FrameServer(device, library, options) as server:
-            if first is not None:
-                await server.session.renderer.load(first, lambda _stage, _done, _total: None)
-            for number in (signal.SIGINT, signal.SIGTERM):
-                loop.add_signal_handler(number, interrupted.set)
+            if first is not None and not await _loaded(server, first, interrupted):
+                return
             if json:
-                print_json(ServeResult(server.url, server.port, server.legacy_port))
+                print_json(ServeResult(server.url, server.urls, server.port, server.legacy_port))
             summarize(
                 f"serving {first.name if first else 'no scene'} on {device.identity.name}; Ctrl-C ends it:",
-                [("page", server.url)]
+                [("page", url) for url in server.urls]
                 + ([("legacy", f"port {server.legacy_port}")] if server.legacy_port is not None else []),
             )
             await interrupted.wait()

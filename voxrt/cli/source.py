@@ -6,45 +6,79 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Sight
 from voxrt.cli.messages import warn
+from voxrt.cli.progress import build_bar
+from voxrt.octree.camera import refit
 from voxrt.viewpoint import authored_camera
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from voxrt.export import Blob
     from voxrt.octree import Rom
 
 
 @dataclass(frozen=True)
 class Source:
-    """A memory and where it came from: the camera that its file names, and the scene it was built from, if any."""
+    """A memory and where it came from.
 
-    rom: Rom
-    view: voxrt.Camera | None = None
+    Attributes
+    ----------
+    blob
+        The memory, with the camera and the light that its file or its scene names.
+    scene
+        The scene that it was built from; None for a memory from a file.
+    warnings
+        What was not honoured or was assumed; they have been printed.
+    """
+
+    blob: Blob
     scene: voxrt.Scene | None = None
+    warnings: tuple[voxrt.SceneWarning, ...] = ()
+
+    @property
+    def rom(self) -> Rom:
+        """The memory."""
+        return self.blob.rom
 
     def camera(self, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
         """Give the camera of the scene's preview, or the one that is asked for."""
-        if self.scene is not None and self.scene.viewpoint and self.rom.grid and sight == Sight():
+        if (
+            self.blob.view is not None
+            and self.scene is not None
+            and self.scene.viewpoint
+            and self.rom.grid
+            and sight == Sight()
+        ):
             return authored_camera(self.scene.viewpoint, self.rom.grid, size)
-        return aim(self.rom, self.view, size, sight)
+        if self.blob.view is not None and sight == Sight():
+            return refit(self.blob.view, PREVIEW_SIZE, size)
+        return voxrt.aim_camera(
+            self.rom, size, position=sight.position, look=sight.look, right=sight.right, up=sight.up
+        )
 
 
-def read_source(path: Path, depth: int | None) -> Source:
-    """Read a memory of any format, or build an asset; warns of what was not honoured."""
-    if path.suffix.lower() in SUFFIXES:
-        result = voxrt.build(path, depth=depth)
+def is_asset(path: Path) -> bool:
+    """Tell whether a file must be built first."""
+    return path.suffix.lower() in SUFFIXES
+
+
+def read_source(
+    path: Path,
+    depth: int | None = None,
+    dialect: str | None = None,
+    colours: Mapping[str, tuple[int, int, int]] | None = None,
+) -> Source:
+    """Read a memory of any format, or build an asset in memory; warns of what was not honoured."""
+    if is_asset(path):
+        with build_bar() as bar:
+            result = voxrt.build(path, depth=depth, progress=bar.begin, estimated=bar.estimate)
         warn(result.warnings)
-        return Source(result.rom, scene=result.scene)
-    blob, warnings = voxrt.read_any(path, depth=depth)
+        return Source(result.blob, result.scene, result.warnings)
+    blob, warnings = voxrt.read_any(path, depth=depth, dialect=dialect, colours=colours)
     warn(warnings)
-    return Source(blob.rom, view=blob.view)
-
-
-def aim(rom: Rom, view: voxrt.Camera | None, size: tuple[int, int], sight: Sight) -> voxrt.Camera:
-    """Give the camera that a memory's file names, unless another is asked for."""
-    if view is not None and sight == Sight():
-        return view
-    return voxrt.aim_camera(rom, size, position=sight.position, look=sight.look, right=sight.right, up=sight.up)
+    return Source(blob, warnings=warnings)

@@ -60,9 +60,10 @@ def trace(
             ("reads", f"{len(path.readings)} words"),
             ("hits", describe_end(source.rom, path)),
         ],
+        answer=True,
     )
     if path.readings:
-        tabulate(HEADS, ray_table(source.rom, path))
+        tabulate(HEADS, ray_table(source.rom, path), answer=True)
 
 
 def check_pixel(pixel: tuple[int, int], size: tuple[int, int]) -> None:

@@ -11,7 +11,8 @@ from cyclopts import Parameter
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError
 from voxrt.cli.board_results import UploadResult
-from voxrt.cli.messages import summarize, transfer_bar
+from voxrt.cli.messages import summarize
+from voxrt.cli.progress import transfer_bar
 from voxrt.cli.results import print_json
 from voxrt.cli.serve import open_device
 
@@ -80,11 +81,14 @@ async def _send(path: Path, scene: Scene, url: str, progress: Progress, *, dry_r
     from voxrt.serve.frame_client import open_client  # noqa: PLC0415 - it imports websockets
 
     try:
+        manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
+        files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
+    except OSError as error:
+        raise voxrt.RomError(f"{path}: {error}") from error
+    try:
         async with open_client(url) as client:
             _check_fit(scene, client.hello["device"])
             await client.take_control()
-            manifest = [path.with_suffix(".json")] if path.suffix.lower() == ".mem" else []
-            files = {file.name: file.read_bytes() for file in (path, *manifest) if file.exists()}
             await client.upload(files, progress, check_only=dry_run)
     except Refused as refusal:
         raise voxrt.SimulatorError(str(refusal)) from refusal

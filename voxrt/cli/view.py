@@ -11,13 +11,15 @@ from cyclopts import Parameter
 import voxrt
 from voxrt import octree
 from voxrt import view as drawing
+from voxrt.asset_source import as_text
 from voxrt.build_options import PREVIEW_SIZE
-from voxrt.cli.arguments import Depth, Pixel, Pixels, Sight, UsageError, png, whole
+from voxrt.cli.arguments import Depth, Messages, Pixel, Pixels, Sight, UsageError, choice, png, whole
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
 from voxrt.outputs import check_folder, writing
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
+from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
 from voxrt.writers import PANE_WRITERS
 
@@ -54,8 +56,8 @@ def view(
     other: Annotated[Path | None, Parameter(metavar="ROM|ASSET")] = None,
     /,
     *,
-    by: Literal["material", "level", "owner"] = "material",
-    clip: Literal["x", "y", "z"] | None = None,
+    by: Annotated[Literal["material", "level", "owner"], Parameter(converter=choice)] = "material",
+    clip: Annotated[Literal["x", "y", "z"] | None, Parameter(converter=choice)] = None,
     slice: Annotated[  # noqa: A002 - the option's name
         tuple[tuple[int, int], ...], Parameter(converter=_cuts, n_tokens=1, metavar="AXIS=N", show_default=False)
     ] = (),
@@ -67,7 +69,7 @@ def view(
     screenshot: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     turntable: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     output: Annotated[Path | None, Parameter(("--output", "-o"), metavar="FILE")] = None,
-    debug: Annotated[bool, Parameter(show_default=False)] = False,  # noqa: ARG001 - read where errors are explained
+    reporting: Annotated[Messages, Parameter(name="*", show_default=False)] = Messages(),  # noqa: ARG001, B008
 ) -> None:
     """Show the octants of a memory or of an asset, in a window or as a picture.
 
@@ -104,14 +106,16 @@ def view(
     output
         Write this file instead of opening a window: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu
         (ParaView, PyVista), or .html (a page that needs no other file).
-    debug
-        Show the traceback of an error.
+    reporting
+        How results are printed.
     """
     _check_files(screenshot, turntable, output)
     _check_company(other, ray, clip and slice, turntable, output)
     paths = [path for path in (scene, other) if path is not None]
     sources = [read_source(path, depth) for path in paths]
-    panes = [_pane(source, path.stem, by, overlay) for source, path in zip(sources, paths, strict=True)]
+    if output is None and screenshot is None and turntable is None:
+        check_screen(off_screen=False)
+    panes = [_pane(source, as_text(path.stem), by, overlay) for source, path in zip(sources, paths, strict=True)]
     if level_limit is not None:
         panes = [pane.coarsened(level_limit) for pane in panes]
     if clip:
@@ -129,7 +133,6 @@ def view(
     for file, write in writers:
         if file is not None:
             with writing(file):
-                file.parent.mkdir(parents=True, exist_ok=True)
                 write(file)
             rows.append(("wrote", str(file)))
     summarize(f"{scene.name}:", rows)

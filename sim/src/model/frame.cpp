@@ -15,8 +15,9 @@ namespace {
 
 constexpr size_t kRaysPerJob = 1024;
 
-// Work in the units of interrupt.h; low estimates, so that the check runs a few times per second.
-constexpr uint32_t kTileWork = 200, kPixelWork = 25, kJobWork = 8000;
+// Work in the units of interrupt.h; low estimates, so that the check runs a few times per second. A ray may read
+// hundreds of thousands of words, so the words count too.
+constexpr uint32_t kTileWork = 200, kPixelWork = 25, kRayWork = 8;
 
 uint64_t render_pixel(const FrameJob& job, int32_t column, int32_t row) {
     const Camera& camera = job.camera;
@@ -42,6 +43,8 @@ bool takes_more_rays(const FrameJob& job, int32_t column, int32_t row) {
 }
 
 } // namespace
+
+void count_tile_work(uint32_t units) { voxelize::count_work(units); }
 
 void check_directions(const Camera& camera, int32_t width, int32_t height) {
     // Directions are linear in the pixel: the largest are in the corners.
@@ -75,8 +78,9 @@ uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, co
             for (int32_t row = top; row < std::min(top + kTileSide, frame.height); ++row)
                 for (int32_t column = left; column < std::min(left + kTileSide, frame.width); ++column)
                     if (!fits || takes_more_rays(job, column, row)) {
-                        voxelize::count_work(kPixelWork);
-                        words += render_pixel(job, column, row);
+                        const uint64_t read = render_pixel(job, column, row);
+                        voxelize::count_work(kPixelWork + static_cast<uint32_t>(read));
+                        words += read;
                     }
         words_read.fetch_add(words, std::memory_order_relaxed);
     });
@@ -86,7 +90,6 @@ uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, co
 uint64_t trace_all(const octree::VerifiedMemory& memory, const RaysView& rays, int threads) {
     std::atomic<uint64_t> words_read{0};
     voxelize::Workers(threads).run((rays.count + kRaysPerJob - 1) / kRaysPerJob, [&](size_t job, int) {
-        voxelize::count_work(kJobWork);
         uint64_t words = 0;
         for (size_t ray = job * kRaysPerJob; ray < std::min((job + 1) * kRaysPerJob, rays.count); ++ray) {
             Line line{};
@@ -97,6 +100,7 @@ uint64_t trace_all(const octree::VerifiedMemory& memory, const RaysView& rays, i
                 rays.face[ray] = hit.face;
                 std::copy_n(hit.cell, 3, rays.cell + 3 * ray);
                 words += hit.words_read;
+                voxelize::count_work(kRayWork + hit.words_read);
             };
             if (key_fits_64(line))
                 store(Ray<int64_t>(memory, line).trace());

@@ -22,7 +22,11 @@ struct FrameJob {
 // Whether the keys of the tile with its upper left pixel at (left, top) are exact in doubles.
 bool tile_fits(const FrameJob& job, int32_t left, int32_t top);
 
-// Renders the tile at (left, top), clipped to the frame, if it fits. Returns how many words were read.
+// Counts work of the current thread, in the units of interrupt.h. It is no inline function: those of interrupt.h must
+// not be compiled for instructions that the processor may lack.
+void count_tile_work(uint32_t units);
+
+// Renders the tile at (left, top), clipped to the frame, if it fits. Counts its work. Returns how many words were read.
 uint64_t render_tile_portable(const FrameJob& job, int32_t left, int32_t top);
 #if defined(__x86_64__)
 uint64_t render_tile_avx2(const FrameJob& job, int32_t left, int32_t top);

@@ -72,6 +72,26 @@ inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
     }
 }
 
+// What the colours of hits on faces are multiplied by: docs/shading.md.
+struct Brightness {
+    Lanes part, whole;
+};
+inline Brightness brightness_of(const Tile& tile, const Shading& shading, int group, const Directions& rays) {
+    const Mask x = tile.face[group][0], y = tile.face[group][1];
+    Lanes of_axis[3];
+    if (shading.flat)
+        return {all(1), all(1)};
+    if (shading.faces) {
+        for (int axis = 0; axis < 3; ++axis)
+            of_axis[axis] = choose(tile.mirrored[group][axis], all((*shading.faces)[2 * axis + 1]),
+                                   all((*shading.faces)[2 * axis]));
+        return {choose(x, of_axis[0], choose(y, of_axis[1], of_axis[2])), all(kFaceUnit)};
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        of_axis[axis] = rays.d[axis] * rays.d[axis];
+    return {choose(x, of_axis[0], choose(y, of_axis[1], of_axis[2])), of_axis[0] + of_axis[1] + of_axis[2]};
+}
+
 // The pixels of a group: a byte each, three for colours.
 struct Pixels {
     uint64_t material;
@@ -80,7 +100,7 @@ struct Pixels {
 };
 inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Directions& rays) {
     const Mask x = tile.face[group][0], y = tile.face[group][1], z = tile.face[group][2];
-    const Mask none = static_cast<Mask>(~(x | y | z)), plain = job.shading.flat ? 0xFF : none;
+    const Mask none = static_cast<Mask>(~(x | y | z));
     Pixels out;
     out.material = tile.material[group];
     out.face = bytes_of(y | none) | bytes_of(z | none) << 1;
@@ -94,17 +114,15 @@ inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Dire
     Lanes surface[3];
     std::memcpy(surface, colours, sizeof surface);
 
-    // round(c d_a^2 / |d|^2), half up; c itself where no face was crossed or the picture is flat. The quotient in
-    // doubles has the exact one's floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <=
-    // 255, more than half an ulp of k.
-    const Lanes square[3] = {rays.d[0] * rays.d[0], rays.d[1] * rays.d[1], rays.d[2] * rays.d[2]};
-    const Lanes length = choose(plain, all(1), square[0] + square[1] + square[2]);
-    const Lanes facing = choose(x, square[0], choose(y, square[1], square[2]));
-    const Lanes across = choose(plain, all(1), facing);
+    // round(c part / whole), half up; c itself where no face was crossed. The quotient in doubles has the exact one's
+    // floor: a quotient n / m with m < 2^43 stays 1 / m below the next whole number k <= 255, more than half an ulp of
+    // k.
+    const Brightness brightness = brightness_of(tile, job.shading, group, rays);
+    const Lanes part = choose(none, all(1), brightness.part), whole = choose(none, all(1), brightness.whole);
     int32_t channels[3][kLanes];
     const Lanes two = all(2);
     for (int channel = 0; channel < 3; ++channel)
-        store_as_int(channels[channel], (two * surface[channel] * across + length) / (two * length));
+        store_as_int(channels[channel], (two * surface[channel] * part + whole) / (two * whole));
     for (int lane = 0; lane < kLanes; ++lane) {
         const int32_t pixel = channels[0][lane] | channels[1][lane] << 8 | channels[2][lane] << 16;
         std::memcpy(out.colour + 3 * lane, &pixel, 4); // the next pixel overwrites the fourth byte

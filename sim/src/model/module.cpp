@@ -10,6 +10,11 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -31,6 +36,7 @@ using Registers = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::
 using Triples = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
 using Position = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
+using Faces = nb::ndarray<const uint8_t, nb::shape<6>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
 
 constexpr int kBounceLimit = 15;
@@ -59,6 +65,45 @@ private:
     VerifiedMemory verified_;
 };
 
+// Ends frames for good, from any thread.
+class Stop {
+public:
+    void set() { requested_ = true; }
+    bool requested() const { return requested_; }
+
+private:
+    std::atomic<bool> requested_{false};
+};
+
+// The end of a frame before its last pixel; `error` is the Python exception that says why.
+struct FrameEnded {
+    PyObject* error;
+    std::string problem;
+};
+
+// Ends the work of the current thread after `seconds`, or when `stop` is set; made after a LongCall, whose check it
+// calls too.
+class FrameLimit {
+public:
+    FrameLimit(double seconds, const Stop* stop)
+        : seconds_(seconds), stop_(stop), outer_(voxrt::voxelize::WorkCounter::current().current_check()) {}
+
+private:
+    void check() const {
+        if (stop_ != nullptr && stop_->requested())
+            throw FrameEnded{PyExc_InterruptedError, "the frame was stopped"};
+        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() > seconds_)
+            throw FrameEnded{PyExc_TimeoutError, "the frame takes too long"};
+        (*outer_)();
+    }
+
+    const double seconds_;
+    const Stop* const stop_;
+    const std::function<void()>* const outer_;
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    const voxrt::voxelize::InterruptScope scope_{[this] { check(); }};
+};
+
 void check_threads(int threads) {
     if (threads < 0 || threads > kThreadLimit)
         throw std::invalid_argument("threads is " + std::to_string(threads) + ", not 0 ... 1024");
@@ -66,14 +111,16 @@ void check_threads(int threads) {
 
 nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
                         int height, int threads, const std::string& instructions, bool flat,
-                        const std::optional<Position>& light, int ambient, int bounces,
-                        const std::optional<Flags>& mirrors) {
+                        const std::optional<Faces>& brightness, const std::optional<Position>& light, int ambient,
+                        int bounces, const std::optional<Flags>& mirrors, double seconds, const Stop* stop) {
     if (ambient < 0 || ambient > 255)
         throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
     if (bounces < 0 || bounces > kBounceLimit)
         throw std::invalid_argument("bounces is " + std::to_string(bounces) + ", not 0 ... 15");
     const uint8_t no_mirrors[256] = {};
-    Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}};
+    Shading shading{materials.data(), mirrors ? mirrors->data() : no_mirrors, bounces, flat, {}, {}};
+    if (brightness)
+        std::copy_n(brightness->data(), 6, shading.faces.emplace().begin());
     if (light)
         shading.light = Light{{(*light)(0), (*light)(1), (*light)(2)}, static_cast<uint8_t>(ambient)};
     check_threads(threads);
@@ -97,10 +144,14 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
     auto colour = std::make_unique<uint8_t[]>(3 * h * w), material = std::make_unique<uint8_t[]>(h * w),
          face = std::make_unique<uint8_t[]>(h * w);
     uint64_t words_read = 0;
-    {
+    try {
         const LongCall call;
+        const FrameLimit limit(seconds, stop);
         words_read = render(memory.verified(), shading, camera,
                             {width, height, colour.get(), material.get(), face.get()}, threads, engine->render_tile);
+    } catch (const FrameEnded& ended) {
+        PyErr_SetString(ended.error, ended.problem.c_str());
+        throw nb::python_error();
     }
     return rendered_pixels(to_numpy(std::move(colour), {h, w, 3}), to_numpy(std::move(material), {h, w}),
                            to_numpy(std::move(face), {h, w}), words_read);
@@ -170,20 +221,27 @@ NB_MODULE(_model, m) {
         NamedTuple(m, "FollowedRay", {"material", "face", "cell", "readings"}, "What Memory.follow() returns.");
     reading_type =
         NamedTuple(m, "Reading", {"address", "word", "level", "corner", "axis", "time"}, "A word that a ray read.");
+    nb::class_<Stop>(m, "Stop", "Ends frames for good, from any thread.")
+        .def(nb::init<>())
+        .def("set", &Stop::set, "End the frames that were given this object, and all further ones.");
     nb::class_<OwnedMemory>(m, "Memory", "A verified octree memory, which any number of threads may trace through.")
         .def(nb::init<const Words&, int>(), nb::arg("words"), nb::arg("depth"),
              "Copy words (uint32, report dialect) of a depth of 1 ... 16. ValueError, naming the word: malformed.")
-        .def("render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
-             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
-             nb::arg("light") = nb::none(), nb::arg("ambient") = 0, nb::arg("bounces") = 0,
-             nb::arg("mirrors") = nb::none(),
-             "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
-             "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
-             "which is the fastest. docs/shading.md defines the rest: flat; light, None or (3,) int32 in 1/16 voxel, "
-             "with\n"
-             "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Returns colour (H, W, "
-             "3), material (H, W), face (H, W), uint8, and words_read.\n"
-             "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20.")
+        .def(
+            "render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
+            nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
+            nb::arg("brightness") = nb::none(), nb::arg("light") = nb::none(), nb::arg("ambient") = 0,
+            nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(),
+            nb::arg("seconds") = std::numeric_limits<double>::infinity(), nb::arg("stop").none() = nb::none(),
+            "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
+            "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
+            "which is the fastest. docs/shading.md defines the rest: flat; brightness, None or (6,) uint8 in\n"
+            "1/255, of the faces that look along -x, +x, -y, +y, -z, +z; light, None or (3,) int32 in 1/16 voxel, "
+            "with\n"
+            "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Returns colour (H, W, "
+            "3), material (H, W), face (H, W), uint8, and words_read.\n"
+            "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20. TimeoutError: the frame takes\n"
+            "longer than `seconds`. InterruptedError: `stop` is set.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,
              "Trace rays: origins (N, 3) int32 in 1/16 voxel, directions (N, 3) int32, components below 2**20.\n"
              "Returns material (N,), face (N,), uint8, cell (N, 3) int32 (-1 at a miss), and words_read.\n"

@@ -25,6 +25,11 @@ Square square_of(const int64_t vector[3], int axis) {
     return {squares[axis], whole};
 }
 
+// The brightness of a face, where it does not depend on the angle: 1/kFaceUnit. `d` is the ray's component across it.
+WideKey face_brightness(const Shading& shading, uint8_t face, int64_t d) {
+    return shading.flat ? kFaceUnit : (*shading.faces)[2 * face + (d < 0 ? 1 : 0)];
+}
+
 // Whether `shadow_ray`, whose direction ends at the light, meets a solid cell before the light.
 template <class Key>
 bool is_shadowed(const octree::VerifiedMemory& memory, const Line& shadow_ray, uint32_t& words_read) {
@@ -55,8 +60,10 @@ void light_colour(const octree::VerifiedMemory& memory, const Shading& shading, 
         faces_away || (key_fits_64(shadow_ray) ? is_shadowed<int64_t>(memory, shadow_ray, pixel.words_read)
                                                : is_shadowed<WideKey>(memory, shadow_ray, pixel.words_read));
     const Square square = square_of(shadow_ray.direction, hit.face);
-    if (!dark && shading.flat)
-        std::copy_n(surface, 3, pixel.colour);
+    if (shading.flat || shading.faces)
+        scale_colour(surface,
+                     face_brightness(shading, hit.face, line.direction[hit.face]) * (dark ? light.ambient : 256),
+                     WideKey{kFaceUnit} * 256, pixel.colour);
     else if (dark || 256 * square.part <= light.ambient * square.whole)
         scale_colour(surface, light.ambient, 256, pixel.colour);
     else
@@ -80,8 +87,9 @@ template <class Key> Pixel traced(const octree::VerifiedMemory& memory, const Sh
         if (shading.bounces == 0 || !shading.mirrors[hit.material]) {
             if (shading.light)
                 light_colour(memory, shading, ray, hit, line, pixel);
-            else if (shading.flat)
-                std::copy_n(surface, 3, pixel.colour);
+            else if (shading.flat || shading.faces)
+                scale_colour(surface, face_brightness(shading, hit.face, line.direction[hit.face]), kFaceUnit,
+                             pixel.colour);
             else if (const Square square = square_of(line.direction, hit.face); true)
                 scale_colour(surface, square.part, square.whole, pixel.colour);
             return pixel;

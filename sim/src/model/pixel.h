@@ -3,6 +3,7 @@
 
 #include <voxrt/octree/verify.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -10,8 +11,10 @@ namespace voxrt::sim {
 
 struct Light {
     int32_t position[3]; // 1/16 voxel
-    uint8_t ambient;     // 1/256: the least brightness, in shadows too
+    uint8_t ambient;     // 1/256: the brightness of shadows; by the angle, also the least brightness
 };
+
+constexpr int kFaceUnit = 255;
 
 // Everything between a hit and its colour.
 struct Shading {
@@ -19,6 +22,8 @@ struct Shading {
     const uint8_t* mirrors;   // 256 flags
     int bounces = 0;          // 0: mirrors are shaded like other materials
     bool flat = false;
+    // 1/kFaceUnit, of the faces that look along -x, +x, -y, +y, -z, +z; none: by the angle. Not with flat.
+    std::optional<std::array<uint8_t, 6>> faces;
     std::optional<Light> light;
 };
 

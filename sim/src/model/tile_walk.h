@@ -1,12 +1,15 @@
 // The traversal that tile.h describes, for the instruction set of the including file.
 #pragma once
 
+#include "frame_tile.h"
 #include "tile.h"
 
 #include <bit>
 
 namespace voxrt::sim {
 namespace {
+
+constexpr uint32_t kUncountedWork = 1 << 13; // in the units of interrupt.h: about 0.1 ms
 
 struct Rays {
     uint8_t group;
@@ -18,6 +21,7 @@ struct Walk {
     Tile& tile;
     uint32_t mirror;
     uint64_t words_read;
+    uint32_t uncounted_work = 0;
 
     Lanes key(int group, int axis, double plane) const {
         return all(plane) * tile.scale[group][axis] + tile.offset[group][axis];
@@ -58,6 +62,11 @@ struct Walk {
             filled |= (empty ? uint64_t{0} : uint64_t{0xFF}) << 8 * i;
         }
         words_read += 8;
+        uncounted_work += 8 + 4 * static_cast<uint32_t>(count);
+        if (uncounted_work > kUncountedWork) {
+            count_tile_work(uncounted_work);
+            uncounted_work = 0;
+        }
 
         Rays visitors[8][kGroups];
         int visits[8] = {};
@@ -136,7 +145,7 @@ inline uint64_t trace_tile(const octree::VerifiedMemory& memory, Tile& tile) {
     };
     for (uint32_t mirror = 0; mirror < 8; ++mirror)
         if (occurs(mirror)) {
-            Walk walk{memory.words(), tile, mirror, 0};
+            Walk walk{memory.words(), tile, mirror, 0, 0};
             walk.root(static_cast<double>(1 << memory.depth()));
             words_read += walk.words_read;
         }

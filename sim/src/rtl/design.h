@@ -19,10 +19,10 @@ enum class MemoryForm { copies, banked, cached };
 struct Limits {
     unsigned lanes;
     MemoryForm form;
-    unsigned max_depth;        // depth is 1 .. max_depth
-    unsigned position_bits;    // signed
-    unsigned block_bits;       // blocks of eight words that the memory holds: 2 ** block_bits
-    bool flat, light, mirrors; // features that are built in; others are off, whatever is asked for
+    unsigned max_depth;     // depth is 1 .. max_depth
+    unsigned position_bits; // signed
+    unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
+    bool light, mirrors;    // features that are built in; others are off, whatever is asked for
 
     std::size_t memory_words() const { return (std::size_t{8} << block_bits) + 1; }
     // Signed, 1/16 voxel: voxrt_pkg::light_bits.
@@ -42,6 +42,8 @@ struct FrameRequest {
     const uint8_t* materials; // 256 x 3, row 0 is the background
     const uint8_t* mirrors;   // 256 flags
     bool flat, light;
+    bool faces;                // each face has its brightness, unless flat
+    uint8_t brightness[6];     // 1/255, of the faces that look along -x, +x, -y, +y, -z, +z
     int32_t light_position[3]; // 1/16 voxel
     uint8_t ambient;           // 1/256
     uint8_t bounces;           // 0 .. bounce_limit

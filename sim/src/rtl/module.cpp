@@ -1,7 +1,7 @@
 // voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
 //
 //   CONFIGS: list[str]        names of the configurations that were built
-//   FEATURES: dict[str, list[str]]  which of "flat", "light" and "mirrors" each of them has built in
+//   FEATURES: dict[str, list[str]]  which of "light" and "mirrors" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
 //     .cached                 whether its memory is external, behind caches
@@ -13,20 +13,20 @@
 //                             straight into the simulated memory: the outcome is the same. A cached memory is these
 //                             words themselves, not a copy
 //     .read_back(count)       uint32: the memory's first words, read through that port
-//     .render(camera, width, height, depth, materials, *, flat=False, light=None, ambient=0, bounces=0, mirrors=None,
-//             root=0, stall_seed=0, latency=50, interval=3, jitter=0, dram_seed=0) -> dict
+//     .render(camera, width, height, depth, materials, *, flat=False, brightness=None, light=None, ambient=0,
+//             bounces=0, mirrors=None, root=0, stall_seed=0, latency=50, interval=3, jitter=0, dram_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
-//                             materials uint8 (256, 3), sRGB, row 0 is the background; light int32 (3,), 1/16 voxel;
-//                             ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the word address
-//                             of the octree's root. With a stall_seed, the
-//                             picture's consumer stalls in a pattern that depends on it. latency, interval, jitter,
-//                             dram_seed: of a cached memory, in clocks; see dram.h. Its caches are empty at the start.
-//                             Gives colour uint8 (H, W, 3), material and face uint8 (H, W), cycles (from the start to
-//                             the last pixel accepted), words_read, and the frame's errors: "direction overflow",
-//                             "bad pointer", "step limit", "bus error", "bus timeout"; of a cached memory also
-//                             word_requests, line_requests and lines_read (voxrt_pkg.sv: counters_t), else 0.
-//                             Releases the GIL; Ctrl-C ends it.
+//                             materials uint8 (256, 3), sRGB, row 0 is the background; brightness None, by the
+//                             angle, or uint8 (6,), 1/255, of the faces along -x, +x, -y, +y, -z, +z; light int32 (3,),
+//                             1/16 voxel; ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the
+//                             word address of the octree's root. With a stall_seed, the picture's consumer stalls in a
+//                             pattern that depends on it. latency, interval, jitter, dram_seed: of a cached memory, in
+//                             clocks; see dram.h. Its caches are empty at the start. Gives colour uint8 (H, W, 3), material and face uint8 (H, W),
+//                             cycles (from the start to the last pixel accepted), words_read, and the frame's errors:
+//                             "direction overflow", "bad pointer", "step limit", "bus error", "bus timeout"; of a
+//                             cached memory also word_requests, line_requests and lines_read (voxrt_pkg.sv:
+//                             counters_t), else 0. Releases the GIL; Ctrl-C ends it.
 //
 //   CORES, Core     the whole core: core_module.cpp
 //
@@ -50,7 +50,7 @@ using namespace nb::literals;
 
 namespace voxrt::rtl {
 
-#define VOXRT_CONFIGURATION(name, flat, light, mirrors) std::unique_ptr<Design> make_##name();
+#define VOXRT_CONFIGURATION(name, light, mirrors) std::unique_ptr<Design> make_##name();
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 
@@ -59,11 +59,11 @@ namespace {
 struct Configuration {
     const char* name;
     std::unique_ptr<Design> (*make)();
-    bool flat, light, mirrors;
+    bool light, mirrors;
 };
 
 constexpr Configuration configurations[] = {
-#define VOXRT_CONFIGURATION(name, flat, light, mirrors) {#name, make_##name, flat, light, mirrors},
+#define VOXRT_CONFIGURATION(name, light, mirrors) {#name, make_##name, light, mirrors},
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 };
@@ -72,6 +72,7 @@ using Words = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device:
 using CameraRegisters = nb::ndarray<const int32_t, nb::shape<4, 3>, nb::c_contig, nb::device::cpu>;
 using Materials = nb::ndarray<const uint8_t, nb::shape<256, 3>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
+using Faces = nb::ndarray<const uint8_t, nb::shape<6>, nb::c_contig, nb::device::cpu>;
 using Place = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 
 std::string range(long low, long high) { return std::to_string(low) + " ... " + std::to_string(high); }
@@ -97,8 +98,6 @@ nb::object array(std::vector<std::size_t> shape, uint8_t*& data) {
 
 std::vector<std::string> features_of(const Configuration& configuration) {
     std::vector<std::string> names;
-    if (configuration.flat)
-        names.emplace_back("flat");
     if (configuration.light)
         names.emplace_back("light");
     if (configuration.mirrors)
@@ -150,9 +149,9 @@ public:
     }
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
-                    bool flat, const std::optional<Place>& light, long ambient, long bounces,
-                    const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed, long latency, long interval,
-                    long jitter, uint32_t dram_seed) {
+                    bool flat, const std::optional<Faces>& brightness, const std::optional<Place>& light, long ambient,
+                    long bounces, const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed, long latency,
+                    long interval, long jitter, uint32_t dram_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -171,11 +170,14 @@ public:
         request.materials = materials.data();
         static constexpr uint8_t no_mirrors[256] = {};
         request.mirrors = mirrors ? mirrors->data() : no_mirrors;
-        if ((flat && !limits.flat) || (light && !limits.light) || (bounces != 0 && !limits.mirrors))
+        if ((light && !limits.light) || (bounces != 0 && !limits.mirrors))
             throw std::invalid_argument("this configuration has not been built with that feature: see FEATURES");
         check("ambient", ambient, 0, 255);
         check("bounces", bounces, 0, bounce_limit);
         request.flat = flat;
+        request.faces = brightness.has_value();
+        for (std::size_t face = 0; brightness && face < 6; ++face)
+            request.brightness[face] = (*brightness)(face);
         request.light = light.has_value();
         request.ambient = static_cast<uint8_t>(ambient);
         request.bounces = static_cast<uint8_t>(bounces);
@@ -268,8 +270,8 @@ NB_MODULE(_rtl, m) {
         .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
-             "flat"_a = false, "light"_a.none() = nb::none(), "ambient"_a = 0, "bounces"_a = 0,
-             "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0,
+             "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
+             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0,
              "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
     voxrt::rtl::bind_core(m);
 }

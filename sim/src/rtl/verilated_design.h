@@ -200,6 +200,9 @@ private:
         frame.put(request.bounces, 4);
         frame.put(request.ambient, 8);
         frame.put(request.light, 1);
+        for (const int face : {0, 2, 4, 1, 3, 5}) // voxrt_pkg::faces_t: those that look along +axis are higher
+            frame.put(request.brightness[face], 8);
+        frame.put(request.faces, 1);
         frame.put(request.flat, 1);
         frame.put(request.root, 32);
         frame.put(request.depth, 5);

@@ -49,7 +49,7 @@ def load_scene_toml(path: str | Path, *, allow_outside: bool = False) -> Scene:
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except OSError as error:
         raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
     except UnicodeDecodeError:
@@ -62,6 +62,7 @@ class _Builder:
         self._checked = checked
         self._external_files = ExternalFiles.of(checked.path, allow_outside=allow_outside)
         self._assets: dict[tuple[object, ...], Scene] = {}
+        self._names: set[str] = set()
 
     def scene(self) -> Scene:
         checked, values = self._checked, self._checked.values
@@ -95,7 +96,7 @@ class _Builder:
     def _add(self, node: Node, where: KeyPath, prefix: str, outer: NDArray[np.float64], material: str | None) -> None:
         """Add the objects of a node: one, or those of a group or an asset."""
         shape = _shape(node)
-        name = prefix + (node.name or f"{shape} {int(where[-1]) + 1}")
+        name = self._unique(prefix + (node.name or f"{shape} {int(where[-1]) + 1}"))
         material = node.material or material
         if node.group is not None:
             if node.collider is not None:
@@ -130,6 +131,16 @@ class _Builder:
             )
         except ValueError as error:
             raise self._checked.error((*where, shape), str(error), "correct the object") from None
+
+    def _unique(self, name: str) -> str:
+        """Return a name, with a number and a warning where another object has it."""
+        unique, number = name, 2
+        while unique in self._names:
+            unique, number = f"{name} ({number})", number + 1
+        self._names.add(unique)
+        if unique != name:
+            self._author.warn("duplicate-name", f"several objects are named {name!r}: the later ones got a number")
+        return unique
 
     def _solid(self, node: Node, where: KeyPath) -> Solid:
         """Return a node as an operand of a boolean, in its parent's frame."""

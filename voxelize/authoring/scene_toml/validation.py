@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import re
 import tomllib
 from typing import TYPE_CHECKING, Any
@@ -64,6 +65,14 @@ def check_file(path: Path, text: str) -> CheckedFile:
         line = match["line"] if match else None
         problem = " ".join((match["problem"] if match else str(error)).split())
         place = f"line {line}" if line else "at its end"
+        opened = _open_inline_table(text, int(line) if line else text.count("\n") + 1)
+        if opened:
+            raise AssetError(
+                path,
+                "an inline table { … } goes on over the end of its line",
+                place=f"line {opened}",
+                fix="write it on one line, or as a table of its own below a header in brackets",
+            ) from None
         raise AssetError(path, _lower(problem), place=place, fix="correct the TOML") from None
     except RecursionError:
         raise AssetError(path, "its values are nested too deeply", fix="flatten them") from None
@@ -71,6 +80,9 @@ def check_file(path: Path, text: str) -> CheckedFile:
         raise AssetError(path, _lower(str(error)), fix="correct the number") from None
     if max(map(len, lines), default=0) > 2 * DEEPEST:
         raise AssetError(path, f"shapes are nested more than {DEEPEST} levels deep", fix="flatten them")
+    if isinstance(raw.get("objects"), dict):
+        problem = "[objects] is one table, and objects are a list"
+        raise _error(path, lines, ("objects",), problem, "write [[objects]], once for each object")
     try:
         values = msgspec.convert(raw, File)
     except msgspec.ValidationError as error:
@@ -79,6 +91,23 @@ def check_file(path: Path, text: str) -> CheckedFile:
     for index, node in enumerate(values.objects):
         _check_shapes(checked, node, ("objects", index))
     return checked
+
+
+def _open_inline_table(text: str, line: int) -> int | None:
+    """Return the line of an inline table that is not closed on its line, at or above `line`; None where there is none.
+
+    Before 1.1, TOML has no such tables, and its parsers' messages speak of what they expect instead.
+    """
+    for number, content in reversed(list(enumerate(text.split("\n")[:line], start=1))):
+        bare = _QUOTED.sub("", content).partition("#")[0]
+        if bare.count("{") > bare.count("}"):
+            return number
+        if bare.lstrip().startswith("[") and "=" not in bare:  # a header: what is above it is whole
+            return None
+    return None
+
+
+_QUOTED = re.compile(r""""(?:[^"\\]|\\.)*"|'[^']*'""")
 
 
 def _check_shapes(checked: CheckedFile, node: Node, where: KeyPath) -> None:
@@ -103,8 +132,14 @@ def _explained(path: Path, lines: dict[KeyPath, int], raw: dict[str, Any], messa
     if unknown:
         key = unknown["key"]
         known = _known_keys(where)
-        near = difflib.get_close_matches(key, known, n=1, cutoff=0.0)[0]
-        return _error(path, lines, (*where, key), f"unknown key {key!r}", f"did you mean {near!r}?")
+        near = difflib.get_close_matches(key, known, n=1)
+        fix = f"did you mean {near[0]!r}?" if near else f"use {', '.join(known)}"
+        return _error(path, lines, (*where, key), f"unknown key {key!r}", fix)
+    if problem.startswith("Expected `object") and where and isinstance(where[-1], str):
+        value = _value_at(raw, where)
+        if where[-1] == "asset" and isinstance(value, str):
+            return _error(path, lines, where, "asset is a table", f"write asset = {{ file = {json.dumps(value)} }}")
+        return _error(path, lines, where, f"{where[-1]} is a table", f"write {where[-1]} = {{ … }}, with its keys")
     return _error(path, lines, where, f"{_dotted(where)}{_lower(problem)}", "correct the value")
 
 

@@ -13,7 +13,8 @@ from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE, ExternalFiles
 from voxrt.voxelize.formats.gltf.container import read_container
 from voxrt.voxelize.formats.gltf.extensions import MESHOPT
-from voxrt.voxelize.formats.gltf.meshopt import BadStreamError, CompressedView, decode
+from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
+from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError
 from voxrt.voxelize.formats.gltf.schema_errors import explain
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -90,14 +91,15 @@ class Document:
         view = self.item(self.gltf.buffer_views, index, place, "buffer view")
         if index in self._unpacked:
             return memoryview(self._unpacked[index])
-        compressed = self.extension(view, MESHOPT, CompressedView, f"bufferViews[{index}]")
-        if compressed is None:
-            return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
-        self._unpacked[index] = self._decompressed(compressed, view, f"bufferViews[{index}]")
-        return memoryview(self._unpacked[index])
+        for name in MESHOPT:
+            compressed = self.extension(view, name, CompressedView, f"bufferViews[{index}]")
+            if compressed is not None:
+                here = f"bufferViews[{index}].extensions.{name}"
+                self._unpacked[index] = self._decompressed(compressed, view, here)
+                return memoryview(self._unpacked[index])
+        return self.buffer(view.buffer)[view.byte_offset : view.byte_offset + view.byte_length]
 
-    def _decompressed(self, compressed: CompressedView, view: BufferView, place: str) -> bytes:
-        here = f"{place}.extensions.{MESHOPT}"
+    def _decompressed(self, compressed: CompressedView, view: BufferView, here: str) -> bytes:
         size = compressed.count * compressed.byte_stride
         self.charge(size * 4, here)
         buffer = self.item(self.gltf.buffers, compressed.buffer, f"{here}.buffer", "buffer")

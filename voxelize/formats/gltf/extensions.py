@@ -4,7 +4,7 @@ from __future__ import annotations
 
 DRACO = "KHR_draco_mesh_compression"
 INSTANCING = "EXT_mesh_gpu_instancing"
-MESHOPT = "EXT_meshopt_compression"
+MESHOPT = ("KHR_meshopt_compression", "EXT_meshopt_compression")
 PHYSICS = "KHR_physics_rigid_bodies"
 SHAPES = "KHR_implicit_shapes"
 SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
@@ -16,7 +16,7 @@ SUPPORTED = frozenset(
     {
         DRACO,
         INSTANCING,
-        MESHOPT,
+        *MESHOPT,
         PHYSICS,
         SHAPES,
         SPECULAR_GLOSSINESS,
@@ -53,11 +53,13 @@ WITHOUT_EFFECT = frozenset(
 """Extensions that affect neither geometry nor base colour."""
 
 
-CONVERT_IMAGES = "convert it: gltf-transform ktxdecompress IN OUT for KTX2, gltf-transform png IN OUT for others"
+CONVERT_IMAGES = (
+    "convert its images to PNG: npx @gltf-transform/cli ktxdecompress IN OUT for KTX2, npx @gltf-transform/cli png IN "
+    "OUT for others"
+)
 """How to convert unsupported image formats: glTF Transform's command line."""
 
 REPLACEMENTS = {
-    "KHR_meshopt_compression": "compress it with EXT_meshopt_compression, or not at all",
     "KHR_texture_basisu": CONVERT_IMAGES,
     "EXT_texture_avif": CONVERT_IMAGES,
 }

@@ -66,8 +66,9 @@ def _read(document: Document, extras: msgspec.Raw, place: str, kind: type[_T]) -
         return kind()
     for key in authored:
         if key.startswith("voxrt_") and key not in kind.__struct_fields__:
-            nearest = difflib.get_close_matches(key, kind.__struct_fields__, n=1, cutoff=0.0)[0]
-            raise document.error(f"{place}.{key}", "unknown property for voxrt", f"did you mean {nearest}?")
+            nearest = difflib.get_close_matches(key, kind.__struct_fields__, n=1)
+            fix = f"did you mean {nearest[0]}?" if nearest else f"use {', '.join(kind.__struct_fields__)}"
+            raise document.error(f"{place}.{key}", "unknown property for voxrt", fix)
     try:
         return msgspec.convert(authored, kind)
     except msgspec.ValidationError as error:

@@ -9,6 +9,7 @@ import numpy as np
 from voxrt.voxelize.collider_shapes import bounding_points, collider_around
 from voxrt.voxelize.formats.gltf.animation import posed
 from voxrt.voxelize.formats.gltf.appearance import find_variant, read_appearance
+from voxrt.voxelize.formats.gltf.cameras import read_cameras
 from voxrt.voxelize.formats.gltf.document import Document
 from voxrt.voxelize.formats.gltf.extras import refuse_misplaced
 from voxrt.voxelize.formats.gltf.materials import number_materials
@@ -19,7 +20,7 @@ from voxrt.voxelize.formats.gltf.unused import refuse_broken_parts
 from voxrt.voxelize.formats.gltf.visible_nodes import VisibleNodes
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
-from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.mesh import NO_TRIANGLES
 from voxrt.voxelize.scene import Scene, SceneObject
 
 if TYPE_CHECKING:
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
     from voxrt.voxelize.formats.gltf.materials import MaterialKey
     from voxrt.voxelize.formats.gltf.meshes import Surface
     from voxrt.voxelize.formats.gltf.visible_nodes import NodeContent, PoseKey
-
-_NO_TRIANGLES = Mesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.uint8))
+    from voxrt.voxelize.mesh import Mesh
 
 
 def load_gltf(
@@ -69,7 +69,8 @@ def load_gltf(
     check_required_extensions(document)
     refuse_misplaced(document)
     document.gltf = posed(document, time, animation)
-    nodes = VisibleNodes(document, place_nodes(document), find_variant(document, variants))
+    hierarchy = place_nodes(document)
+    nodes = VisibleNodes(document, hierarchy, find_variant(document, variants))
     contents = list(nodes.contents())
     textures = Textures(document)
     mesh_keys = list(dict.fromkeys(content.mesh for content in contents if content.mesh is not None))
@@ -94,7 +95,9 @@ def load_gltf(
         reasons = "; ".join(one.message for one in document.log.warnings())
         problem = "has no triangles to voxelize" + (f" ({reasons})" if reasons else "")
         raise document.error("", problem, "check that the scene shows a mesh")
-    return Scene(path.stem, objects, table.materials(), document.log.warnings())
+    cameras = read_cameras(document, hierarchy)
+    viewpoint = cameras[0] if cameras else None
+    return Scene(path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras)
 
 
 def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialKey, int]) -> LoadedMesh:
@@ -113,7 +116,7 @@ def _objects(
 ) -> Iterator[SceneObject]:
     """Make the objects of a node, one per instance; none where its mesh is fully transparent."""
     if content.mesh is None:
-        mesh, material = _NO_TRIANGLES, ids[content.material]
+        mesh, material = NO_TRIANGLES, ids[content.material]
     else:
         mesh = meshes[content.mesh]
         if not len(mesh.triangles):

@@ -1,7 +1,8 @@
-"""EXT_meshopt_compression: decoding of compressed buffer views.
+"""KHR_meshopt_compression and EXT_meshopt_compression: decoding of compressed buffer views.
 
-Source: the extension's description of its bit streams and filters (Kapoulkine and St. Pierre, appendices A and B).
-Streams do not hold their length: every read is checked, and a stream with bytes left over is refused.
+Source: the extensions' descriptions of their bit streams and filters (Kapoulkine and St. Pierre, appendices A and B).
+EXT_ has attribute streams of version 0 alone; both are decoded under either name. Streams do not hold their length:
+every read is checked, and a stream with bytes left over is refused.
 """
 
 from __future__ import annotations
@@ -11,21 +12,17 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 from msgspec import Struct
 
+from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError, decode_attributes
+from voxrt.voxelize.formats.gltf.meshopt_filters import FILTERS, SIZES
 from voxrt.voxelize.formats.gltf.schema import Count, Index  # noqa: TC001 -- msgspec reads the annotations
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Mode: TypeAlias = Literal["ATTRIBUTES", "TRIANGLES", "INDICES"]
-Filter: TypeAlias = Literal["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"]
+Filter: TypeAlias = Literal["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"]
 
-_ATTRIBUTES, _TRIANGLES, _INDICES = 0xA0, 0xE1, 0xD1
-_GROUP = 16
-# The deltas that a byte packs, first the most significant.
-_PACKED = {
-    bits: [bytes(byte >> shift & (1 << bits) - 1 for shift in range(8 - bits, -1, -bits)) for byte in range(256)]
-    for bits in (2, 4)
-}
+_TRIANGLES, _INDICES = 0xE1, 0xD1
 
 
 class CompressedView(Struct, frozen=True, rename="camel"):
@@ -40,10 +37,6 @@ class CompressedView(Struct, frozen=True, rename="camel"):
     filter: Filter = "NONE"
 
 
-class BadStreamError(ValueError):
-    """A bit stream that contradicts its header; the message says why."""
-
-
 def decode(view: CompressedView, data: bytes) -> bytes:
     """Return the ``count * byte_stride`` bytes that `data` encodes.
 
@@ -54,8 +47,7 @@ def decode(view: CompressedView, data: bytes) -> bytes:
     """
     _check(view)
     if view.mode == "ATTRIBUTES":
-        elements = _attributes(data, view.count, view.byte_stride)
-        return _FILTERS[view.filter](elements).tobytes()
+        return FILTERS[view.filter](decode_attributes(data, view.count, view.byte_stride)).tobytes()
     indices = _triangles(data, view.count // 3) if view.mode == "TRIANGLES" else _indices(data, view.count)
     if view.byte_stride == 2:
         if int(indices.max()) > 0xFFFF:
@@ -66,73 +58,13 @@ def decode(view: CompressedView, data: bytes) -> bytes:
 
 def _check(view: CompressedView) -> None:
     if view.mode == "ATTRIBUTES":
-        sizes = {"NONE": range(4, 257, 4), "OCTAHEDRAL": (4, 8), "QUATERNION": (8,), "EXPONENTIAL": range(4, 257, 4)}
-        fits = view.byte_stride in sizes[view.filter]
+        fits = view.byte_stride in SIZES[view.filter]
     else:
         fits = view.byte_stride in (2, 4) and view.filter == "NONE"
     if not fits:
         raise BadStreamError(f"{view.mode} with filter {view.filter} cannot have elements of {view.byte_stride} bytes")
     if view.mode == "TRIANGLES" and view.count % 3:
         raise BadStreamError(f"{view.count} indices are no whole triangles")
-
-
-def _attributes(data: bytes, count: int, stride: int) -> NDArray[np.uint8]:
-    """Decode mode 0: shape (count, stride)."""
-    tail = max(stride, 32)
-    if len(data) < 1 + tail or data[0] != _ATTRIBUTES:
-        raise BadStreamError("not an attribute stream of version 0")
-    end = len(data) - tail
-    last = np.frombuffer(data, np.uint8, stride, len(data) - stride)
-    most = min(8192 // stride & ~15, 256)
-    decoded = np.empty((count, stride), np.uint8)
-    at = 1
-    for start in range(0, count, most):
-        size = min(count - start, most)
-        groups = -(-size // _GROUP)
-        deltas = np.empty((stride, groups * _GROUP), np.uint8)
-        for lane in range(stride):
-            packed, at = _deltas(data, at, end, groups)
-            deltas[lane] = np.frombuffer(packed, np.uint8)
-        signed = (deltas >> 1) ^ (0 - (deltas & 1)).astype(np.uint8)
-        block = np.cumsum(signed, axis=1, dtype=np.uint8)[:, :size].T + last
-        decoded[start : start + size] = block
-        last = block[-1]
-    if at != end:
-        raise BadStreamError(f"{end - at} bytes are left over")
-    return decoded
-
-
-def _deltas(data: bytes, at: int, end: int, groups: int) -> tuple[bytes, int]:
-    """Read one byte's deltas for `groups` groups of 16; return them and where reading stopped."""
-    header = at
-    at += -(-groups // 4)
-    if at > end:
-        raise BadStreamError("ends inside a block header")
-    found = []
-    for group in range(groups):
-        mode = data[header + (group >> 2)] >> (group & 3) * 2 & 3
-        if mode == 0:
-            found.append(bytes(_GROUP))
-            continue
-        size = _GROUP if mode == 3 else 4 * mode
-        if at + size > end:
-            raise BadStreamError("ends inside a group of deltas")
-        packed = data[at : at + size]
-        at += size
-        if mode == 3:
-            found.append(packed)
-            continue
-        table, sentinel = _PACKED[2 * mode], (1 << 2 * mode) - 1
-        unpacked = bytearray(b"".join([table[byte] for byte in packed]))
-        place = unpacked.find(sentinel)
-        while place >= 0:
-            if at >= end:
-                raise BadStreamError("ends inside a group of deltas")
-            unpacked[place] = data[at]
-            at += 1
-            place = unpacked.find(sentinel, place + 1)
-        found.append(bytes(unpacked))
-    return b"".join(found), at
 
 
 class _Varints:
@@ -256,58 +188,3 @@ def _indices(data: bytes, count: int) -> NDArray[np.int64]:
     if stream.at != end:
         raise BadStreamError(f"{end - stream.at} bytes are left over")
     return np.array(found, np.int64)
-
-
-def _unfiltered(elements: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return elements
-
-
-def _octahedral(elements: NDArray[np.uint8]) -> NDArray[np.int8] | NDArray[np.int16]:
-    """Unfold unit vectors from the octahedron that they were folded onto; the fourth component stays."""
-    stored: NDArray[np.int8] | NDArray[np.int16] = elements.view("<i1" if elements.shape[1] == 4 else "<i2")
-    wide = stored.astype(np.float64)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        x, y = wide[:, 0] / wide[:, 2], wide[:, 1] / wide[:, 2]
-        z = 1.0 - np.abs(x) - np.abs(y)
-        fold = np.minimum(z, 0.0)
-        unit = np.stack([x - np.copysign(fold, x), y - np.copysign(fold, y), z], axis=1)
-        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
-    decoded = stored.copy()
-    decoded[:, :3] = _rounded(unit, np.iinfo(stored.dtype).max)
-    return decoded
-
-
-def _quaternion(elements: NDArray[np.uint8]) -> NDArray[np.int16]:
-    """Complete unit quaternions from their three smaller components."""
-    stored = elements.view("<i2").astype(np.int64)
-    one = (stored[:, 3] | 3).astype(np.float64)
-    small = stored[:, :3] / one[:, None] * np.sqrt(0.5)
-    largest = np.sqrt(np.maximum(0.0, 1.0 - (small**2).sum(axis=1)))
-    decoded = np.empty(stored.shape, "<i2")
-    rows = np.arange(len(stored))
-    for step, component in enumerate((*small.T, largest), start=1):
-        decoded[rows, ((stored[:, 3] & 3) + step) % 4] = _rounded(component, 32767)
-    return decoded
-
-
-def _exponential(elements: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """Make floating-point numbers of 24 bits of mantissa and 8 of exponent."""
-    stored = elements.view("<i4").astype(np.int64)
-    exponent, mantissa = stored >> 24, ((stored & 0xFFFFFF) ^ 0x800000) - 0x800000
-    with np.errstate(over="ignore", under="ignore"):
-        numbers: NDArray[np.float32] = np.ldexp(mantissa.astype(np.float64), exponent).astype("<f4")
-    return numbers
-
-
-def _rounded(values: NDArray[np.float64], scale: int) -> NDArray[np.float64]:
-    """Round to whole numbers of 1 / `scale`, halves away from 0; what is not a number becomes 0."""
-    scaled = np.nan_to_num(np.clip(values, -1.0, 1.0)) * scale
-    return np.copysign(np.floor(np.abs(scaled) + 0.5), scaled)
-
-
-_FILTERS = {
-    "NONE": _unfiltered,
-    "OCTAHEDRAL": _octahedral,
-    "QUATERNION": _quaternion,
-    "EXPONENTIAL": _exponential,
-}

@@ -1,6 +1,6 @@
 """The parts of the glTF 2.0 JSON that define geometry and colour, as validated values.
 
-Field names are the format's own in snake case. Other members (cameras, roughness …) are skipped. `extensions` and
+Field names are the format's own in snake case. Other members (roughness, sheen …) are skipped. `extensions` and
 `extras` stay raw until they are needed. Source: Khronos, glTF 2.0
 specification, section 5 (properties reference).
 """
@@ -162,6 +162,7 @@ class Node(Named, frozen=True, kw_only=True):
     children: list[Index] = []
     mesh: Index | None = None
     skin: Index | None = None
+    camera: Index | None = None
     matrix: Matrix4 | None = None
     translation: Vec3 | None = None
     rotation: Vec4 | None = None
@@ -249,6 +250,19 @@ class Image(Named, frozen=True, kw_only=True):
     buffer_view: Index | None = None
 
 
+class Perspective(Property, frozen=True, kw_only=True):
+    """The projection of a perspective camera."""
+
+    yfov: float
+
+
+class Camera(Named, frozen=True, kw_only=True):
+    """A camera: it looks along -z, y is up."""
+
+    type: str
+    perspective: Perspective | None = None
+
+
 class Skin(Named, frozen=True, kw_only=True):
     """Joints that move vertices."""
 
@@ -304,3 +318,4 @@ class Gltf(Property, frozen=True, kw_only=True):
     images: list[Image] = []
     skins: list[Skin] = []
     animations: list[Animation] = []
+    cameras: list[Camera] = []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
 from voxrt.voxelize.formats.external_files import ExternalFiles
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
@@ -109,15 +110,16 @@ def _textured(rows: NDArray[np.int32], image_placements: Sequence[object]) -> ND
 
 
 def _refuse_unreadable_positions(text: Text, statements: Statements, log: WarningLog) -> None:
-    broken: NDArray[np.bool_] = np.logical_not(np.isfinite(statements.positions).all(axis=1))
+    broken = ~in_range(statements.positions)
     if not broken.any():
         return
     at_corner = np.flatnonzero(broken[statements.corners])
     if len(at_corner):
         face = int(np.searchsorted(np.cumsum(statements.counts), at_corner[0], side="right"))
+        vertex = statements.corners[at_corner[0]] + 1
         raise AssetError(
             text.path,
-            f"vertex {statements.corners[at_corner[0]] + 1} of a face has a coordinate that is not a number",
+            f"vertex {vertex} of a face has a coordinate that is not a number below {FARTHEST:g}",
             place=text.place(int(statements.face_lines[face])),
             fix="export it again",
         )

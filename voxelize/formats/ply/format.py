@@ -71,7 +71,23 @@ class _Binary:
     order: str
 
 
-def read_tables(path: Path, data: bytes) -> dict[str, Table]:
+@dataclass(frozen=True, eq=False, slots=True)
+class PlyFile:
+    """The content of a file.
+
+    Attributes
+    ----------
+    tables
+        Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
+    textures
+        The names of ``comment TextureFile`` lines, in order.
+    """
+
+    tables: dict[str, Table]
+    textures: tuple[str, ...]
+
+
+def read_ply(path: Path, data: bytes) -> PlyFile:
     """Read all tables.
 
     Parameters
@@ -79,39 +95,40 @@ def read_tables(path: Path, data: bytes) -> dict[str, Table]:
     path, data
         The file and its bytes.
 
-    Returns
-    -------
-    Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
-
     Raises
     ------
     AssetError
         The header is invalid, or the rows do not match it.
     """
-    order, elements, body = _header(path, data)
+    order, elements, body, textures = _header(path, data)
     if order:
-        return _binary(_Binary(path, data, order), body, elements)
-    return _ascii(path, data[body:], elements)
+        return PlyFile(_binary(_Binary(path, data, order), body, elements), textures)
+    return PlyFile(_ascii(path, data[body:], elements), textures)
 
 
-def _header(path: Path, data: bytes) -> tuple[str, list[_Element], int]:
-    """Byte order ("" for ASCII), elements, and where the body begins."""
+def _header(path: Path, data: bytes) -> tuple[str, list[_Element], int, tuple[str, ...]]:
+    """Byte order ("" for ASCII), elements, where the body begins, and the names of textures."""
     end = data.find(b"end_header", 0, 1 << 16)
     if not data.startswith(b"ply") or end < 0:
         raise AssetError(path, "is empty" if not data else "has no PLY header", fix="export it again")
-    body = data.find(b"\n", end)
+    # A header's lines end with LF, CR LF, or CR alone.
+    newline = b"\n" if b"\n" in data[:end] else b"\r"
+    body = data.find(newline, end)
     body = len(data) if body < 0 else body + 1
+    textures: list[str] = []
     orders: list[str] = []
     elements: list[_Element] = []
     for number, line in enumerate(data[:end].decode("latin-1").splitlines()[1:], start=2):
         try:
+            if line.lower().startswith("comment texturefile "):
+                textures.append(line[len("comment texturefile ") :].strip())
             _header_line(line.split(), orders, elements)
         except (KeyError, ValueError, IndexError):
             problem = f"cannot understand {line!r}"
             raise AssetError(path, problem, place=f"line {number}", fix="export it again") from None
     if len(orders) != 1:
         raise AssetError(path, f"has {len(orders)} format lines", fix="export it again")
-    return orders[0], elements, body
+    return orders[0], elements, body, tuple(textures)
 
 
 def _header_line(words: list[str], orders: list[str], elements: list[_Element]) -> None:

@@ -7,27 +7,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
+from voxrt.voxelize.formats.external_files import ExternalFiles
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
-from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_tables
+from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_ply
+from voxrt.voxelize.formats.ply.painting import image_of_faces, read_textures, surface_appearance, texture_coordinates
 from voxrt.voxelize.formats.scene_frame import scene_transform
-from voxrt.voxelize.formats.triangulation import triangulate
+from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-OPAQUE_FROM = 0.5
-"""Faces of lower opacity are left out."""
 
-
-def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = None) -> Scene:
-    """Read a PLY file: vertices and polygons, with the colours of either, read as sRGB.
+def load_ply(
+    path: str | Path, *, up: str | None = None, unit: float | None = None, allow_outside: bool = False
+) -> Scene:
+    """Read a PLY file: vertices and polygons, with a texture, or with the colours of either, read as sRGB.
 
     Parameters
     ----------
@@ -37,23 +38,33 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
         The file's up axis; None for y.
     unit
         Metres per unit of the file; None for 1.
+    allow_outside
+        Whether textures may stand outside the file's folder.
 
     Raises
     ------
     AssetError
-        The file cannot be read, contradicts its header, or has no faces.
+        The file cannot be read, contradicts its header, has no faces, or a broken texture.
     """
     path = Path(path)
     data = read_asset(path)
     log = WarningLog()
-    tables = read_tables(path, data)
+    ply = read_ply(path, data)
+    tables = ply.tables
     positions, counts, corners, kept = _geometry(path, tables, log)
-    triangles, faces = triangulate(positions, counts, corners)
+    cut, faces = triangulate_corners(positions, counts, corners)
+    triangles = corners[cut].astype(np.int32)
     table = MaterialTable()
-    appearance = _appearance(tables, triangles, kept[faces])
+    by_colour = _colours_of_corners(tables, triangles, kept[faces])
+    textures = read_textures(path, ExternalFiles.of(path, allow_outside=allow_outside), ply.textures, log)
+    coordinates = texture_coordinates(tables, corners, kept, counts, log) if textures else None
+    if textures and coordinates is None:
+        log.add("texture", "the file names a texture and has no texture coordinates: the texture was not used")
+    appearance = surface_appearance(textures, coordinates, image_of_faces(tables, kept[faces]), by_colour, cut)
     materials = np.zeros(len(triangles), dtype=np.uint8)
-    if appearance is None:
-        materials[:] = table.default(log, len(counts))
+    bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
+    if bare.any():
+        materials[bare] = table.default(log, len(np.unique(faces[bare])))
     (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
     if not len(mesh.triangles):
         raise AssetError(path, "has no visible faces", fix="give its colours an opacity of 0.5 or more")
@@ -61,25 +72,14 @@ def load_ply(path: str | Path, *, up: str | None = None, unit: float | None = No
     return Scene(path.stem, (one,), table.materials(), log.warnings())
 
 
-def _appearance(
+def _colours_of_corners(
     tables: dict[str, Table], triangles: NDArray[np.int32], faces: NDArray[np.int64]
-) -> SurfaceAppearance | None:
-    """Return the faces' colours of triangles, else their vertices'; None where the file has neither."""
+) -> tuple[str, NDArray[np.float64]] | None:
+    """Return the faces' colours of triangles' corners, else their vertices', and what they are; None for neither."""
     by_face, by_vertex = _colours(tables.get("face", {})), _colours(tables.get("vertex", {}))
-    if "tristrips" in tables:  # strips have no colours of faces
-        by_face = None
-    if by_face is not None:
-        colours = np.repeat(by_face[faces][:, None], 3, axis=1)
-    elif by_vertex is not None:
-        colours = by_vertex[triangles]
-    else:
-        return None
-    name = "face colours" if by_face is not None else "vertex colours"
-    cutoff = OPAQUE_FROM if (colours[:, :, 3] < 1.0).any() else 0.0
-    rows = np.zeros(len(triangles), dtype=np.int32)
-    return SurfaceAppearance(
-        (Appearance(name, cutoff=cutoff),), rows, np.zeros((len(triangles), 3, 2)), colours.astype(np.float32)
-    )
+    if by_face is not None and "tristrips" not in tables:  # strips have no colours of faces
+        return "face colours", np.repeat(by_face[faces][:, None], 3, axis=1)
+    return None if by_vertex is None else ("vertex colours", by_vertex[triangles])
 
 
 def _colours(table: Table) -> NDArray[np.float64] | None:
@@ -158,8 +158,9 @@ def _geometry(
         problem = f"vertex {polygons.values[wrong[0]]} does not exist: the file has {len(positions)}"
         raise AssetError(path, problem, place=f"face {face}", fix="export it again")
     corners = polygons.values.astype(np.int64)
-    if not np.isfinite(positions[corners]).all():
-        raise AssetError(path, "a face has a vertex whose coordinates are not numbers", fix="export it again")
+    if not in_range(positions[corners]).all():
+        problem = f"a face has a vertex whose coordinates are not numbers below {FARTHEST:g}"
+        raise AssetError(path, problem, fix="export it again")
     keep = counts >= 3
     log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
     corners, counts = corners[np.repeat(keep, counts)], counts[keep]

@@ -11,6 +11,7 @@ from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.scene_frame import scene_transform
@@ -61,9 +62,12 @@ def load_stl(path: str | Path, *, up: str | None = None, unit: float | None = No
         if not len(corners):
             log.add("empty-mesh", "solids without triangles were left out")
             continue
-        if not np.isfinite(corners).all():
+        if not in_range(corners).all():
             raise AssetError(
-                path, "has a coordinate that is not a number", place=f"solid {name!r}", fix="export it again"
+                path,
+                f"has a coordinate that is not a number below {FARTHEST:g}",
+                place=f"solid {name!r}",
+                fix="export it again",
             )
         positions, triangles = weld(corners)
         appearance = None if facet_colours is None else _appearance(facet_colours)
@@ -119,6 +123,8 @@ def _facet_colours(
     flagged = attributes >= 1 << 15
     at = header.find(b"COLOR=")
     if 0 <= at <= len(header) - 10:
+        # Exporters that leave all attributes 0 mean the object's colour, not black facets.
+        flagged = flagged | ~attributes.any()
         colours = np.stack([low, middle, high], axis=1) * 255 // 31
         colours[flagged] = list(header[at + 6 : at + 9])
         return colours.astype(np.uint8), np.ones(len(flagged), dtype=np.bool_)

@@ -1,5 +1,1 @@
-"""OpenUSD stages (usda, usdc, usdz), read through usd-core."""
-
-from voxrt.voxelize.formats.usd.load import load_usd
-
-__all__ = ["load_usd"]
+"""OpenUSD stages (usda, usdc, usdz), read through usd-core, which runs in a process of its own (``isolated.py``)."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pxr import Tf, UsdUtils
@@ -14,6 +13,7 @@ from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from voxrt.voxelize.warning_log import WarningLog
 
@@ -51,21 +51,37 @@ def _commentary(diagnostic: object) -> str:
         return "the file holds text that is not UTF-8"
 
 
+_ADDRESS = re.compile(r"(?:@anon:0x[0-9a-f]+(?::[^@]*)?@|\s*<?\b0x[0-9a-f]{6,}\b>?)")
+
+
+def _reproducible(line: str, path: Path) -> str:
+    """Return a message without addresses in memory, and with files relative to the asset's folder.
+
+    A manifest must not depend on where a folder is, nor on the run.
+    """
+    line = _ADDRESS.sub(lambda found: "the session layer" if found[0].startswith("@") else "", line)
+    folders = sorted({str(path.parent.absolute()), str(path.parent.resolve())}, key=len, reverse=True)
+    for folder in folders:
+        line = line.replace(folder.rstrip("/") + "/", "")
+    return _ABSOLUTE.sub(lambda found: f"@{os.path.relpath(found[1], path.parent.absolute())}", line)
+
+
+_ABSOLUTE = re.compile(r"@(/[^@\[]*)")
+
+
 def _warning(commentary: str, path: Path) -> tuple[str, str]:
-    line = " ".join(commentary.split())
+    line = _reproducible(" ".join(commentary.split()), path)
     if "deprecated version" in line:
         return "deprecated-format", "a layer has a version of the crate format that USD will drop"
     if match := _UNOPENED.search(line):
-        # Relative to the file's folder, so that a manifest does not depend on where that folder is.
-        asset = match["asset"]
-        if Path(asset).is_absolute():
-            asset = os.path.relpath(asset, path.parent.absolute())
-        return "composition", f"asset {asset} could not be opened; its content is missing"
+        return "composition", f"asset {match['asset']} could not be opened; its content is missing"
     return ("composition" if line.startswith("In <") else "usd"), f"USD reports: {line}"
 
 
 def _asset_error(path: Path, error: Tf.ErrorException) -> AssetError:
     messages = [" ".join(_commentary(one).split()) for one in error.args]
+    if any("bad_alloc" in message for message in messages):
+        raise MemoryError from None
     for message in messages:
         if match := _AT_LINE.match(message):
             problem = match["problem"]

@@ -10,6 +10,7 @@ from pxr import Usd, UsdGeom
 
 from voxrt.voxelize import primitive_meshes
 from voxrt.voxelize.errors import AssetError
+from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.formats.usd import values
 
@@ -21,10 +22,6 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.formats.usd.skin import Deformed
     from voxrt.voxelize.warning_log import WarningLog
-
-# USD allows any coordinate; the squares of larger ones overflow.
-_FARTHEST = 1e150
-
 
 # The attributes of each solid, in the order of its function's parameters.
 _DIMENSIONS = {
@@ -136,7 +133,7 @@ def _check_topology(
         problem = f"faceVertexCounts ask for {int(counts.sum())} corners and faceVertexIndices has {len(corners)}"
     elif len(corners) and (corners.min() < 0 or corners.max() >= len(positions)):
         problem = f"faceVertexIndices go from {corners.min()} to {corners.max()} and points has {len(positions)}"
-    elif not (np.abs(positions) < _FARTHEST).all():
+    elif not in_range(positions).all():
         problem = "points has a coordinate that is not a finite number"
     if problem:
         raise AssetError(path, problem, place=place, fix="export the mesh again")
@@ -160,7 +157,7 @@ def _solid(prim: Usd.Prim, path: Path, time: Usd.TimeCode) -> primitive_meshes.S
         place = str(prim.GetPath())
         if name == "axis" and value not in ("X", "Y", "Z"):
             raise AssetError(path, f"axis {str(value)!r} is not X, Y or Z", place=place, fix="use one of them")
-        if name != "axis" and not (isinstance(value, (int, float)) and 0 <= value < _FARTHEST):
+        if name != "axis" and not (isinstance(value, (int, float)) and 0 <= value < FARTHEST):
             raise AssetError(path, f"{name} {value} is not a length", place=place, fix="use a positive number")
         dimensions.append(str(value) if name == "axis" else float(value))
     return _FUNCTIONS[kind](*dimensions)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import ImageSource, Shading
     from voxrt.voxelize.warning_log import WarningLog
 
@@ -28,10 +29,11 @@ _READABLE = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".tif", ".tiff", 
 class Images:
     """The decoded images and the textures of one stage."""
 
-    def __init__(self, path: Path, external_files: ExternalFiles, log: WarningLog) -> None:
+    def __init__(self, path: Path, external_files: ExternalFiles, log: WarningLog, allowance: Allowance) -> None:
         self._path = path
         self._external_files = external_files
         self._log = log
+        self._allowance = allowance
         self._pixels: dict[str, NDArray[np.uint8] | None] = {}
         self._textures: dict[Shading, Texture | None] = {}
 
@@ -89,6 +91,8 @@ class Images:
                 if found is not None and not self._external_files.allows(found):
                     problem = f"texture {Path(file).name!r} is outside the file's folder"
                     raise AssetError(self._path, problem, fix=ALLOW_OUTSIDE)
+                if found is not None and file == str(found):  # what a package holds is part of its size
+                    self._allowance.add(found.stat().st_size)
                 opened = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file))
                 if opened:
                     self._pixels[file] = decode_image(bytes(opened.GetBuffer()), self._path, Path(file).name)

@@ -14,26 +14,32 @@ if TYPE_CHECKING:
     from pxr import Usd
 
     from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.limits import Allowance
 
 
-def refuse_layers_outside(path: Path, external_files: ExternalFiles) -> None:
-    """Refuse a stage with a layer that may not be opened, whatever variants are selected.
+def open_layers(path: Path, external_files: ExternalFiles, allowance: Allowance) -> list[Sdf.Layer]:
+    """Open the layers that a stage may use, whatever variants are selected, one after another, each after its check.
 
-    Layers are opened one after another, each after its check. The stage reports layers that cannot be opened.
+    Layers that cannot be opened are left out: the stage reports them.
+
+    Returns
+    -------
+    The layers; the stage takes them as they are while they are kept.
 
     Raises
     ------
     AssetError
         A layer refers to one outside the file's folder.
     """
-    if external_files.allow_outside:
-        return
+    allowance.add(path.stat().st_size)
     seen: set[str] = set()
     waiting = [Sdf.Layer.FindOrOpen(str(path))]
+    opened = []
     while waiting:
         layer = waiting.pop()
         if not layer:
             continue
+        opened.append(layer)
         for asset in sorted(layer.GetCompositionAssetDependencies()):
             file = layer.ComputeAbsolutePath(asset) if asset else ""
             found = found_at(file, external_files)
@@ -43,10 +49,12 @@ def refuse_layers_outside(path: Path, external_files: ExternalFiles) -> None:
             if not external_files.allows(found):
                 place = "" if Path(layer.realPath) == path.resolve() else Path(layer.realPath).name
                 raise AssetError(path, f"layer {asset!r} is outside the file's folder", place=place, fix=ALLOW_OUTSIDE)
+            allowance.add(found.stat().st_size)
             try:
                 waiting.append(Sdf.Layer.FindOrOpen(file))
             except Tf.ErrorException:  # not a layer, or a broken one: the stage reports it
                 continue
+    return opened
 
 
 def refuse_layers_used_outside(path: Path, stage: Usd.Stage, external_files: ExternalFiles) -> None:

@@ -11,7 +11,7 @@ from pxr import Usd, UsdShade
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.usd import primvars
-from voxrt.voxelize.formats.usd.images import Images, image_coordinates
+from voxrt.voxelize.formats.usd.images import image_coordinates
 from voxrt.voxelize.formats.usd.shading import NO_SHADING, Shading, display_srgb, read_shading
 from voxrt.voxelize.formats.usd.values import integers
 from voxrt.voxelize.materials import DEFAULT_COLOUR
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from voxrt.voxelize.formats.external_files import ExternalFiles
     from voxrt.voxelize.formats.material_table import MaterialTable
     from voxrt.voxelize.formats.usd.geometry import Surface
+    from voxrt.voxelize.formats.usd.images import Images
     from voxrt.voxelize.warning_log import WarningLog
 
 
@@ -32,15 +32,11 @@ class Materials:
     """The materials of one stage; each is read once."""
 
     path: Path
-    external_files: ExternalFiles
+    images: Images
     table: MaterialTable
     log: WarningLog
     time: Usd.TimeCode
-    _images: Images = field(init=False)
     _shadings: dict[str, Shading] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self._images = Images(self.path, self.external_files, self.log)
 
     def shadings_of_faces(self, prim: Usd.Prim, surface: Surface) -> tuple[list[Shading], NDArray[np.int32]]:
         """Return the shadings of a prim, and the one of each face as an index (int32, shape (F,); -1 for holes).
@@ -150,7 +146,7 @@ class Materials:
         """Return a texture's appearance and coordinates (float64, shape (T, 3, 2)); None where either is missing."""
         source = shading.image or shading.alpha
         assert source is not None
-        texture = self._images.texture(shading, faces)
+        texture = self.images.texture(shading, faces)
         if texture is None:
             return None
         stored = primvars.at_corners(prim, source.primvar, surface, self.time, self.log)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,21 +12,25 @@ from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.usd.geometry import Surface, solid_key, surface_of
+from voxrt.voxelize.formats.usd.images import Images
 from voxrt.voxelize.formats.usd.instancer import placed_copies
 from voxrt.voxelize.formats.usd.materials import Materials
 from voxrt.voxelize.formats.usd.physics import colliders_of
 from voxrt.voxelize.formats.usd.skin import PREDICATE, Deformed, deformed_meshes
+from voxrt.voxelize.mesh import NO_TRIANGLES
 from voxrt.voxelize.scene import SceneObject
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from voxrt.voxelize.collider_shapes import Collider
     from voxrt.voxelize.formats.external_files import ExternalFiles
+    from voxrt.voxelize.formats.usd.limits import Allowance
     from voxrt.voxelize.formats.usd.shading import Shading
-    from voxrt.voxelize.warning_log import WarningLog
 
 MOST_OBJECTS = 1_000_000
 """The most objects of a stage: nested instancers can request more copies than memory holds."""
@@ -42,12 +46,16 @@ _PROTOTYPE_PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIs
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _PlacedMesh:
-    """An object whose mesh, an index into the traversal's meshes, has no materials yet."""
+    """An object whose mesh, an index into the traversal's meshes, has no materials yet; None for a hidden object.
+
+    `body` is the path of the rigid body that it is part of; empty for none.
+    """
 
     name: str
-    mesh: int
+    mesh: int | None
     transform: NDArray[np.float64]
     colliders: tuple[Collider, ...]
+    body: str
 
 
 @dataclass(eq=False, slots=True)
@@ -58,6 +66,7 @@ class StageTraversal:
     stage: Usd.Stage
     external_files: ExternalFiles
     log: WarningLog
+    allowance: Allowance
     time: Usd.TimeCode
     materials: Materials = field(init=False)
     _transforms: UsdGeom.XformCache = field(init=False)
@@ -69,7 +78,8 @@ class StageTraversal:
     _count: int = 0
 
     def __post_init__(self) -> None:
-        self.materials = Materials(self.path, self.external_files, MaterialTable(), self.log, self.time)
+        images = Images(self.path, self.external_files, self.log, self.allowance)
+        self.materials = Materials(self.path, images, MaterialTable(), self.log, self.time)
         self._transforms = UsdGeom.XformCache(self.time)
         self._deformed = deformed_meshes(self.stage, self.time, self.log)
 
@@ -84,17 +94,25 @@ class StageTraversal:
         placed = self._below(self.stage.GetPseudoRoot(), PREDICATE)
         transforms = [self._to_scene(one, to_scene) for one in placed]
         meshes = assign_materials(self._meshes, self.materials.table, self.log)
-        return tuple(
-            SceneObject(
-                one.name,
-                meshes[one.mesh],
-                transform,
-                one.colliders,
-                int(meshes[one.mesh].materials[0]),
+        bodies = {one.body for one in placed if one.body and one.colliders}
+        objects = []
+        nearest: dict[str, int] = {}  # material by path: that of the first visible object below
+        for one, transform in zip(placed, transforms, strict=True):
+            if one.mesh is None or not len(meshes[one.mesh].triangles):
+                continue
+            material = int(meshes[one.mesh].materials[0])
+            for above in _ancestors(one.name):
+                nearest.setdefault(above, material)
+            represented = not one.colliders and one.body in bodies
+            objects.append(
+                SceneObject(one.name, meshes[one.mesh], transform, one.colliders, material, represented=represented)
             )
-            for one, transform in zip(placed, transforms, strict=True)
-            if len(meshes[one.mesh].triangles)
-        )
+        for one, transform in zip(placed, transforms, strict=True):
+            if one.mesh is None:
+                material = next((nearest[above] for above in _ancestors(one.name) if above in nearest), 0)
+                material = material or self.materials.table.default(self.log)
+                objects.append(SceneObject(one.name, NO_TRIANGLES, transform, one.colliders, material, hidden=True))
+        return tuple(objects)
 
     def _to_scene(self, one: _PlacedMesh, to_scene: NDArray[np.float64]) -> NDArray[np.float64]:
         with np.errstate(over="ignore", invalid="ignore"):
@@ -113,6 +131,7 @@ class StageTraversal:
         for prim in walk:
             if not self._is_visible(prim):
                 walk.PruneChildren()
+                placed += self._hidden(prim, predicate)
             elif prim.IsA(UsdGeom.PointInstancer):
                 walk.PruneChildren()
                 placed += self._copies(prim)
@@ -131,20 +150,23 @@ class StageTraversal:
         for index, prototype in enumerate(prototypes):
             model = self._below(prototype, _PROTOTYPE_PREDICATE) if (indices == index).any() else []
             back = np.linalg.inv(self._to_stage(prototype)) if model else np.eye(4)
-            models.append([_PlacedMesh(one.name, one.mesh, back @ one.transform, one.colliders) for one in model])
+            models.append([replace(one, transform=back @ one.transform) for one in model])
         self._open_instancers.pop()
         self._charge(int(sum(len(models[index]) for index in indices)))
         placed: list[_PlacedMesh] = []
         for index, to_instancer, number in zip(indices.tolist(), here @ transforms, numbers.tolist(), strict=True):
             for one in models[index]:
-                name = f"{place}[{number}]{one.name.removeprefix(str(prototypes[index].GetPath()))}"
-                placed.append(_PlacedMesh(name, one.mesh, to_instancer @ one.transform, one.colliders))
+                source, copy = str(prototypes[index].GetPath()), f"{place}[{number}]"
+                name = copy + one.name.removeprefix(source)
+                body = copy + one.body.removeprefix(source) if one.body.startswith(source) else one.body
+                transform = to_instancer @ one.transform
+                placed.append(replace(one, name=name, transform=transform, body=body))
         return placed
 
     def _charge(self, count: int) -> None:
         self._count += count
         if self._count > MOST_OBJECTS:
-            raise DoesNotFitError(f"{self.path}: shows more than {MOST_OBJECTS:,} objects; make its instancers sparser")
+            raise DoesNotFitError(f"shows more than {MOST_OBJECTS:,} objects; make its instancers sparser")
 
     def _to_stage(self, prim: Usd.Prim) -> NDArray[np.float64]:
         return np.array(self._transforms.GetLocalToWorldTransform(prim), dtype=np.float64).T
@@ -160,11 +182,26 @@ class StageTraversal:
         purpose = imageable.ComputePurpose()
         if purpose not in (UsdGeom.Tokens.default_, UsdGeom.Tokens.render):
             self.log.add("purpose", f"prims of purpose {purpose} and their descendants were left out")
-            colliders = sum(one.HasAPI(UsdPhysics.CollisionAPI) for one in Usd.PrimRange(prim, PREDICATE))
-            if colliders:
-                self.log.add("collider", f"colliders of purpose {purpose} were left out", colliders)
             return False
         return True
+
+    def _hidden(self, root: Usd.Prim, predicate: object) -> list[_PlacedMesh]:
+        """Return the colliders of `root` and its descendants, none of which is shown, as objects without a mesh."""
+        placed = []
+        ignored = WarningLog()  # what is not shown needs no warnings
+        for prim in Usd.PrimRange(root, predicate):
+            if not prim.HasAPI(UsdPhysics.CollisionAPI):
+                continue
+            source = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
+            deformed = self._deformed.get(str(prim.GetPath()))
+            surface = surface_of(source, self.path, self.time, ignored, deformed)
+            colliders = () if surface is None else colliders_of(source, surface, self.time, ignored)
+            if colliders:
+                self._charge(1)
+                transform = self._to_stage(deformed.frame if deformed else prim)
+                placed.append(_PlacedMesh(str(prim.GetPath()), None, transform, colliders, _body_of(prim)))
+        self.log.add("collider", "colliders that are not shown count with geometry collider alone", len(placed))
+        return placed
 
     def _object(self, prim: Usd.Prim) -> list[_PlacedMesh]:
         """Return the object of one prim, or none."""
@@ -188,7 +225,7 @@ class StageTraversal:
         self._charge(1)
         colliders = colliders_of(source, surface, self.time, self.log)
         transform = self._to_stage(deformed.frame if deformed else prim)
-        return [_PlacedMesh(name, self._rows[shared], transform, colliders)]
+        return [_PlacedMesh(name, self._rows[shared], transform, colliders, _body_of(prim))]
 
     def _count_without_surface(self, prim: Usd.Prim) -> None:
         """Count a prim without a surface."""
@@ -199,3 +236,17 @@ class StageTraversal:
             self.log.add("unsupported-prim", f"{kind} prims are not supported and were left out")
         elif not prim.IsA(UsdGeom.Mesh) and kind not in _WITHOUT_SHAPE and prim.IsA(UsdGeom.Imageable):
             self.log.add("no-shape", f"{kind} prims have no shape and were left out")
+
+
+def _body_of(prim: Usd.Prim) -> str:
+    """Return the path of the rigid body that a prim is part of: its own or its nearest ancestor's; empty for none."""
+    while prim and not prim.HasAPI(UsdPhysics.RigidBodyAPI):
+        prim = prim.GetParent()
+    return str(prim.GetPath()) if prim else ""
+
+
+def _ancestors(path: str) -> Iterator[str]:
+    """Yield a prim path's ancestors, the nearest first, and at last the empty path of all."""
+    while path:
+        path = path.rpartition("/")[0]
+        yield path

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from voxrt.voxelize import AssetError, load
-from voxrt.voxelize.formats.gltf.meshopt import BadStreamError, CompressedView, decode
+from voxrt.voxelize.formats.gltf.meshopt import CompressedView, decode
+from voxrt.voxelize.formats.gltf.meshopt_attributes import BadStreamError
 
 
 def view(mode, count, stride, **options):

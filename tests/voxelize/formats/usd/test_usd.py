@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.surfaces import bounds, scene_triangles, volume
+from oracles.usd_in_process import load_usd
 from PIL import Image
 
 from voxrt.voxelize import (
@@ -17,7 +18,6 @@ from voxrt.voxelize import (
     MeshCollider,
     SphereCollider,
 )
-from voxrt.voxelize.formats.usd import load_usd
 
 CUBE = """
     point3f[] points = [(0,0,0),(1,0,0),(1,1,0),(0,1,0),(0,0,1),(1,0,1),(1,1,1),(0,1,1)]

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from assets import asset
 from oracles.surfaces import bounds, scene_triangles, volume
+from oracles.usd_in_process import load_usd
 from pxr import Sdf, Usd, UsdGeom, UsdSkel, UsdUtils
 
 from voxrt.voxelize import AssetError, DoesNotFitError
-from voxrt.voxelize.formats.usd import load_usd
 
 HEAD = '#usda 1.0\n(\nupAxis = "Y"\nmetersPerUnit = 1\n)\n'
 

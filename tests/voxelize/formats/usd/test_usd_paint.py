@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from oracles.usd_in_process import load_usd
 from PIL import Image
 
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear
-from voxrt.voxelize.formats.usd import load_usd
 
 RED, GREEN, BLUE, WHITE = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)
 

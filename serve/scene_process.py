@@ -1,0 +1,168 @@
+"""Scenes from files, made by a process of its own, which can be ended at any time.
+
+The files may come from strangers. What goes wrong while they are read, a crash included, ends that process alone.
+:mod:`~.scene_child` is the other side.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+import sys
+import tempfile
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ..board.errors import Refused
+from ..board.scene import Scene
+from ..board.view import Camera, Lighting
+from .scene_files import MEMORY_SUFFIXES
+from .shown_text import shown_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from ..board.scene_memory import Progress
+
+READ_SECONDS = 600.0
+"""The longest time that the files of a scene may take."""
+
+WORDS_LIMIT = 1 << 26
+"""Words of the largest scene."""
+
+_LINE_LIMIT = 1 << 16
+_COLOURS, _MIRRORS = 3 * 256, 256
+
+
+class SceneReader(Protocol):
+    """Makes scenes from uploaded files."""
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Suffixes of the files that hold a scene, such as ``.mem``."""
+
+    async def read(self, paths: Sequence[Path], progress: Progress) -> Scene:
+        """Make a scene from files; a caller that is cancelled ends it.
+
+        Raises
+        ------
+        Refused
+            The files are no scene.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class ChildReader:
+    """Makes scenes in a process of its own.
+
+    Attributes
+    ----------
+    suffixes
+        Suffixes of the files that hold a scene.
+    arguments
+        Arguments of Python: a module that calls :func:`~.scene_child.run_child`, with its options. The paths of the
+        files follow.
+    seconds
+        Time limit.
+    """
+
+    suffixes: tuple[str, ...]
+    arguments: tuple[str, ...]
+    seconds: float = READ_SECONDS
+
+    async def read(self, paths: Sequence[Path], progress: Progress) -> Scene:
+        """Make a scene from files; a caller that is cancelled ends the process, and nothing of it stays.
+
+        Raises
+        ------
+        Refused
+            The files are no scene, or take too long, or the process died.
+        """
+        try:
+            with tempfile.TemporaryDirectory(prefix="voxrt-scene-") as scratch:
+                return await asyncio.wait_for(self._read(paths, progress, scratch), self.seconds)
+        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+            raise Refused(
+                f"the scene takes more than {self.seconds:.0f} s to build; build it before: voxrt build"
+            ) from None
+        except OSError as error:
+            raise Refused(f"the server cannot read the files: {error.strerror or error}") from error
+
+    async def _read(self, paths: Sequence[Path], progress: Progress, scratch: str) -> Scene:
+        # The child is alone in its process group, so that its own children end with it. Uploaded files are never
+        # imported: PYTHONSAFEPATH leaves the folder of the caller out of the path.
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            *self.arguments,
+            *map(str, paths),
+            stdin=asyncio.subprocess.PIPE,  # its end tells the child that this process is gone
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.DEVNULL,
+            limit=_LINE_LIMIT,
+            start_new_session=True,
+            env={**os.environ, "TMPDIR": scratch, "PYTHONSAFEPATH": "1"},
+        )
+        try:
+            return await _receive(process, progress)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            await process.wait()
+
+
+def memory_reader() -> ChildReader:
+    """Return the reader of octree memories, which needs no other part of voxrt."""
+    return ChildReader(MEMORY_SUFFIXES, ("-m", f"{__package__}.scene_files"))
+
+
+async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> Scene:
+    out = process.stdout
+    assert out is not None
+    try:
+        while True:
+            message = json.loads(await out.readline())
+            if "progress" in message:
+                stage, done, total = message["progress"]
+                progress(str(stage), int(done), int(total))
+            elif "problem" in message:
+                raise Refused(shown_line(message["problem"]))
+            else:
+                return await _receive_scene(out, message["scene"])
+    except (ValueError, KeyError, TypeError, asyncio.IncompleteReadError):
+        code = await process.wait()
+        how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        raise Refused(
+            f"the process that read the files died ({how}): a file is damaged, or needs more memory than there is"
+        ) from None
+
+
+async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -> Scene:
+    count = int(described["words"])
+    if not 1 <= count <= WORDS_LIMIT:
+        raise Refused(f"the scene has {count} words, which is more than {WORDS_LIMIT}; build it with a smaller depth")
+    colours = np.frombuffer(await out.readexactly(_COLOURS), dtype=np.uint8).reshape(256, 3)
+    mirrors = np.frombuffer(await out.readexactly(_MIRRORS), dtype=np.uint8) != 0
+    data = bytearray(4 * count)
+    at = 0
+    while at < len(data):
+        part = await out.read(1 << 20)
+        if not 1 <= len(part) <= len(data) - at:
+            raise asyncio.IncompleteReadError(part, len(data) - at)
+        data[at : at + len(part)] = part
+        at += len(part)
+    camera, lighting = described["camera"], described["lighting"]
+    return Scene(
+        shown_line(described["name"]),
+        int(described["depth"]),
+        np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False),
+        colours,
+        mirrors,
+        None if camera is None else Camera(*(tuple(map(int, triple)) for triple in camera)),  # type: ignore[arg-type]
+        None if lighting is None else Lighting(**{**lighting, "position": tuple(lighting["position"])}),
+    )

@@ -1,0 +1,104 @@
+"""Which camera pictures are taken with: the author's first, a named one, or one that sees the whole scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.gltf_writer import GltfWriter
+
+import voxrt
+from voxrt.sim import render as render_frame
+from voxrt.viewpoint import authored_camera, stands_inside
+from voxrt.voxelize import EMPTY, Material, Scene, SceneObject, Viewpoint
+from voxrt.voxelize.formats.gltf import load_gltf
+
+SIZE = (64, 48)
+CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+TRIANGLES = [face for a, b, c, d in QUADS for face in ((a, b, c), (a, c, d))]
+LEFT = Viewpoint((-3, 2, 4), (0.5, 0.5, 0.5), 40, name="left")
+RIGHT = Viewpoint((5, 1, 3), (0.5, 0.5, 0.5), 30, name="right")
+INSIDE = Viewpoint((0.5, 0.5, 0.5), (0.5, 0.5, 9.0), name="inside")
+
+
+def cube(*cameras):
+    mesh = voxrt.mesh_scene(CORNERS, TRIANGLES).objects[0].mesh
+    materials = (EMPTY, Material("stone", (150, 150, 160)))
+    first = cameras[0] if cameras else None
+    return Scene("cube", (SceneObject("cube", mesh),), materials, viewpoint=first, cameras=cameras)
+
+
+def preview(*cameras, **options):
+    return voxrt.build(cube(*cameras), depth=4, preview=True, size=SIZE, engine="model", **options)
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize(("asked", "expected"), [(None, LEFT), ("left", LEFT), ("right", RIGHT), ("1", RIGHT)])
+def test_the_first_camera_or_the_named_one(asked, expected):
+    built = preview(LEFT, RIGHT, camera=asked)
+    assert built.preview.camera == authored_camera(expected, built.rom.grid, SIZE)
+    assert built.view == authored_camera(expected, built.rom.grid, (640, 480))
+    frame = render_frame(built.rom, built.preview.camera, SIZE, engine="model")
+    np.testing.assert_array_equal(built.preview.frame.colour, frame.colour)
+
+
+def test_without_cameras_the_whole_scene_is_shown():
+    built = preview()
+    assert built.view is None
+    assert built.preview.camera == voxrt.aim_camera(built.rom, SIZE)
+
+
+@pytest.mark.parametrize(
+    ("cameras", "message"),
+    [((LEFT, RIGHT), "there is no camera 'top': there are left, right; name one of these"), ((), "it has none")],
+)
+def test_a_camera_that_is_not_there_is_refused(cameras, message):
+    with pytest.raises(voxrt.AssetError, match=message):
+        preview(*cameras, camera="top")
+
+
+def test_a_camera_in_a_solid_shows_the_whole_scene_and_says_so():
+    built = preview(INSIDE)
+    assert [(one.kind, "inside a solid" in one.message) for one in built.warnings] == [("camera", True)]
+    assert built.view is None
+    assert built.preview.camera == voxrt.aim_camera(built.rom, SIZE)
+    assert stands_inside(built.rom, authored_camera(INSIDE, built.rom.grid, SIZE))
+    assert 0.2 < np.mean(built.preview.frame.material > 0) < 0.8
+
+
+def test_a_file_names_its_cameras(tmp_path, voxrt):
+    writer = GltfWriter()
+    lens = {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}}
+    cameras = [writer.add("cameras", lens) for _ in range(2)]
+    mesh = writer.add(
+        "meshes",
+        {
+            "primitives": [
+                {
+                    "attributes": {"POSITION": writer.accessor(CORNERS.astype(np.float32))},
+                    "indices": writer.accessor(np.array(TRIANGLES, np.uint16).ravel(), "u2"),
+                }
+            ]
+        },
+    )
+    nodes = [
+        writer.add("nodes", {"mesh": mesh}),
+        writer.add("nodes", {"name": "front", "camera": cameras[0], "translation": [0.5, 0.5, 6]}),
+        writer.add("nodes", {"name": "near", "camera": cameras[1], "translation": [0.5, 0.5, 3]}),
+    ]
+    writer.json |= {"scenes": [{"nodes": nodes}], "scene": 0}
+    writer.save(tmp_path / "cube.gltf")
+    assert [camera.name for camera in load_gltf(tmp_path / "cube.gltf").cameras] == ["front", "near"]
+    command = ("build", "cube.gltf", "--depth", "4", "--preview", "--engine", "model", "--size", "64x48")
+    pictures = set()
+    for options in ((), ("--camera", "near"), ("--samples", "2"), ("--background", "light")):
+        finished = voxrt(*command, *options)
+        assert finished.code == 0, finished.err
+        pictures.add((tmp_path / "cube.preview.png").read_bytes())
+    assert len(pictures) == 4
+    finished = voxrt(*command, "--camera", "far")
+    assert "there is no camera 'far': there are front, near" in finished.error

@@ -1,0 +1,88 @@
+"""Objects so much larger than the others that they alone decide the size of a voxel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.voxelize.collider_shapes import bounding_points
+from voxrt.voxelize.mesh import Mesh
+from voxrt.voxelize.object_proxies import proxies
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize.object_proxies import Geometry
+    from voxrt.voxelize.scene import Scene
+
+_MOST = 8
+_FEWEST_VOXELS = 8
+
+
+def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tuple[str, ...], float]:
+    """Find the few largest objects beside which all others together span fewer than eight voxels.
+
+    Parameters
+    ----------
+    scene
+        A scene that has something to voxelize.
+    voxels
+        Voxels per side of a grid that is as wide as the scene.
+    geometry
+        As for :func:`voxrt.voxelize.voxelize`.
+
+    Returns
+    -------
+    names
+        Their names, the largest first; at most eight, none where there are no such objects.
+    width
+        The longest side of the others' bounding box, metres.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
+    >>> sail = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
+    >>> ground = SceneObject("ground", sail, np.diag([500.0, 500, 500, 1]))
+    >>> scene = Scene("boat", [ground, SceneObject("sail", sail)], [EMPTY, Material("cloth", (240, 240, 230))])
+    >>> dominant_objects(scene, 128, "auto")
+    (('ground',), 1.0)
+    """
+    owners, low, high = _object_bounds(scene, geometry)
+    if len(owners) < 2:
+        return (), 0.0
+    order = np.argsort(-(high - low).max(axis=1), kind="stable")
+    # Of the objects from each place in that order on.
+    lowest = np.minimum.accumulate(low[order][::-1], axis=0)[::-1]
+    highest = np.maximum.accumulate(high[order][::-1], axis=0)[::-1]
+    widths = (highest - lowest).max(axis=1)
+    for count in range(1, min(_MOST, len(order) - 1) + 1):
+        if 0 < widths[count] * voxels < _FEWEST_VOXELS * widths[0]:
+            return tuple(scene.objects[owners[row]].name for row in order[:count]), float(widths[count])
+    return (), 0.0
+
+
+def _object_bounds(scene: Scene, geometry: Geometry) -> tuple[list[int], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the objects that have something to voxelize, and boxes that hold them: float64, shape (N, 3)."""
+    boxes: dict[int, tuple[object, NDArray[np.float64], list[int]]] = {}
+    for index, item in enumerate(scene.objects):
+        for shape in proxies(item, geometry) or (() if item.hidden else (item.mesh,)):
+            if id(shape) not in boxes:
+                points = (
+                    shape.positions[shape.triangles.reshape(-1)] if isinstance(shape, Mesh) else bounding_points(shape)
+                )
+                if not len(points):
+                    continue
+                ends = np.stack([points.min(axis=0), points.max(axis=0)]).astype(np.float64)
+                corners = np.array([[ends[i & 1, 0], ends[i >> 1 & 1, 1], ends[i >> 2, 2]] for i in range(8)])
+                boxes[id(shape)] = (shape, corners, [])
+            boxes[id(shape)][2].append(index)
+    low = np.full((len(scene.objects), 3), np.inf)
+    high = -low
+    for _, corners, owners in boxes.values():
+        transforms = np.stack([scene.objects[index].transform for index in owners])
+        placed = corners @ transforms[:, :3, :3].transpose(0, 2, 1) + transforms[:, None, :3, 3]
+        np.minimum.at(low, owners, placed.min(axis=1))
+        np.maximum.at(high, owners, placed.max(axis=1))
+    there = np.flatnonzero((low <= high).all(axis=1))
+    return there.tolist(), low[there], high[there]

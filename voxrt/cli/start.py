@@ -1,0 +1,51 @@
+"""The start and the end of the process: what must hold before the commands are imported.
+
+Ctrl-C while modules are imported ends the process at once, with the exit code of an interrupted command and without a
+traceback. Standard streams that the caller closed are opened again, so that no file of ours takes their numbers.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import FrameType
+
+_INTERRUPTED = 128 + signal.SIGINT
+
+
+def start(arguments: Sequence[str]) -> NoReturn:
+    """Run a command line and exit."""
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _leave)
+    _open_closed_streams()
+    from voxrt.cli.app import run  # noqa: PLC0415 - slow, and may be interrupted
+
+    try:
+        code = int(run(arguments))
+    except KeyboardInterrupt:  # once more, while the first was reported
+        code = _INTERRUPTED
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    sys.exit(code)
+
+
+def _leave(_number: int, _frame: FrameType | None) -> NoReturn:
+    os.write(2, b"voxrt: error: interrupted: every file is as it was, or complete\n")
+    os._exit(_INTERRUPTED)
+
+
+def _open_closed_streams() -> None:
+    """Put the null device in place of closed streams; standard output only says that it cannot be written to."""
+    for number, flags in ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY)):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, flags)  # takes the lowest number that is free
+    sys.stdin = sys.stdin or open(0, encoding="utf-8", closefd=False)  # noqa: SIM115 - they stay open
+    sys.stdout = sys.stdout or open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    sys.stderr = sys.stderr or open(2, "w", encoding="utf-8", closefd=False)  # noqa: SIM115

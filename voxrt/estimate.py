@@ -1,0 +1,95 @@
+"""What a build will take, before it is begun: from the surface of the scene, counted in voxels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from voxrt.build_options import BuildOptions
+    from voxrt.voxelize import Grid, Scene
+
+_SECONDS_PER_TRIANGLE = 1e-6
+_SECONDS_PER_SURFACE_VOXEL = 60e-9
+_SECONDS_PER_COLOURED_VOXEL = 100e-9
+_SECONDS_PER_HARDWARE_PIXEL = 4e-6
+_BYTES_AT_START = 60 << 20
+_BYTES_PER_TRIANGLE = 200
+_BYTES_PER_SURFACE_VOXEL = 8
+_BYTES_PER_COLOURED_VOXEL = 8
+
+
+@dataclass(frozen=True, slots=True)
+class BuildEstimate:
+    """What a build will take, to about a factor of two.
+
+    Attributes
+    ----------
+    seconds
+        Wall-clock seconds.
+    bytes
+        Memory at the peak.
+
+    Examples
+    --------
+    >>> str(BuildEstimate(200.0, 6 << 30))
+    '3 minutes and 6.0 GB of memory'
+    """
+
+    seconds: float
+    bytes: int
+
+    def __str__(self) -> str:
+        minutes = round(self.seconds / 60)
+        time = f"{minutes} minute{'s' * (minutes > 1)}" if minutes else f"{self.seconds:.0f} seconds"
+        return f"{time} and {self.bytes / (1 << 30):.1f} GB of memory"
+
+
+def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEstimate:
+    """Estimate what a build takes, from the number of triangles and of the voxels that they meet.
+
+    A triangle meets about as many voxels as its projection along the axis that it faces most has voxel areas, and half
+    as many again beside them.
+
+    Parameters
+    ----------
+    scene
+        The scene, loaded.
+    grid
+        Its grid.
+    options
+        How it will be built.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> scene = voxrt.load("examples/house.obj")
+    >>> estimate_build(scene, voxrt.fit_grid(scene, depth=7), voxrt.BuildOptions()).seconds < 10
+    True
+    """
+    triangles, surface, coloured = 0, 0.0, 0.0
+    for item in scene.objects:
+        mesh = item.mesh
+        corners = (mesh.positions.astype(np.float64) @ item.transform[:3, :3].T)[mesh.triangles]
+        areas = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2
+        voxels = 1.5 * float(areas.max(axis=1, initial=0).sum()) / grid.voxel_size**2
+        triangles += len(mesh.triangles)
+        surface += voxels
+        coloured += voxels if mesh.appearance is not None else 0
+    surface, coloured = (min(number, 8.0**grid.depth) for number in (surface, coloured))
+    seconds = (
+        triangles * _SECONDS_PER_TRIANGLE
+        + surface * _SECONDS_PER_SURFACE_VOXEL
+        + coloured * _SECONDS_PER_COLOURED_VOXEL
+    )
+    if options.preview and options.engine == "rtl":
+        seconds += options.size[0] * options.size[1] * _SECONDS_PER_HARDWARE_PIXEL
+    taken = (
+        _BYTES_AT_START
+        + triangles * _BYTES_PER_TRIANGLE
+        + surface * _BYTES_PER_SURFACE_VOXEL
+        + coloured * _BYTES_PER_COLOURED_VOXEL
+    )
+    return BuildEstimate(seconds, int(taken))

@@ -1,0 +1,98 @@
+"""Which objects a build voxelizes, and what it says where they get nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.dominant_objects import dominant_objects
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from voxrt.build_options import BuildOptions
+    from voxrt.voxelize import Grid, Scene, Voxelization
+
+
+def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
+    """Return a scene without the objects of these names, and without those below these prim paths.
+
+    Parameters
+    ----------
+    label
+        What errors call the asset.
+    scene, names
+        The scene, and the names.
+
+    Raises
+    ------
+    AssetError
+        No object has such a name, or none is left.
+
+    Examples
+    --------
+    >>> from voxrt import load
+    >>> scene = load("examples/dog.usda")
+    >>> len(scene.objects), len(without_objects("dog.usda", scene, [scene.objects[0].name]).objects)
+    (19, 18)
+    """
+    kept = scene.objects
+    for name in names:
+        below = name.rstrip("/") + "/"
+        left = tuple(one for one in kept if one.name != name and not (name[:1] == "/" and one.name.startswith(below)))
+        if len(left) == len(kept):
+            known = ", ".join(repr(one.name) for one in kept)
+            raise AssetError(label, f"has no object {name!r} to ignore", fix=f"it has {known}")
+        kept = left
+    if not kept:
+        raise AssetError(label, "nothing is left to voxelize", fix="ignore fewer objects")
+    return replace(scene, objects=kept) if names else scene
+
+
+def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneWarning, ...]:
+    """Return a warning where large objects leave hardly a voxel to the others; none where the user chose the size.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions, fit_grid, load
+    >>> scene = load("examples/house.obj")
+    >>> crowded_out(scene, fit_grid(scene, depth=5), BuildOptions())
+    ()
+    """
+    if options.bounds is not None or options.voxel_size is not None:
+        return ()
+    names, width = dominant_objects(scene, grid.size, options.geometry)
+    if not names:
+        return ()
+    whole = grid.size * grid.voxel_size
+    message = (
+        f"{', '.join(names)} spans {whole:.4g} m, all other objects {width:.4g} m, so that they get few voxels: "
+        "leave it out with --ignore NAME, or give the grid --bounds"
+    )
+    return (SceneWarning("dominant-object", message, len(names)),)
+
+
+def refuse_empty(label: str, grid: Grid, voxelization: Voxelization) -> None:
+    """Refuse a scene of which no object got a voxel.
+
+    Raises
+    ------
+    DoesNotFitError
+        There is no solid voxel.
+
+    Examples
+    --------
+    >>> from voxrt import fit_grid, load
+    >>> from voxrt.voxelize import voxelize
+    >>> scene = load("examples/house.obj")
+    >>> grid = fit_grid(scene, depth=4)
+    >>> refuse_empty("house.obj", grid, voxelize(scene, grid))
+    """
+    if any(one.voxels for one in voxelization.objects):
+        return
+    raise DoesNotFitError(
+        f"{label}: the memory is empty: no object has a voxel in the grid, which is "
+        f"{grid.size * grid.voxel_size:.4g} m wide with voxels of {grid.voxel_size:.4g} m; repair what is far away or "
+        "tiny, leave it out (--ignore NAME), choose --bounds, or accept it with --allow-empty"
+    )

@@ -1,0 +1,17 @@
+"""``python -m voxrt.scene_builder DEPTH MEMORY_DEPTH FILE ...``: the process that builds the scenes of a frame server.
+
+:func:`voxrt.board_scenes.asset_reader` starts it. An empty argument stands for None.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import partial
+
+from voxrt.board_scenes import read_files
+from voxrt.serve.scene_child import run_child
+
+if __name__ == "__main__":
+    depth, memory_depth, *files = sys.argv[1:]
+    levels = (int(depth) if depth else None, int(memory_depth) if memory_depth else None)
+    run_child(partial(read_files, depth=levels[0], memory_depth=levels[1]), files)
