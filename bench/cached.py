@@ -1,14 +1,15 @@
 """Benchmark of the octree memory behind caches: real scenes, traced by the verilated core, against the exact model.
 
-Usage: ``python bench/cached.py [--config NAME] [--latency N] [--interval N] [--only TEXT] [--write]``. Scenes are scans and
-textured models from the folder of assets (``VOXRT_ASSETS``); their octrees are kept in ``build/cached``. Every frame is
-640x480 and every pixel is compared. ``--write`` puts the table into ``bench/results/cached.md`` as well.
+Usage: ``python bench/cached.py [--config NAME] [--latency N] [--interval N] [--only TEXT] [--write]``. Scenes are scans
+and textured models from the folder of assets (``VOXRT_ASSETS``); their octrees are kept in ``build/cached``. Every frame
+is 640x480 and every pixel is compared. ``--write`` puts the table into ``bench/results/cached.md`` as well.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import pickle
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -16,13 +17,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import voxrt
-from voxrt.octree import Octree
 from voxrt.sim import Dram
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from voxrt import Camera, Rom
+    from voxrt import Camera, Octree, Rom
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results" / "cached.md"
@@ -60,13 +60,28 @@ ROWS = [
 ]
 
 
+HEADS = (
+    "scene",
+    "depth",
+    "M words",
+    "view",
+    "words per ray",
+    "cycles per pixel",
+    "requests per word",
+    "L1 hits %",
+    "L2 hits %",
+    "lines per pixel",
+    "bytes per pixel",
+    "modelled",
+    "wrong pixels",
+)
+
+
 def rom_of(name: str, asset: str, depth: int) -> Rom:
     """Give the memory of an asset; its words are kept, as it takes a minute to make them."""
-    import pickle  # noqa: PLC0415 - of our own files alone
-
     file = KEPT / f"{name}-{depth}.pickle"
     if file.exists():
-        return pickle.loads(file.read_bytes())  # noqa: S301 - written below
+        return pickle.loads(file.read_bytes())
     rom = voxrt.build(ASSETS / asset, depth=depth).rom
     KEPT.mkdir(parents=True, exist_ok=True)
     file.write_bytes(pickle.dumps(rom))
@@ -109,10 +124,7 @@ def _places(octree: Octree, side: int, distance: float, *, along: bool) -> Itera
         position = voxel + 0.5 + distance * side * outwards
         look = _direction(random)
         look -= outwards * (look @ outwards)
-        if along:
-            look = look / np.linalg.norm(look) - 0.2 * outwards
-        else:
-            look = 0.3 * look - outwards
+        look = look / np.linalg.norm(look) - 0.2 * outwards if along else 0.3 * look - outwards
         yield tuple(int(x) for x in np.rint(16 * position)), tuple(int(x) for x in np.rint(20000 * look))
 
 
@@ -130,12 +142,22 @@ def measure(row: Row, config: str, dram: Dram) -> str:
     assert cost.cycles is not None
     assert cost.words_read is not None
     assert cost.cache is not None
-    return (
-        f"| {row.scene} | {row.depth} | {len(rom.octree.words) / 1e6:.1f} | {row.view} | {cost.words_read / cost.rays:.1f} "
-        f"| {cost.cycles / cost.rays:.2f} | {cost.cache.word_requests / cost.words_read:.2f} "
-        f"| {100 * cost.cache.l1_hits:.1f} | {100 * cost.cache.l2_hits:.1f} | {cost.cache.lines_read / cost.rays:.3f} "
-        f"| {cost.cache.bytes_read / cost.rays:.1f} | {row.modelled} | {checked.wrong_pixels} |"
+    cells = (
+        row.scene,
+        str(row.depth),
+        f"{len(rom.octree.words) / 1e6:.1f}",
+        row.view,
+        f"{cost.words_read / cost.rays:.1f}",
+        f"{cost.cycles / cost.rays:.2f}",
+        f"{cost.cache.word_requests / cost.words_read:.2f}",
+        f"{100 * cost.cache.l1_hits:.1f}",
+        f"{100 * cost.cache.l2_hits:.1f}",
+        f"{cost.cache.lines_read / cost.rays:.3f}",
+        f"{cost.cache.bytes_read / cost.rays:.1f}",
+        row.modelled,
+        str(checked.wrong_pixels),
     )
+    return f"| {' | '.join(cells)} |"
 
 
 def main() -> None:
@@ -149,14 +171,13 @@ def main() -> None:
     options = parser.parse_args()
     dram = Dram(latency=options.latency, interval=options.interval)
     lines = [
-        f"`python bench/cached.py --write`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks, a line "
-        f"per {dram.interval} clocks. The caches are",
-        "empty at the start of each frame. Modelled: cycles per pixel of a cycle model of the same caches, with a memory",
-        "that always answers and behind the caches; it drew close and grazing places of its own.",
+        f"`python bench/cached.py --write`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
+        f"a line per {dram.interval} clocks. The caches are empty at the start of each frame. Modelled: cycles per pixel",
+        "of a cycle model of such caches, with a memory that always answers and behind the caches; it drew close and",
+        "grazing places of its own.",
         "",
-        "| scene | depth | M words | view | words per ray | cycles per pixel | requests per word | L1 hits % | L2 hits % "
-        "| lines per pixel | bytes per pixel | modelled | wrong pixels |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+        f"| {' | '.join(HEADS)} |",
+        "|" + "---|" * len(HEADS),
     ]
     print("\n".join(lines), flush=True)
     for row in ROWS:

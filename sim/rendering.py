@@ -180,7 +180,8 @@ def check(
     """
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     rtl = [
-        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram) for one in cameras
+        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram)
+        for one in cameras
     ]
     model = [
         _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None)
@@ -226,7 +227,7 @@ def _render_one(
 ) -> Frame:
     if engine == "model":
         return _render_model(rom, camera, size, lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, size, lighting, text("config", config), dram)
+    return _render_rtl(rom, camera, size, lighting, config=text("config", config), dram=dram)
 
 
 def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
@@ -289,7 +290,7 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
 
 
 def _render_rtl(
-    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str, dram: Dram | None
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, config: str, dram: Dram | None
 ) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)

@@ -71,7 +71,7 @@ async def frames_are_exact(dut, latency, jitter, stalls):
 
 @cocotb.test()
 async def scenes_are_swapped_with_a_flush(dut):
-    """The memory is written while no frame is traced, and flushed at any clock before that: the next frame shows it."""
+    """Write the memory while no frame is traced, flush at any clock before that: the next frame shows it."""
     core = CachedCore(dut)
     core.bus.jitter = 25
     voxels = scene(1)

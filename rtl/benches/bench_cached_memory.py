@@ -1,4 +1,4 @@
-"""voxrt_cached_memory, with caches of a few lines: whatever the external memory's pace, lanes get the words that are there.
+"""voxrt_cached_memory, with caches of a few lines: at any pace of the external memory, lanes get the words there.
 
 Lanes ask as rays do: for a word until it comes, in a ring of slots.
 """
@@ -81,7 +81,9 @@ class Memory:
                 addresses.append(0 if waits is None else (waits[0] % (2 * BLOCKS)) << 3 | waits[1])
                 reads |= (waits is not None) << lane
             drive(self.dut, read_i=reads, address_i=addresses)
-            history.append((slot, [self.asked[lane][slot] if reads >> lane & 1 else None for lane in range(self.lanes)]))
+            history.append(
+                (slot, [self.asked[lane][slot] if reads >> lane & 1 else None for lane in range(self.lanes)])
+            )
             await self.clock()
             if len(history) > CLOCKS:
                 then, asked = history.pop(0)
@@ -145,7 +147,7 @@ async def a_flush_at_any_clock_shows_the_next_frame_what_was_written(dut):
 
 @cocotb.test()
 async def without_a_flush_lines_stay(dut):
-    """The second frame of the same few blocks reads no line."""
+    """Read no line in the second frame of the same few blocks."""
     memory = Memory(dut)
     await memory.begin()
     await memory.frame()
@@ -160,7 +162,7 @@ async def without_a_flush_lines_stay(dut):
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
-    """What the bus still owes is dropped; the frame after it is right."""
+    """Drop what the bus still owes; the frame after it is right."""
     memory = Memory(dut)
     memory.bus.latency, memory.bus.jitter = 20, 60
     await memory.begin()

@@ -28,7 +28,7 @@ async def frame(dut, width, height, sending, taking):
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)
     items = [{"pixel_i": line << 12 | column} for line, column in in_strips(width, height)]
-    got = await exchange(dut, items, lambda: dut.pixel_o.value.to_unsigned(), sending, taking)
+    got = await exchange(dut, items, lambda: int(dut.pixel_o.value), sending, taking)
     assert got == [line << 12 | column for line in range(height) for column in range(width)]
 
 
@@ -44,6 +44,6 @@ async def small_frames(dut, sending, taking):
 @cocotb.test()
 @cocotb.parametrize(width=[1023, 1024, 1025, 2048, 2049, 4095])
 async def wide_frames(dut, width):
-    """A strip has as many lines as the buffer has room for."""
+    """Give a strip as many lines as the buffer has room for."""
     await start(dut, valid_i=0, ready_i=0, start_i=0)
     await frame(dut, width, 5, "always", "always")

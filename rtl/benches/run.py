@@ -82,8 +82,12 @@ BUILDS = {
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
     "lane-mirrors": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Mirrors": 1}, ("bench_lane",)),
-    "private_memory": Build("voxrt_on_chip_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_on_chip_memory",)),
-    "banked_memory": Build("voxrt_on_chip_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_on_chip_memory",)),
+    "private_memory": Build(
+        "voxrt_on_chip_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_on_chip_memory",)
+    ),
+    "banked_memory": Build(
+        "voxrt_on_chip_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_on_chip_memory",)
+    ),
     "cached_memory": Build(
         "voxrt_cached_memory",
         {"Lanes": 3, "BlockBits": 6, "L1SetBits": 1, "L2SetBits": 2, "TimeoutBits": 9},

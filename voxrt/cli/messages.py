@@ -104,8 +104,8 @@ def picture_cost(frame: Frame, engine: str) -> str:
 def cache_cost(cost: CacheCost, pixels: int) -> str:
     """Return what a picture cost at the caches, in one line."""
     return (
-        f"L1 hits {100 * cost.l1_hits:.1f} %, L2 hits {100 * cost.l2_hits:.1f} %, {cost.lines_read / pixels:.3f} lines and "
-        f"{cost.bytes_read / pixels:.1f} bytes per pixel"
+        f"L1 hits {100 * cost.l1_hits:.1f} %, L2 hits {100 * cost.l2_hits:.1f} %, "
+        f"{cost.lines_read / pixels:.3f} lines and {cost.bytes_read / pixels:.1f} bytes per pixel"
     )
 
 

@@ -1,8 +1,8 @@
 // An external memory on the core's AXI4 read ports: a memory of the caller's, mapped and not copied.
 //
-// A line of 32 bytes comes `latency` clocks after its address was taken, and up to `jitter` more; each at least `interval`
-// clocks after the one before, over all ports. Its four beats come at successive clocks. A port answers in order.
-// With a seed, addresses are not always taken at once. Words outside of the memory answer DECERR.
+// A line of 32 bytes comes `latency` clocks after its address was taken, and up to `jitter` more; each at least
+// `interval` clocks after the one before, over all ports. Its four beats come at successive clocks. A port answers in
+// order. With a seed, addresses are not always taken at once. Words outside of the memory answer DECERR.
 #pragma once
 
 #include "stall_pattern.h"

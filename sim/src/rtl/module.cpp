@@ -22,11 +22,11 @@
 //                             1/16 voxel; ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the
 //                             word address of the octree's root. With a stall_seed, the picture's consumer stalls in a
 //                             pattern that depends on it. latency, interval, jitter, dram_seed: of a cached memory, in
-//                             clocks; see dram.h. Its caches are empty at the start. Gives colour uint8 (H, W, 3), material and face uint8 (H, W),
-//                             cycles (from the start to the last pixel accepted), words_read, and the frame's errors:
-//                             "direction overflow", "bad pointer", "step limit", "bus error", "bus timeout"; of a
-//                             cached memory also word_requests, line_requests and lines_read (voxrt_pkg.sv:
-//                             counters_t), else 0. Releases the GIL; Ctrl-C ends it.
+//                             clocks; see dram.h. Its caches are empty at the start. Gives colour uint8 (H, W, 3),
+//                             material and face uint8 (H, W), cycles (from the start to the last pixel accepted),
+//                             words_read, and the frame's errors: "direction overflow", "bad pointer", "step limit",
+//                             "bus error", "bus timeout"; of a cached memory also word_requests, line_requests and
+//                             lines_read (voxrt_pkg.sv: counters_t), else 0. Releases the GIL; Ctrl-C ends it.
 //
 //   CORES, Core     the whole core: core_module.cpp
 //
@@ -271,7 +271,7 @@ NB_MODULE(_rtl, m) {
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
-             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0,
-             "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
+             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0, "latency"_a = 50,
+             "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
     voxrt::rtl::bind_core(m);
 }
