@@ -1,8 +1,8 @@
 """Benchmark of the octree memory behind caches: real scenes, traced by the verilated core, against the exact model.
 
 Usage: ``python bench/cached.py [--config NAME] [--latency N] [--interval N] [--only TEXT] [--write]``. Scenes are
-scans and textured models from the folder of assets (``VOXRT_ASSETS``); their octrees are kept in ``build/cached``. Every frame
-is 640x480 and every pixel is compared. ``--write`` puts the table into ``bench/results/cached.md`` as well.
+scans and textured models from the folder of assets (``VOXRT_ASSETS``); their octrees are kept in ``build/cached``.
+Every frame is 640x480 and every pixel is compared. ``--write`` puts the table into ``bench/results/cached.md`` too.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def main() -> None:
     dram = Dram(latency=options.latency, interval=options.interval)
     lines = [
         f"`python bench/cached.py --write`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
-        f"a line per {dram.interval} clocks. The caches are empty at the start of each frame. Modelled: cycles per",
+        f"a line per {dram.interval} clocks. Caches are empty at the start of each frame. Modelled: cycles per",
         "pixel of a cycle model of such caches, with a memory that always answers and behind the caches; it drew close and",
         "grazing places of its own.",
         "",
