@@ -51,7 +51,7 @@ def seen(voxels):
 
 
 @cocotb.test()
-@cocotb.parametrize(("latency", "jitter", "stalls"), [(1, 0, 0.0), (5, 30, 0.4), (50, 0, 0.0), (200, 60, 0.2)])
+@cocotb.parametrize((("latency", "jitter", "stalls"), [(1, 0, 0.0), (5, 30, 0.4), (50, 0, 0.0), (200, 60, 0.2)]))
 async def frames_are_exact(dut, latency, jitter, stalls):
     """Whatever the memory's pace, and under back-pressure of the stream."""
     core = CachedCore(dut)

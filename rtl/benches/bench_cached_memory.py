@@ -116,7 +116,7 @@ def kept_here(word):
 
 @cocotb.test()
 @cocotb.parametrize(
-    ("latency", "jitter", "stalls"), [(1, 0, 0.0), (3, 9, 0.3), (50, 0, 0.0), (200, 40, 0.1), (10, 200, 0.5)]
+    (("latency", "jitter", "stalls"), [(1, 0, 0.0), (3, 9, 0.3), (50, 0, 0.0), (200, 40, 0.1), (10, 200, 0.5)])
 )
 async def every_ray_gets_its_word(dut, latency, jitter, stalls):
     """At any latency, jitter and back-pressure; from hot blocks that all want, and from cold ones."""
