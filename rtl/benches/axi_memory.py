@@ -104,7 +104,7 @@ class PinPort:
         """Give arvalid, araddr, rready; an address's other pins never change."""
         fixed = tuple(int(self.pin(name).value) for name in ("arlen", "arsize", "arburst"))
         assert fixed == (BEATS - 1, 3, 1)
-        return tuple(self.pin(name).value.to_unsigned() for name in ("arvalid", "araddr", "rready"))
+        return tuple(int(self.pin(name).value) for name in ("arvalid", "araddr", "rready"))
 
     def drive(self, arready, rvalid, rdata, rresp):
         """Drive the response; all beats but the last of a burst have rlast low, which the core does not read."""

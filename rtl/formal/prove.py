@@ -21,8 +21,8 @@ PROOFS = {
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
-    "voxrt_axi_read_master": ("bmc", 16),
-    "voxrt_miss_list": ("bmc", 16),
+    "voxrt_axi_read_master": ("bmc", 10),
+    "voxrt_miss_list": ("bmc", 9),
     "voxrt_l1_cache": ("bmc", 26),
 }
 
