@@ -7,7 +7,7 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint lint-workflows hardware docs bench sanitize clean
+.PHONY: help demo test lint lint-workflows hardware docs bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -17,7 +17,9 @@ help:
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
+	@echo "make soak MINUTES=15  load and attack the frame server, write bench/results/soak.md"
 	@echo "make sanitize  run the native voxelizer and octree under the address, undefined and thread sanitizers"
+	@echo "make fuzz      fuzz both under the address and undefined sanitizers, RUNS=1000000 times each"
 	@echo "make clean   remove what the others made"
 
 demo: $(VENV)/.installed
@@ -50,6 +52,10 @@ lint-workflows: $(VENV)/.tools $(VENV)/.actionlint
 
 bench: $(VENV)/.installed
 	$(BIN)/python bench/demo.py
+
+MINUTES ?= 15
+soak: $(VENV)/.installed
+	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
 # The registers as generated, the cocotb benches and what they cover, the formal proofs.
 hardware: $(VENV)/.hardware
@@ -101,6 +107,19 @@ build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/libo
 
 build/sanitize/%/query_octree: examples/cpp/query_octree.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -o $@ $^ -pthread
+
+# The same libraries with calls at every branch, which tell the fuzzer where an input leads. What it finds and keeps is
+# in build/fuzz/native/PROGRAM.
+RUNS := 1000000
+fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
+	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
+
+covered = $(CXX) -std=c++20 -O1 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
+build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h \
+		$(wildcard voxelize/src/*.cpp octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+	@rm -rf $@.objects && mkdir -p $@.objects
+	cd $@.objects && $(covered) -fsanitize-coverage=trace-pc -c $(abspath $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
+	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter %.cpp,$(wordlist 1,2,$^)) $@.objects/*.o -pthread
 
 .SECONDARY: $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 

@@ -11,12 +11,15 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 RESULTS = REPOSITORY / "bench" / "results"
 TITLES = {
     "area": "Area",
+    "bake": "Baked light",
     "budget": "Budget",
     "clock": "Clock",
     "configurations": "Configurations",
     "coverage": "Coverage",
     "demo": "Demo",
+    "fill": "Fill",
     "interior": "Interior",
+    "likeness": "Likeness to the source",
     "loading": "Loading",
     "peers": "Other voxelizers",
     "rtl": "Cycles per pixel",

@@ -23,7 +23,7 @@ PICTURES = REPOSITORY / "docs" / "pictures"
 EXAMPLES = ("courtyard.glb", "dog.usda", "house.obj", "planet.glb")
 SCENES = {Path(name).stem: REPOSITORY / "examples" / name for name in EXAMPLES}
 DEPTH = 7
-SHOTS = (("page", "courtyard", (1280, 800), True), ("page-phone", "dog", (500, 840), False))
+SHOTS = (("page", "courtyard", (1280, 800), True), ("page-phone", "dog", (390, 844), False))
 
 sys.path.append(str(REPOSITORY / "tests"))
 from fakes.browser import chromium  # noqa: E402 - the tests' own browser
@@ -46,15 +46,17 @@ def main() -> None:
     ready.wait()
     try:
         for name, scene, size, dark in SHOTS:
-            with chromium(size, dark) as browser:
+            with chromium() as browser:
+                browser.screen(*size, touch=not dark, ratio=1 if dark else 2)
+                browser.theme(dark=dark)
                 browser.open(told["url"])
-                browser.until("document.querySelector('#control').innerText === 'you have control'")
+                browser.until(f"!document.querySelector('[data-scene={scene}]').disabled")
                 browser.run("document.querySelector(arguments[0]).click()", f"[data-scene={scene}]")
-                browser.until(f"document.querySelector('#scene').innerText.startsWith('{scene}')")
-                browser.keys(["\ue012"], 0.5)  # turns, so that there is a latency to show, and back
-                browser.keys(["\ue014"], 0.5)
-                browser.run("document.querySelector('#reset').click()")
-                browser.until("document.querySelector('#overlay').innerText.includes('idle')")
+                browser.until(f"document.querySelector('#scene').innerText === '{scene}'")
+                browser.run("document.querySelector('#frame').click()")
+                browser.until("document.querySelector('#stage').ariaBusy === 'true'", 1)
+                browser.until("document.querySelector('#stage').ariaBusy === 'false'")
+                browser.until("document.querySelector('#figures').textContent.includes('idle')", 5)
                 (PICTURES / f"{name}.png").write_bytes(browser.screenshot())
     finally:
         finished.set()

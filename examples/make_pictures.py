@@ -69,7 +69,7 @@ def compare() -> None:
     scene, size = voxrt.load(EXAMPLES / "courtyard.glb"), (320, 240)
     camera = voxrt.aim_camera(built.rom, size)
     found = voxrt.compare(scene, built.rom, camera, size)
-    hardware = voxrt.render(built.rom, camera, size=size).colour
+    hardware = voxrt.render(built.rom, camera, size=size, lighting=voxrt.Lighting(faces=None)).colour  # as compare()
     voxrt.save_picture(voxrt.comparison_sheet(found, hardware), PICTURES / "comparison.png")
     curve = voxrt.likeness_curve(scene, range(3, 10), (640, 480))
     voxrt.save_picture(voxrt.draw_likeness_curve(curve), PICTURES / "likeness.png")

@@ -5,7 +5,7 @@ from voxrt.export.coe import read_coe, write_coe
 from voxrt.export.conversion import READABLE_SUFFIXES, WRITABLE_SUFFIXES, convert, read_any
 from voxrt.export.info import RomInfo, rom_info
 from voxrt.export.listing import read_listing
-from voxrt.export.manifest import Manifest, read_manifest, write_manifest
+from voxrt.export.manifest import BakedLight, Manifest, read_manifest, write_manifest
 from voxrt.export.mem import read_mem, write_mem
 from voxrt.export.mif import read_mif, write_mif
 from voxrt.export.npz import write_npz
@@ -20,6 +20,7 @@ __all__ = [
     "READABLE_SUFFIXES",
     "WORD_SUFFIXES",
     "WRITABLE_SUFFIXES",
+    "BakedLight",
     "Blob",
     "Manifest",
     "Provenance",

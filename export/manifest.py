@@ -1,7 +1,7 @@
 """The manifest: what a ``.mem`` file cannot say about itself, as JSON beside it.
 
-Every field is required except the camera and the lighting. No other field is allowed. A reader refuses a schema version
-that it does not know.
+Every field is required except the camera, the lighting and the baked light. No other field is allowed. A reader refuses
+a schema version that it does not know.
 """
 
 from __future__ import annotations
@@ -50,6 +50,39 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ]
 
 
+class BakedLight(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The light that was baked into the materials: show the memory flat.
+
+    Attributes
+    ----------
+    sun
+        The direction towards the sun, scene frame; zeros for no sun.
+    sky
+        Linear light of the sky: red, green, blue.
+    samples
+        Rays to the sky per voxel.
+    voxels
+        Voxels with baked colours.
+    colours
+        The most baked colours.
+    words_before, words
+        Words of the memory without and with baked light, before it was fitted to a budget.
+
+    Examples
+    --------
+    >>> BakedLight((1, 3, 2), (0.4, 0.4, 0.4), 64, 1000, 254, 721, 2049).samples
+    64
+    """
+
+    sun: tuple[float, float, float]
+    sky: tuple[float, float, float]
+    samples: int
+    voxels: int
+    colours: int
+    words_before: int
+    words: int
+
+
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What stands in ``NAME.json`` beside ``NAME.mem``.
 
@@ -83,6 +116,8 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         What it was built from; null where that is not known.
     view, lighting
         The author's camera and light; null, or absent, where the author gave none.
+    baked
+        The light that was baked into the materials; null, or absent, where none was.
     """
 
     schema: int
@@ -101,6 +136,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     source: Source | None
     view: Camera | None = None
     lighting: Lighting | None = None
+    baked: BakedLight | None = None
 
     @property
     def material_table(self) -> tuple[Material, ...]:
@@ -129,6 +165,7 @@ def make_manifest(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
+    baked: BakedLight | None = None,
 ) -> Manifest:
     """Return the manifest of a memory and of the bytes of its ``.mem`` file."""
     voxels = census(rom.octree).voxels
@@ -152,6 +189,7 @@ def make_manifest(
         source=source,
         view=view,
         lighting=lighting,
+        baked=baked,
     )
 
 

@@ -30,7 +30,7 @@ from voxrt.voxelize.arguments import choice, instance
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from voxrt.export.manifest import Manifest
+    from voxrt.export.manifest import BakedLight, Manifest
     from voxrt.export.provenance import Source
     from voxrt.export.word_file import WordFile
     from voxrt.octree.camera import Camera, Lighting
@@ -65,6 +65,7 @@ def write_rom(
     source: Source | None = None,
     view: Camera | None = None,
     lighting: Lighting | None = None,
+    baked: BakedLight | None = None,
     beside: Mapping[Path, bytes | None] | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
@@ -85,6 +86,8 @@ def write_rom(
         What the manifest says of the build.
     view, lighting
         The camera and the lighting that the manifest names.
+    baked
+        The light that was baked into the materials.
     beside
         The bytes of further files that belong to the pair, such as a preview: all of the files change or none. None
         for the bytes removes a file.
@@ -127,6 +130,7 @@ def write_rom(
         source=source,
         view=view,
         lighting=lighting,
+        baked=baked,
     )
     files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):

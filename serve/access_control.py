@@ -46,23 +46,26 @@ class AccessControl:
         Parameters
         ----------
         target
-            Path and query.
+            Path and query. The query of a page that asks why it was refused has its origin as well: a browser tells a
+            page nothing of a refused WebSocket, and sends no origin with a GET to the page's own server.
         authorization, origin
             The headers with these names. Browsers always send an origin; other clients need not.
         address
             The address and port of the server to which the client connected.
         """
-        if origin is not None and not self._is_allowed(origin, address):
-            shown = shown_line(origin, 100)
+        query = parse_qs(urlsplit(target).query)
+        origins = [*([] if origin is None else [origin]), *query.get("origin", [])]
+        refused = [origin for origin in origins if not self._is_allowed(origin, address)]
+        if refused:
+            shown = shown_line(refused[0], 100)
             return Refusal(403, f"pages of {shown} may not connect; start the server with --origin {shown}\n")
-        if self.token is not None and not self._has_token(target, authorization):
+        if self.token is not None and not self._has_token(query.get("token", [""])[0], authorization):
             return Refusal(
                 401, "the token is missing or wrong: open the address that the server printed at its start\n"
             )
         return None
 
-    def _has_token(self, target: str, authorization: str | None) -> bool:
-        token = parse_qs(urlsplit(target).query).get("token", [""])[0]
+    def _has_token(self, token: str, authorization: str | None) -> bool:
         if authorization is not None and authorization.startswith("Bearer "):
             token = authorization[len("Bearer ") :]
         return hmac.compare_digest(token.encode("utf-8", "replace"), (self.token or "").encode())

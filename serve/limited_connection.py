@@ -49,6 +49,10 @@ class _GatedTransport:
         """Whether nothing may be read now."""
         return self._queue_full or self._held
 
+    def write(self, data: bytes) -> None:
+        if not self._transport.is_closing():  # else asyncio logs a line for each of many writes
+            self._transport.write(data)
+
     def pause_reading(self) -> None:
         self._queue_full = True
         self._transport.pause_reading()

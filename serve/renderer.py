@@ -19,19 +19,24 @@ from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
 from ..board.view_check import check_view
 from .packets import FramePacket
+from .solid_bounds import solid_bounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..board.device import Device, Frame
+    from ..board.device import Device, Frame, Identity
     from ..board.scene_memory import Progress
+    from ..board.view import Triple
     from .clients import Clients
     from .requests import ChangeView
 
     Result = TypeVar("Result")
 
 DEFAULT_SIZE = (640, 480)
-"""Columns and rows of the frames until a client changes the size."""
+"""Columns and rows of the frames until a client changes the size. Cameras of scenes are made for it."""
+
+_PATIENCE = 60.0  # seconds
+_SMALLER = 4  # a device whose frames may take longer begins with frames that have this part of columns and rows
 
 EMPTY_SCENE = Scene(
     "nothing",
@@ -64,13 +69,13 @@ class Renderer:
     """
 
     def __init__(self, device: Device) -> None:
-        columns, rows = device.identity.size
-        size = min(DEFAULT_SIZE[0], columns), min(DEFAULT_SIZE[1], rows)
+        size = _first_size(device.identity)
         self.device = device
         self.scene = EMPTY_SCENE
         self.scene_number = 0
         self.crc32 = EMPTY_SCENE.crc32
-        self.view = self.initial_view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
+        self.bounds: tuple[Triple, Triple] | None = None
+        self.view = View(frame_world(EMPTY_SCENE.depth, size), size, EMPTY_SCENE.background)
         self.nonstop = False
         self.frames = 0
         self.trouble: str | None = None
@@ -126,6 +131,7 @@ class Renderer:
             The device did not keep it; the present scene stays.
         """
         async with self._loading:
+            bounds = await asyncio.get_running_loop().run_in_executor(None, solid_bounds, scene)
             steps = self._memory.load_in_steps(scene, progress, partial(self._render_first, scene, progress))
             complete = False
             while not complete:
@@ -139,8 +145,8 @@ class Renderer:
                         ) from error
                     if complete:
                         assert self._first_frame is not None
-                        self.scene, self.crc32 = scene, scene.crc32
-                        self.view = self.initial_view = self._first_frame[0]
+                        self.scene, self.crc32, self.bounds = scene, scene.crc32, bounds
+                        self.view = self._first_frame[0]
                         self.scene_number += 1
         self._changed.set()
 
@@ -235,6 +241,12 @@ class Renderer:
                 bounces=lighting.bounces if "mirrors" in built_in else 0,
             ),
         )
+
+
+def _first_size(identity: Identity) -> tuple[int, int]:
+    part = _SMALLER if identity.frame_seconds(DEFAULT_SIZE) > _PATIENCE else 1
+    columns, rows = (min(side // part, most) for side, most in zip(DEFAULT_SIZE, identity.size, strict=True))
+    return columns, rows
 
 
 def _retrieve_error(work: asyncio.Future[Any]) -> None:

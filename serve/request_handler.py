@@ -5,13 +5,16 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..board.errors import DeviceError, Refused
 from .packets import unpack_chunk
+from .ray_cast import cast_ray
 from .requests import (
     CancelUpload,
+    CastRay,
     ChangeView,
     LoadScene,
     ReadCounters,
@@ -88,6 +91,11 @@ class RequestHandler:
                 session.clients.queue_state()
             case ReadRegisters():
                 answer["registers"] = dict(await session.renderer.read_registers())
+            case CastRay():
+                self._require_control()
+                cast = partial(cast_ray, session.renderer.scene, request.origin, request.direction)
+                hit = await asyncio.get_running_loop().run_in_executor(None, cast)
+                answer["hit"] = None if hit is None else asdict(hit)
             case ReadCounters():
                 answer["counters"] = session.counters()
             case CancelUpload():

@@ -16,6 +16,7 @@ _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
 _SHADINGS: tuple[Shading, ...] = get_args(Shading)
 _NAME = 200
+_DIRECTION_LIMIT = (1 << 20) - 1
 _BOUNCES = 4  # of mirrors that are turned on without a number
 
 
@@ -101,8 +102,24 @@ class ReadCounters:
     """Get the counters of the server."""
 
 
+@dataclass(frozen=True, slots=True)
+class CastRay:
+    """Find the first solid voxel on a ray: origin, 1/16 voxel, and direction."""
+
+    origin: Triple
+    direction: Triple
+
+
 Request = (
-    TakeControl | ReleaseControl | ChangeView | LoadScene | StartUpload | CancelUpload | ReadRegisters | ReadCounters
+    TakeControl
+    | ReleaseControl
+    | ChangeView
+    | LoadScene
+    | StartUpload
+    | CancelUpload
+    | CastRay
+    | ReadRegisters
+    | ReadCounters
 )
 
 
@@ -192,6 +209,10 @@ _READERS: dict[str, Callable[[dict[str, Any]], Request]] = {
     "show": _load_scene,
     "upload": _start_upload,
     "cancel": lambda _: CancelUpload(),
+    "ray": lambda message: CastRay(
+        _position("origin", message.pop("origin", None)),
+        _triple("direction", message.pop("direction", None), -_DIRECTION_LIMIT, _DIRECTION_LIMIT),
+    ),
     "registers": lambda _: ReadRegisters(),
     "counters": lambda _: ReadCounters(),
 }

@@ -142,6 +142,10 @@ async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> S
         ) from None
 
 
+def _value(value: Any) -> Any:  # noqa: ANN401 - JSON has lists for tuples
+    return tuple(value) if isinstance(value, list) else value
+
+
 async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -> Scene:
     count = int(described["words"])
     if not 1 <= count <= WORDS_LIMIT:
@@ -164,5 +168,5 @@ async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -
         colours,
         mirrors,
         None if camera is None else Camera(*(tuple(map(int, triple)) for triple in camera)),  # type: ignore[arg-type]
-        None if lighting is None else Lighting(**{**lighting, "position": tuple(lighting["position"])}),
+        None if lighting is None else Lighting(**{name: _value(value) for name, value in lighting.items()}),
     )

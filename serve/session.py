@@ -9,10 +9,11 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from ..board.errors import Refused
+from ..board.view import frame_world
 from .clients import Clients
 from .control_transfer import ControlTransfer
 from .packets import CHUNK_LIMIT, PROTOCOL_VERSION
-from .renderer import Renderer
+from .renderer import DEFAULT_SIZE, Renderer
 from .scene_files import MEMORY_SUFFIXES
 from .scene_load import SceneLoad
 from .upload import UPLOAD_LIMIT, Upload, memory_bytes
@@ -106,8 +107,9 @@ class Session:
                 "depth": scene.depth,
                 "words": len(scene.words),
                 "crc32": renderer.crc32,
-                "camera": asdict(renderer.initial_view.camera),
-                "size": renderer.initial_view.size,
+                "bounds": renderer.bounds,
+                "camera": asdict(scene.camera or frame_world(scene.depth, DEFAULT_SIZE)),
+                "size": DEFAULT_SIZE,
             },
             "view": {
                 "camera": asdict(renderer.view.camera),

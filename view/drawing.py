@@ -1,4 +1,4 @@
-"""Panes and rays drawn by PyVista."""
+"""Panes drawn by PyVista."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voxrt.octree.camera import FACES
 from voxrt.octree.owners import SEVERAL
 from voxrt.view.cells import import_pyvista, open_sides
-from voxrt.view.plotter import TEXT, check_screen, light_up, place_eye
+from voxrt.view.legend import draw_legend, legend_width, remove_legend
+from voxrt.view.plotter import TEXT, check_screen, place_eye
+from voxrt.view.ray_drawing import PREVIEW_HEIGHT, PREVIEW_WIDTH, draw_preview, draw_ray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,11 +20,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree.owners import Owners
-    from voxrt.view.pane import DrawnRay, Pane, Preview
+    from voxrt.view.legend import Entry
+    from voxrt.view.pane import Pane, Preview
 
-_PREVIEW_WIDTH, _PREVIEW_HEIGHT = 0.42, 0.4  # of a preview, as parts of the picture's
-_COLUMN, _LINE = 0.61, 1.1  # of the table, as parts of the letters' size
-_LEGEND_LIMIT = 16
+_TITLE = 34  # pixels above the octants that are kept free
+_TOOLS = 0.18  # part of a window below them that is kept free
 _GOLDEN_TURN = 0.6180339887498949  # sets the hues of neighbours far apart
 _MESH = (255, 214, 90)
 _BEFORE = -66000  # to the very front, in steps of the depth buffer
@@ -65,26 +68,24 @@ def draw(
         layout = {
             "shape": (2, 2),
             "groups": [(slice(None), 1)],
-            "col_weights": [_PREVIEW_WIDTH, 1 - _PREVIEW_WIDTH],
-            "row_weights": [_PREVIEW_HEIGHT, 1 - _PREVIEW_HEIGHT],
+            "col_weights": [PREVIEW_WIDTH, 1 - PREVIEW_WIDTH],
+            "row_weights": [PREVIEW_HEIGHT, 1 - PREVIEW_HEIGHT],
         }
     plotter = pv.Plotter(off_screen=off_screen, window_size=size, lighting="none", border=False, **layout)
     grids = [pane.grid() for pane in panes]
     for number, (pane, grid) in enumerate(zip(panes, grids, strict=True)):
         enter(plotter, number, preview is not None)
         plotter.set_background(pane.rom.materials[0].colour, all_renderers=False)
-        light_up(plotter)
         draw_octants(plotter, number, pane, grid, level_range(grids), ghost=preview is not None)
         if pane.triangles is not None:
             _draw_triangles(plotter, pane.triangles)
         if grid.n_cells:
-            place_eye(plotter, np.asarray(grid.points, np.float64))
+            legend = 0 if all(pane.by == "material" for pane in panes) else legend_width(plotter)
+            room = (0, legend, 0 if off_screen else _TOOLS, min(0.2, _TITLE / size[1]))
+            place_eye(plotter, np.asarray(grid.points, np.float64), room=room)
     if preview is not None:
-        _draw_preview(plotter, preview.colour)
-        plotter.subplot(1, 0)
-        plotter.set_background((0, 0, 0), all_renderers=False)
+        draw_preview(plotter, preview.colour)
         draw_ray(plotter, panes[0], preview, preview.pixel)
-        _turn_to_ray(plotter, preview.follow(preview.pixel))
     elif len(panes) > 1:
         plotter.link_views()
     if off_screen:
@@ -114,11 +115,15 @@ def draw_octants(
 ) -> None:
     """Draw the octants of a pane in the current subplot, in place of those that were there, and say how many.
 
-    `levels` are those that colours tell apart; a ghost lets the ray be seen through it.
+    `levels` are those that colours tell apart; a ghost lets the ray be seen through it and has no text.
     """
     add_octants(plotter, f"octants {number}", pane, grid, levels, ghost=ghost)
-    if grid.n_cells and pane.by == "owner":
-        _name_owners(plotter, pane, grid)
+    if ghost:
+        return
+    remove_legend(plotter, "legend")
+    if grid.n_cells and (entries := _legend(pane, grid, levels)):
+        top = 1 - min(0.2, _TITLE / plotter.window_size[1])
+        draw_legend(plotter, "legend", entries, left=1 - legend_width(plotter), top=top)
     told = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
     plotter.add_text(told, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
 
@@ -139,7 +144,7 @@ def add_octants(
         "edge_color": "black",
         "edge_opacity": 0.45,
         "line_width": 1,
-        "ambient": 0.25,
+        "lighting": False,
         "culling": "back",
         "reset_camera": False,
         "opacity": _GHOST if ghost else 1.0,
@@ -147,94 +152,7 @@ def add_octants(
     plotter.remove_actor(name)
     if not grid.n_cells:
         return None
-    sides = _sides(pane, grid)
-    if pane.by == "level":
-        return _colour_levels(plotter, sides, levels, look)
-    return plotter.add_mesh(sides, scalars="colour", rgb=True, **look)
-
-
-def draw_ray(plotter: pyvista.Plotter, pane: Pane, preview: Preview, pixel: tuple[int, int]) -> None:
-    """Mark a pixel in the preview, list what its ray reads below, and draw the ray in the pane."""
-    pv = import_pyvista()
-    ray = preview.follow(pixel)
-    height = preview.colour.shape[0]
-    column, row = pixel
-    x, y, reach = column + 0.5, height - row - 0.5, max(preview.colour.shape) / 25
-    arms = [
-        (x + a * reach * dx, y + a * reach * dy, 0.1) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)) for a in (0.3, 1)
-    ]
-    plotter.subplot(0, 0)
-    plotter.add_mesh(
-        pv.line_segments_from_points(np.array(arms, float)),
-        color="red", line_width=3, lighting=False, name="mark", reset_camera=False,
-    )  # fmt: skip
-    plotter.subplot(1, 0)
-    draw_table(plotter, ray.table)
-    enter(plotter, 0, True)
-    leaf = ray.words >> 31 == 1
-    solid = leaf & (ray.words & 0xFF != 0)
-    for name, some, style in (
-        ("pointers", ~leaf, {"color": "white", "line_width": 1, "opacity": 0.35}),
-        ("spaces", leaf & ~solid, {"color": (120, 190, 255), "line_width": 2}),
-        ("hit edges", solid, {"color": "white", "line_width": 4}),
-    ):
-        plotter.remove_actor(name)
-        if some.any():
-            boxes = _boxes(ray, some)
-            plotter.add_mesh(boxes, style="wireframe", lighting=False, name=name, reset_camera=False, **style)
-    plotter.remove_actor("hit")
-    if solid.any():
-        colour = pane.rom.materials[int(ray.words[solid][0]) & 0xFF].colour
-        plotter.add_mesh(_boxes(ray, solid), color=colour, name="hit", ambient=0.5, reset_camera=False)
-    line = pv.Line(ray.start, ray.end)
-    plotter.add_mesh(line, color="red", line_width=4, lighting=False, name="ray", reset_camera=False)
-    plotter.remove_actor("stands")
-    if len(ray.points):
-        plotter.add_mesh(
-            pv.PolyData(ray.points.astype(np.float32)),
-            color="red", point_size=9, render_points_as_spheres=True, lighting=False, name="stands", reset_camera=False,
-        )  # fmt: skip
-
-
-def draw_table(plotter: pyvista.Plotter, table: tuple[str, ...]) -> None:
-    """Write lines of one width below the preview, as large as they fit, and no more of them than do."""
-    pv = import_pyvista()
-    width, height = _PREVIEW_WIDTH * plotter.window_size[0], (1 - _PREVIEW_HEIGHT) * plotter.window_size[1]
-    size = max(7, min(15, int(0.97 * width / (_COLUMN * max(map(len, table))))))
-    fitting = int(height / (_LINE * size)) - 1
-    lines = table if len(table) <= fitting else (*table[: fitting - 2], "... voxrt trace tells the rest", table[-1])
-    text = pv.Text("\n".join(lines))
-    letters = text.GetTextProperty()
-    letters.SetFontFamilyToCourier()
-    letters.SetFontSize(size)
-    letters.SetColor(*(channel / 255 for channel in TEXT))
-    letters.SetVerticalJustificationToTop()
-    text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
-    text.position = (0.02, 0.98)
-    plotter.subplot(1, 0)
-    plotter.add_actor(text, name="table", reset_camera=False)
-
-
-def _turn_to_ray(plotter: pyvista.Plotter, ray: DrawnRay) -> None:
-    """Look at a ray and what it went through from the side, and from above."""
-    along = np.array(ray.end) - ray.start
-    aside = np.cross(along, (0, 1, 0))
-    aside = aside / np.linalg.norm(aside) if aside.any() else np.array((1.0, 0, 0))
-    aside *= 1 if aside[2] >= 0 else -1
-    leaf = ray.words >> 31 == 1
-    ends = ray.corners[leaf] + (1 << ray.levels[leaf])[:, None]
-    x, y, z = np.add(aside, (0, 0.35, 0)).tolist()
-    enter(plotter, 0, True)
-    place_eye(plotter, np.concatenate([[ray.start, ray.end], ray.corners[leaf], ends]), (x, y, z))
-
-
-def _boxes(ray: DrawnRay, some: NDArray[np.bool_]) -> pyvista.PolyData:
-    pv = import_pyvista()
-    boxes = [
-        pv.Box(np.stack([corner, corner + (1 << int(level))], axis=1).astype(float).ravel())
-        for corner, level in zip(ray.corners[some], ray.levels[some], strict=True)
-    ]
-    return pv.merge(boxes) if len(boxes) > 1 else boxes[0]
+    return plotter.add_mesh(_sides(pane, grid, levels), scalars="colour", rgb=True, **look)
 
 
 def _draw_triangles(plotter: pyvista.Plotter, triangles: NDArray[np.float64]) -> None:
@@ -249,69 +167,48 @@ def _draw_triangles(plotter: pyvista.Plotter, triangles: NDArray[np.float64]) ->
     actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, _BEFORE)
 
 
-def _draw_preview(plotter: pyvista.Plotter, colour: NDArray[np.uint8]) -> None:
-    pv = import_pyvista()
-    height, width = colour.shape[:2]
-    plotter.subplot(0, 0)
-    plotter.set_background((0, 0, 0), all_renderers=False)
-    screen = pv.Plane(center=(width / 2, height / 2, 0), i_size=width, j_size=height, i_resolution=1, j_resolution=1)
-    plotter.add_mesh(screen, texture=pv.Texture(np.ascontiguousarray(colour)), lighting=False, name="preview")
-    plotter.view_xy()
-    plotter.enable_parallel_projection()
-    plotter.camera.tight(padding=0.02, adjust_render_window=False)
-    plotter.camera.clipping_range = (0.1, 10 * (width + height))
-    plotter.renderer.SetInteractive(0)  # clicks choose a pixel and turn nothing
-
-
-def _colour_levels(
-    plotter: pyvista.Plotter, sides: pyvista.PolyData, levels: tuple[int, int], look: dict[str, Any]
-) -> pyvista.Actor:
-    low, high = levels
-    return plotter.add_mesh(
-        sides,
-        scalars="level",
-        cmap="viridis_r",
-        clim=(low - 0.5, high + 0.5),
-        n_colors=high - low + 1,
-        annotations={float(level): f"{1 << level}" for level in range(low, high + 1)},
-        scalar_bar_args={
-            "title": "voxels per side",
-            "n_labels": 0,
-            "color": TEXT,
-            "vertical": True,
-            "position_x": 0.86,
-            "position_y": 0.72,
-            "width": 0.06,
-            "height": 0.26,
-        },
-        **look,
-    )
-
-
-def _sides(pane: Pane, grid: pyvista.UnstructuredGrid) -> pyvista.PolyData:
-    """Give the sides of octants that can be seen, with the data that colours them."""
+def _sides(pane: Pane, grid: pyvista.UnstructuredGrid, levels: tuple[int, int]) -> pyvista.PolyData:
+    """Give the sides of octants that can be seen, in their colours; each face has the brightness of pictures."""
     pv = import_pyvista()
     quads, cells = open_sides(grid)
-    sides = pv.PolyData(np.asarray(grid.points), np.insert(quads, 0, 4, axis=1).ravel())
-    sides.cell_data["level"] = np.asarray(grid.cell_data["level"])[cells]
+    points = np.asarray(grid.points)
+    sides = pv.PolyData(points, np.insert(quads, 0, 4, axis=1).ravel())
     if pane.by == "owner":
         assert pane.owners is not None
-        sides.cell_data["colour"] = _owner_colours(pane.owners)[np.asarray(grid.cell_data["owner"])[cells]]
+        colours = _owner_colours(pane.owners)[np.asarray(grid.cell_data["owner"])[cells]]
+    elif pane.by == "level":
+        colours = _level_colours(levels)[np.asarray(grid.cell_data["level"], np.int64)[cells] - levels[0]]
     else:
-        sides.cell_data["colour"] = np.asarray(grid.cell_data["colour"])[cells]
+        colours = np.asarray(grid.cell_data["colour"])[cells]
+    corner, right, _, up = (points[quads[:, at]].astype(np.float64) for at in range(4))
+    facing = np.cross(right - corner, up - corner)
+    axis = np.abs(facing).argmax(axis=1)
+    faces = 2 * axis + (np.take_along_axis(facing, axis[:, None], axis=1)[:, 0] > 0)
+    sides.cell_data["colour"] = np.rint(colours * (np.array(FACES)[faces, None] / 255)).astype(np.uint8)
     return sides
 
 
-def _name_owners(plotter: pyvista.Plotter, pane: Pane, grid: pyvista.UnstructuredGrid) -> None:
-    assert pane.owners is not None
-    owner = np.asarray(grid.cell_data["owner"])
-    names, colours = (*pane.owners.names, "several objects"), _owner_colours(pane.owners)
-    present = np.unique(owner[owner != SEVERAL]).tolist() + [SEVERAL] * bool((owner == SEVERAL).any())
-    entries = [[names[number], colours[number].tolist()] for number in present[:_LEGEND_LIMIT]]
-    legend = plotter.add_legend(entries, background_opacity=0.9, bcolor=pane.rom.materials[0].colour, face="rectangle")
-    height = min(0.9, 0.022 * len(entries))
-    legend.SetPosition(0.83, 0.97 - height)
-    legend.SetPosition2(0.16, height)
+def _legend(pane: Pane, grid: pyvista.UnstructuredGrid, levels: tuple[int, int]) -> list[Entry]:
+    """Give what the colours of octants mean."""
+    if pane.by == "level":
+        colours = _level_colours(levels)
+        entries = [(str(1 << level), colours[level - levels[0]].tolist()) for level in range(levels[0], levels[1] + 1)]
+        return [("voxels per side", None), *entries]
+    if pane.by == "owner":
+        assert pane.owners is not None
+        owner = np.asarray(grid.cell_data["owner"])
+        names, wheel = (*pane.owners.names, "several objects"), _owner_colours(pane.owners)
+        present = np.unique(owner[owner != SEVERAL]).tolist() + [SEVERAL] * bool((owner == SEVERAL).any())
+        return [(names[number], wheel[number].tolist()) for number in present]
+    return []
+
+
+def _level_colours(levels: tuple[int, int]) -> NDArray[np.uint8]:
+    """Give the colour of each level from the lowest to the highest: uint8, shape (N, 3), sRGB."""
+    pv = import_pyvista()
+    count = levels[1] - levels[0] + 1
+    wheel = pv.LookupTable("viridis_r", n_values=count).values
+    return np.asarray(wheel, np.uint8)[:, :3]
 
 
 def _owner_colours(owners: Owners) -> NDArray[np.uint8]:

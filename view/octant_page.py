@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
+from voxrt.octree.camera import FACES
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
@@ -60,6 +61,7 @@ def write_page(path: Path, rom: Rom, mesh: OctantMesh) -> None:
     for name, text in (
         ("title", html.escape(rom.name)),
         ("background", f"rgb({red}, {green}, {blue})"),
+        ("faces", ", ".join(f"{brightness}.0" for brightness in FACES)),
         ("scene", json.dumps(scene).replace("<", "\\u003c")),
     ):
         page = page.replace("{{" + name + "}}", text)

@@ -1,4 +1,4 @@
-"""The stage that pictures of octants are taken on: lights, the eye, and what can be drawn on at all."""
+"""Where pictures of octants are taken from, and what can be drawn on at all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ TEXT = (230, 233, 238)
 THREE_QUARTER = (0.62, 0.55, 1.0)
 """From the scene to the eye: a little to the right of the front, and above."""
 
-_TOWARDS_SUN = (0.35, 1.0, 0.65)
 _MARGIN = 0.92
 
 
@@ -45,40 +44,68 @@ def check_screen(*, off_screen: bool) -> None:
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # it says that it finds no screen where none is needed
 
 
-def light_up(plotter: pyvista.Plotter) -> None:
-    """Light a renderer by a sun and a lamp at the eye."""
-    pv = import_pyvista()
-    plotter.add_light(pv.Light(position=_TOWARDS_SUN, light_type="scene light", intensity=0.75), only_active=True)
-    plotter.add_light(pv.Light(light_type="headlight", intensity=0.2), only_active=True)
-
-
 def place_eye(
     plotter: pyvista.Plotter,
     points: NDArray[np.float64],
     towards_eye: tuple[float, float, float] = THREE_QUARTER,
+    *,
+    room: tuple[float, float, float, float] = (0, 0, 0, 0),
 ) -> None:
     """Stand where all points (shape (N, 3)) are in the picture, and as near as that allows.
 
-    A point is in the picture when its distance aside is at most `half` times its depth, on both sides and axes: linear
-    in where the camera stands.
+    `room` is what is kept free of the picture's left, right, bottom and top: parts of its width and height.
+
+    A point is in the picture when its distance aside is at most a part of its depth, on both sides and axes: linear in
+    where the camera stands.
     """
+    look, right, up, tangents = _axes(plotter, towards_eye)
+    depths = points @ look
+    found = []
+    for axis, tangent, before, after in ((right, tangents[0], *room[:2]), (up, tangents[1], *room[2:])):
+        middle, half = before - after, _MARGIN * (1 - before - after)
+        low, high = tangent * (middle - half), tangent * (middle + half)
+        aside = points @ axis
+        first, last = np.max(aside - high * depths), np.min(aside - low * depths)
+        found.append(((last - first) / (high - low), first, last, low, high))
+    depth = min(stand[0] for stand in found)
+    column, row = ((first + last + (low + high) * depth) / 2 for _, first, last, low, high in found)
+    _stand(plotter, depth * look + column * right + row * up, look, float(np.mean(depths) - depth))
+
+
+def place_eye_around(
+    plotter: pyvista.Plotter,
+    middle: NDArray[np.float64],
+    points: NDArray[np.float64],
+    towards_eye: tuple[float, float, float],
+) -> None:
+    """Stand where `middle` (shape (3,)) is in the middle of the picture, and as near as all points are in it."""
+    look, right, up, tangents = _axes(plotter, towards_eye)
+    from_middle = points - middle
+    needed = [
+        np.abs(from_middle @ axis) / (_MARGIN * tangent) - from_middle @ look
+        for axis, tangent in zip((right, up), tangents, strict=True)
+    ]
+    away = float(np.max(needed))
+    _stand(plotter, middle - away * look, look, away)
+
+
+def _axes(
+    plotter: pyvista.Plotter, towards_eye: tuple[float, float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], tuple[float, float]]:
+    """Return look, right and up, and the tangents of half the angles across and down the current subplot."""
     width, height = (end - start for start, end in zip(*np.reshape(plotter.renderer.viewport, (2, 2)), strict=True))
     aspect = width * plotter.window_size[0] / (height * plotter.window_size[1])
     look = -np.array(towards_eye) / np.linalg.norm(towards_eye)
     right = np.cross(look, (0, 1, 0))
     right /= np.linalg.norm(right)
     up = np.cross(right, look)
-    tangent = _MARGIN * np.tan(np.radians(plotter.camera.view_angle) / 2)
-    depths = points @ look
-    stands = []
-    for axis, half in ((right, tangent * aspect), (up, tangent)):
-        aside = points @ axis
-        low, high = np.min(half * depths - aside), np.min(half * depths + aside)
-        stands.append(((low + high) / (2 * half), (high - low) / 2))
-    (depth_x, column), (depth_y, row) = stands
-    eye = min(depth_x, depth_y) * look + column * right + row * up
+    tangent = float(np.tan(np.radians(plotter.camera.view_angle) / 2))
+    return look, right, up, (tangent * aspect, tangent)
+
+
+def _stand(plotter: pyvista.Plotter, eye: NDArray[np.float64], look: NDArray[np.float64], ahead: float) -> None:
     plotter.camera.position = tuple(eye)
-    plotter.camera.focal_point = tuple(eye + (np.mean(depths) - min(depth_x, depth_y)) * look)
+    plotter.camera.focal_point = tuple(eye + ahead * look)
     plotter.camera.up = (0, 1, 0)
     plotter.renderer.reset_camera_clipping_range()
 

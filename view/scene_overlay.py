@@ -101,7 +101,12 @@ def drawn_ray(rom: Rom, path: RayPath, pixel: tuple[int, int]) -> DrawnRay:
         " ".join((*(cell.rjust(wide) for cell, wide in zip(row, widths, strict=False)), row[-1][:_MEANING_WIDTH]))
         for row in rows
     ]
-    table = (f"pixel {pixel[0]},{pixel[1]}: {len(path.readings)} words", describe_root(rom, path).split(";")[0], "")
+    table = (
+        f"pixel {pixel[0]},{pixel[1]}: {len(path.readings)} words",
+        f"hits {describe_end(rom, path)}",
+        describe_root(rom, path).split(";")[0],
+        "",
+    )
     return DrawnRay(
         start=(x, y, z),
         end=(end_x, end_y, end_z),
@@ -109,7 +114,7 @@ def drawn_ray(rom: Rom, path: RayPath, pixel: tuple[int, int]) -> DrawnRay:
         levels=np.array([reading.level for reading in path.readings], np.int64),
         words=np.array([reading.word for reading in path.readings], np.uint32),
         points=points,
-        table=(*table, *lines, "", f"hits {describe_end(rom, path)}"),
+        table=(*table, *lines),
     )
 
 

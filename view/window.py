@@ -9,8 +9,9 @@ import numpy as np
 
 from voxrt.octree.octant import octant_at
 from voxrt.view.cells import import_pyvista
-from voxrt.view.drawing import add_octants, draw, draw_octants, draw_ray, enter, level_range
+from voxrt.view.drawing import add_octants, draw, draw_octants, enter, level_range
 from voxrt.view.plotter import TEXT
+from voxrt.view.ray_drawing import draw_ray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -28,6 +28,7 @@ class Voxelized(NamedTuple):
     object_voxels: NDArray[np.int64]
     object_modes: NDArray[np.uint8]
     object_flipped: NDArray[np.int64]
+    object_mostly_filled: NDArray[np.uint8]
     seconds: dict[str, float]
 
 def voxelize(
@@ -39,7 +40,7 @@ def voxelize(
     materials: NDArray[np.uint8],
     objects_of: NDArray[np.int32],
     objects: int,
-    fill: bool,
+    fill: str,
     threads: int,
 ) -> Voxelized: ...
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from voxrt.voxelize.scene import Scene
 
 _MOST = 8
+_NARROW = 0.5
+"""Part of the scene's width from which the others gain nothing worth a word if the large objects are left out."""
+
 _FEWEST_VOXELS = 8
 
 
@@ -57,7 +60,7 @@ def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tup
     highest = np.maximum.accumulate(high[order][::-1], axis=0)[::-1]
     widths = (highest - lowest).max(axis=1)
     for count in range(1, min(_MOST, len(order) - 1) + 1):
-        if 0 < widths[count] * voxels < _FEWEST_VOXELS * widths[0]:
+        if 0 < widths[count] < widths[0] * min(_FEWEST_VOXELS / voxels, _NARROW):
             return tuple(scene.objects[owners[row]].name for row in order[:count]), float(widths[count])
     return (), 0.0
 

@@ -45,7 +45,7 @@ def voxelize(
     scene: Scene,
     grid: Grid,
     *,
-    fill: Literal["solid", "surface"] = "solid",
+    fill: Literal["solid", "surface", "auto"] = "solid",
     geometry: Geometry = "auto",
     pow2: Pow2 = "box",
     threads: int = 0,
@@ -59,7 +59,8 @@ def voxelize(
     fill
         ``"solid"`` fills what surfaces enclose, small holes or not and whichever way each closed piece faces. It does
         not fill open pieces: those with an opening larger than 15 % of their area that other pieces do not close.
-        ``"surface"`` keeps the shells alone.
+        ``"surface"`` keeps the shells alone. ``"auto"`` is ``"solid"``, but leaves open also pieces whose openings
+        exceed 5 % of their area together, as those of clothes do.
     geometry
         ``"auto"``: an object's colliders where it has some, else its triangles; ``"render"``: always the triangles;
         ``"collider"``: always colliders, and the box of the mesh where the author gave none (with a warning).
@@ -94,14 +95,14 @@ def voxelize(
     """
     arguments.instance("scene", scene, Scene)
     arguments.instance("grid", grid, Grid)
-    arguments.choice("fill", fill, ("solid", "surface"))
+    arguments.choice("fill", fill, ("solid", "surface", "auto"))
     arguments.choice("geometry", geometry, GEOMETRIES)
     arguments.choice("pow2", pow2, POW2_CHOICES)
     threads = arguments.whole("threads", threads, 0, _MOST_THREADS)
     parts = _Parts(grid)
     reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
     try:
-        result = parts.voxelize(fill=fill == "solid", threads=threads, objects=len(scene.objects))
+        result = parts.voxelize(fill=fill, threads=threads, objects=len(scene.objects))
     except _native.OutOfRangeError as error:
         raise _unreachable(scene, int(error.args[0])) from None
     objects = tuple(
@@ -119,6 +120,18 @@ def voxelize(
             "open-surface",
             "open objects, like a room without a front, were not filled: close them or give them colliders",
             standing_open,
+        )
+    mostly_filled = [
+        item.name for item, mostly in zip(scene.objects, result.object_mostly_filled, strict=True) if mostly
+    ]
+    if mostly_filled:
+        first, *others = mostly_filled
+        more = f" and {len(others)} more" if others else ""
+        parts.warn(
+            "mostly-filled",
+            f"open objects were filled, and are more inside than shell ({first}{more}): build thin sheets, such as "
+            "cloth, with fill auto or surface",
+            len(mostly_filled),
         )
     if pieces := int(result.object_flipped.sum()):
         parts.warn(
@@ -208,7 +221,7 @@ class _Parts:
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: bool, threads: int, objects: int) -> _native.Voxelized:
+    def voxelize(self, *, fill: str, threads: int, objects: int) -> _native.Voxelized:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,

@@ -12,13 +12,18 @@ The stages behind it are packages of their own: :mod:`voxrt.voxelize`, :mod:`vox
 :mod:`voxrt.sim`, :mod:`voxrt.view`.
 """
 
+import os
 import sys
 from importlib import import_module
-from pkgutil import extend_path
-from typing import TYPE_CHECKING
+
+TYPE_CHECKING = False  # typing and pkgutil are slow to import: until then Ctrl-C prints a traceback
 
 # A checkout's Python and an installed wheel's extension modules make one package.
-__path__ = extend_path(__path__, __name__)
+__path__ += [
+    folder
+    for folder in (f"{entry}{os.sep}voxrt" for entry in sys.path if entry)
+    if folder not in __path__ and os.path.isdir(folder)  # noqa: PTH112 - pathlib is slow to import as well
+]
 
 __version__ = "0.2.0"
 
@@ -26,6 +31,7 @@ __all__ = [
     "BOARDS",
     "WRITABLE_SUFFIXES",
     "AssetError",
+    "Bake",
     "BudgetFit",
     "BuildOptions",
     "BuildResult",
@@ -84,6 +90,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "voxrt.baking": ("Bake",),
     "voxrt.build_options": ("BuildOptions",),
     "voxrt.build_result": ("BuildResult",),
     "voxrt.export": (
@@ -163,6 +170,7 @@ _ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 
 if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
     from voxrt import board, export, octree, serve, sim, view, voxelize
+    from voxrt.baking import Bake
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
     from voxrt.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve

@@ -16,7 +16,7 @@ from voxrt.backgrounds import read_background
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Fill: TypeAlias = Literal["solid", "surface"]
+Fill: TypeAlias = Literal["solid", "surface", "auto"]
 Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
@@ -31,6 +31,7 @@ PREVIEW_SIZE = (640, 480)
 
 _WIDEST = 1 << 14
 _MOST_THREADS = 1024
+_BRIGHTEST = 16
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +47,9 @@ class BuildOptions:
         Side of a voxel in metres; on the command line also with a unit, such as ``5cm``. Give this or `depth`, not
         both.
     fill
-        ``"solid"``: fill what closed surfaces enclose. ``"surface"``: keep only the shell.
+        ``"solid"``: fill what surfaces enclose, small holes or not. ``"surface"``: keep only the shell. ``"auto"``, the
+        default: as solid, but open pieces whose openings exceed 5 % of their area together keep only their shell, as
+        clothes do.
     interior
         Material of the hidden voxels: those that no ray from outside can reach. ``"keep"``: the material of their
         object. ``"any"``: for each the material that makes the memory smallest. The name or the id of a material: that
@@ -80,6 +83,16 @@ class BuildOptions:
     colours
         The largest number of materials made of textures and vertex colours, 1 to 254. Materials of one colour are not
         counted and keep their colour.
+    bake
+        Bake light: every voxel at the surface gets the colour that it has under the sun and the sky. The memory is then
+        shown flat, with up to 254 colours.
+    sun
+        With `bake`: the direction towards the sun, x, y and z. Zeros for no sun. The default is 1, 3, 2.
+    sky
+        With `bake`: the light of the sky, as a strength such as 0.4 or as a colour such as ``#9db4d0``. The default is
+        0.4; the sun has 0.65.
+    bake_samples
+        With `bake`: rays to the sky per voxel, 1 to 4096. The default is 64.
     budget
         The largest size of the memory, in words. Detail that is seen least is given up until the memory fits. In
         Python, also the name of a board: its memory is the budget.
@@ -127,7 +140,7 @@ class BuildOptions:
 
     depth: int | None = None
     voxel_size: float | None = None
-    fill: Fill = "solid"
+    fill: Fill = "auto"
     interior: int | str = "keep"
     geometry: Geometry = "auto"
     pow2: Pow2 = "box"
@@ -141,6 +154,10 @@ class BuildOptions:
     allow_empty: bool = False
     allow_outside: bool = False
     colours: int = 32
+    bake: bool = False
+    sun: tuple[float, float, float] = (1.0, 3.0, 2.0)
+    sky: float | str = 0.4
+    bake_samples: int = 64
     budget: int | str | None = None
     dialect: Dialect = "report"
     preview: str | PathLike[str] | bool = False
@@ -176,6 +193,10 @@ class BuildKeywords(TypedDict, total=False):
     allow_empty: bool
     allow_outside: bool
     colours: int
+    bake: bool
+    sun: tuple[float, float, float]
+    sky: float | str
+    bake_samples: int
     budget: int | str | None
     dialect: Dialect
     preview: str | PathLike[str] | bool
@@ -191,7 +212,7 @@ class BuildKeywords(TypedDict, total=False):
 def _checked(given: BuildOptions) -> dict[str, object]:
     """Return the options by name, converted exactly; TypeError or ValueError if that is not possible."""
     from voxrt.octree import BOARDS, MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
-    from voxrt.voxelize.arguments import choice, flag, real, text, whole  # noqa: PLC0415
+    from voxrt.voxelize.arguments import choice, flag, real, text, vector, whole  # noqa: PLC0415
 
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
@@ -216,6 +237,10 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "allow_empty": flag,
         "allow_outside": flag,
         "colours": lambda name, value: whole(name, value, 1, 254),
+        "bake": flag,
+        "sun": vector,
+        "sky": _sky,
+        "bake_samples": lambda name, value: whole(name, value, 1, 4096),
         "budget": budget,
         "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
         "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
@@ -233,6 +258,19 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         name: None if value is None and name in optional else checks[name](name, value)
         for name, value in values.items()
     }
+
+
+def _sky(name: str, value: object) -> float | str:
+    from voxrt.voxelize.arguments import real  # noqa: PLC0415
+    from voxrt.voxelize.colour.srgb import linear_from_hex  # noqa: PLC0415
+
+    if isinstance(value, str):
+        linear_from_hex(name, value)
+        return value
+    strength = real(name, value)
+    if not 0 <= strength <= _BRIGHTEST:
+        raise ValueError(f"{name} must be a strength of 0 … {_BRIGHTEST}, or a colour like '#9db4d0', not {value!r}")
+    return strength
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:

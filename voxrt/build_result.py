@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voxrt.baking import Bake
     from voxrt.export import Source
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
@@ -46,13 +47,15 @@ class BuildResult:
         What fitting the budget took; None if there was none.
     seconds
         Wall seconds per stage, in order: ``"load"``, ``"fit"``, ``"colour"``, ``"voxelize"``, ``"octree"``,
-        ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
+        ``"bake"``, ``"interior"``, ``"budget"``, ``"write"``, ``"preview"``.
     parts
         Wall seconds per part of a stage: those of ``"voxelize"`` (:attr:`voxrt.voxelize.Voxelization.seconds`).
     view, lighting
-        The author's camera and light; None if the author gave none.
+        The author's camera and light; None if the author gave none. A memory with baked light is shown flat.
     source
         The name of the asset, and the options of the build.
+    bake
+        What was baked; None if no light was.
 
     Examples
     --------
@@ -79,6 +82,7 @@ class BuildResult:
     view: Camera | None = None
     lighting: Lighting | None = None
     source: Source | None = None
+    bake: Bake | None = None
 
     def __repr__(self) -> str:
         words, count = len(self.octree.words), len(self.rom.materials) - 1

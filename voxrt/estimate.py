@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 _SECONDS_PER_TRIANGLE = 1e-6
 _SECONDS_PER_SURFACE_VOXEL = 60e-9
 _SECONDS_PER_COLOURED_VOXEL = 100e-9
-_SECONDS_PER_HARDWARE_PIXEL = 4e-6
+_SECONDS_PER_BAKED_VOXEL_AND_SAMPLE = 40e-9
+_SECONDS_PER_HARDWARE_RAY = 4e-6
 _BYTES_AT_START = 60 << 20
 _BYTES_PER_TRIANGLE = 200
 _BYTES_PER_SURFACE_VOXEL = 8
@@ -84,8 +85,11 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
         + surface * _SECONDS_PER_SURFACE_VOXEL
         + coloured * _SECONDS_PER_COLOURED_VOXEL
     )
+    if options.bake:
+        seconds += surface * options.bake_samples * _SECONDS_PER_BAKED_VOXEL_AND_SAMPLE
     if options.preview and options.engine == "rtl":
-        seconds += options.size[0] * options.size[1] * _SECONDS_PER_HARDWARE_PIXEL
+        rays = options.size[0] * options.size[1] * options.samples**2
+        seconds += rays * _SECONDS_PER_HARDWARE_RAY
     taken = (
         _BYTES_AT_START
         + triangles * _BYTES_PER_TRIANGLE

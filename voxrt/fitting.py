@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.octree.camera import THREE_QUARTER
+from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree import Octree, Rom
+    from voxrt.octree.camera import Lighting
     from voxrt.voxelize import Material
 
 
@@ -93,14 +94,18 @@ def fit_interior(rom: Rom, material: int | None) -> tuple[Rom, InteriorFit]:
     return replace(rom, octree=tree), InteriorFit(material, found, len(whole.words))
 
 
-def fit_budget(rom: Rom, words: int, size: tuple[int, int], threads: int) -> tuple[Rom, BudgetFit]:
+def fit_budget(
+    rom: Rom, words: int, size: tuple[int, int], threads: int, *, lighting: Lighting = PLAIN_LIGHTING
+) -> tuple[Rom, BudgetFit]:
     """Fit `rom` to a memory of so many words; pictures of `size` pixels tell how like it is to what it was."""
     colours = np.array([material.colour for material in rom.materials], np.uint8)
-    views = Views(rom, threads)
+    views = Views(rom, threads, lighting)
     fit = octree.fit(rom.octree, words, colours=colours, choose=views.choose)
     fitted = replace(rom, octree=fit.octree)
     camera = aim_camera(rom, size)
-    before, after = (sim.render(r, camera, size, engine="model", threads=threads).colour for r in (rom, fitted))
+    before, after = (
+        sim.render(r, camera, size, engine="model", lighting=lighting, threads=threads).colour for r in (rom, fitted)
+    )
     psnr, ssim = sim.peak_signal_to_noise(before, after), sim.structural_similarity(before, after)
     return fitted, BudgetFit(words, fit, psnr, ssim)
 
@@ -111,9 +116,10 @@ class Views:
     size = (320, 240)
     """Pixels."""
 
-    def __init__(self, rom: Rom, threads: int = 0) -> None:
+    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = PLAIN_LIGHTING) -> None:
         self._rom = rom
         self._threads = threads
+        self._lighting = lighting
         self._cameras = [aim_camera(rom, self.size, look=look) for look in _looks()]
         self._pictures = self._render(rom)
 
@@ -140,7 +146,8 @@ class Views:
 
     def _render(self, rom: Rom) -> list[NDArray[np.uint8]]:
         return [
-            sim.render(rom, camera, self.size, engine="model", threads=self._threads).colour for camera in self._cameras
+            sim.render(rom, camera, self.size, engine="model", lighting=self._lighting, threads=self._threads).colour
+            for camera in self._cameras
         ]
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, contextmanager
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
+from voxrt.baking import FLAT, bake, fit_baked
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
 from voxrt.estimate import estimate_build
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.asset_source import Asset
+    from voxrt.baking import Bake
     from voxrt.build_options import BuildKeywords, Fill, UpAxis
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
@@ -133,8 +135,8 @@ def build(
     with clock.stage("octree"):
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
-    rom, interior_fit, budget_fit = _made_smaller(rom, asset, loaded, options, clock)
-    view, lighting, unseen = _authored(scene, rom)
+    rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
+    view, lighting, unseen = _authored(scene, rom, options)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
     _refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
@@ -158,6 +160,7 @@ def build(
         view,
         lighting,
         export.Source(source, _settings(options)),
+        baked,
     )
     with clock.stage("write"):
         result.outputs.update(_write(files, result, options))
@@ -176,7 +179,7 @@ def voxelize_mesh(
     voxel_size: float | None = None,
     colours: ArrayLike | None = None,
     face_colours: ArrayLike | None = None,
-    fill: Fill = "solid",
+    fill: Fill = "auto",
     up: UpAxis | None = None,
     unit: float | None = None,
     threads: int = 0,
@@ -257,29 +260,43 @@ def _voxelize(
     return scene, grid, voxelization
 
 
-def _made_smaller(
-    rom: Rom, asset: Asset, loaded: Scene, options: BuildOptions, clock: _Clock
-) -> tuple[Rom, InteriorFit | None, BudgetFit | None]:
-    """Give hidden voxels their material and fit the budget, if that is asked for."""
-    interior_fit, budget_fit = None, None
+def _finished(
+    rom: Rom, asset: Asset, scenes: tuple[Scene, Scene], options: BuildOptions, clock: _Clock
+) -> tuple[Rom, Bake | None, InteriorFit | None, BudgetFit | None]:
+    """Give hidden voxels their material, bake light and fit the budget, if that is asked for.
+
+    `scenes`: as it was loaded, and with its colours reduced to materials.
+    """
+    loaded, scene = scenes
+    light, baked, interior_fit, budget_fit = None, None, None, None
     interior, budget = options.interior, options.budget
-    if interior != "keep":
+    if interior not in ("keep", "any"):
         with clock.stage("interior"):
-            material = None if interior == "any" else find_material(asset_label(asset), rom.materials, interior)
+            material = find_material(asset_label(asset), rom.materials, interior)
             rom, interior_fit = fit_interior(rom, material)
+    if options.bake:
+        with clock.stage("bake"):
+            rom, light, baked = bake(rom, scene, options)
+    if interior == "any":  # what hidden voxels may share depends on the colours of all others
+        with clock.stage("interior"):
+            rom, interior_fit = fit_interior(rom, None)
     if budget is not None:
         with clock.stage("budget"):
             words = octree.BOARDS[budget] if isinstance(budget, str) else budget
-            rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            if light is None or baked is None:
+                rom, budget_fit = fit_budget(rom, words, options.size, options.threads)
+            else:
+                rom, budget_fit, baked = fit_baked(rom, light, baked, words, options)
             if budget_fit.fit.percent_changed > _MUCH:
                 budget_fit = replace(budget_fit, lossless=_lossless_depth(loaded, options, rom.octree.depth, words))
-    return rom, interior_fit, budget_fit
+    return rom, baked, interior_fit, budget_fit
 
 
 def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int) -> tuple[int, int] | None:
     """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
     for lesser in range(depth - 1, 0, -1):
         whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
+        whole = replace(whole, ignore=(), allow_empty=True)  # done by now
         size = len(build(loaded, options=whole).octree.words)
         if size <= words:
             return lesser, size
@@ -288,7 +305,7 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
 
 def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
     """Return the options that the manifest names."""
-    return {
+    settings: dict[str, str | int | float | bool | None] = {
         "fill": options.fill,
         "interior": options.interior,
         "geometry": options.geometry,
@@ -298,10 +315,14 @@ def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | Non
         "time": options.time,
         "animation": options.animation,
         "variants": ", ".join(options.variants) or None,
-        "ignore": ", ".join(options.ignore) or None,
-        "bounds": None if options.bounds is None else ",".join(f"{value:g}" for value in options.bounds),
         "colours": options.colours,
+        "bake": options.bake,
     }
+    if options.ignore:
+        settings["ignore"] = ", ".join(options.ignore)
+    if options.bounds is not None:
+        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
+    return settings
 
 
 def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
@@ -330,6 +351,7 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
                 source=result.source,
                 view=result.view,
                 lighting=result.lighting,
+                baked=None if result.bake is None else export.BakedLight(**asdict(result.bake)),
                 beside=pictures,
             )
             outputs = {"mem": written.mem, "manifest": written.manifest}
@@ -357,8 +379,13 @@ def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, o
     return Picture(frame, camera, options.engine)
 
 
-def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used."""
+def _authored(
+    scene: Scene, rom: Rom, options: BuildOptions
+) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
+    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used.
+
+    A memory with baked light is shown flat, and its author's light is not used.
+    """
     view, lighting, unseen = None, None, []
     grid = rom.grid
     assert grid is not None
@@ -376,6 +403,10 @@ def _authored(scene: Scene, rom: Rom) -> tuple[Camera | None, Lighting | None, t
         lighting = authored_lighting(scene, grid)
     except ViewpointError as error:
         unseen.append(SceneWarning("light", str(error)))
+    if options.bake:
+        if lighting is not None and lighting.on:
+            unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
+        lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)
     return view, lighting, tuple(unseen)
 
 

@@ -33,7 +33,7 @@ for name in ("courtyard.glb", "planet.glb"):
 plt.xlabel("depth of the octree")
 plt.ylabel("cycles per pixel, one lane")
 plt.ylim(bottom=0)
-plt.legend()
+plt.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=8, frameon=False)
 plt.grid(visible=True, alpha=0.3)
 plt.tight_layout()
 plt.show()

@@ -37,7 +37,7 @@ plt.loglog((1, 2), (338, 169.6), "ks-", label="the original on its house, simula
 plt.xticks(lanes, map(str, lanes))
 plt.xlabel("lanes")
 plt.ylabel("cycles per pixel; dotted: the bound")
-plt.legend(fontsize=8)
+plt.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=8, frameon=False)
 plt.grid(visible=True, which="major", alpha=0.3)
 plt.tight_layout()
 plt.show()

@@ -47,7 +47,7 @@ plt.plot(reach, start + slope * reach, "-", alpha=0.6, label=f"{start:.0f} + {sl
 plt.plot(reach, reach * whole.cycles / whole.words_read, "k--", label="in a frame, per ray")
 plt.xlabel("octree words that the ray reads")
 plt.ylabel("clock cycles")
-plt.legend()
+plt.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=8, frameon=False)
 plt.grid(visible=True, alpha=0.3)
 plt.tight_layout()
 plt.show()

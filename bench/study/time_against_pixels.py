@@ -49,7 +49,7 @@ with Original(as_published=True) as published, Original(as_published=False) as p
 # %%
 # Each is a straight line. The table has its slope, and how much of the variance the line explains.
 pixels = sides**2
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.5))
+figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 5.2))
 print(f"{'':34s}{'per pixel':>16s}{'explained':>12s}")
 for place, unit, table in ((left, "ns", seconds), (right, "cycles", cycles)):
     for name, values in table.items():
@@ -67,7 +67,7 @@ for name, slope in {
 left.set(xlabel="pixels", ylabel="seconds per frame")
 right.set(xlabel="pixels", ylabel="clock cycles per frame")
 for place in (left, right):
-    place.legend(fontsize=7)
+    place.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8, frameon=False)
     place.grid(visible=True, which="major", alpha=0.3)
 plt.tight_layout()
 plt.show()

@@ -1,5 +1,7 @@
 // The connection to the frame server: it reconnects by itself, numbers the requests and dispatches what arrives.
 
+import { askForReason } from "./refusal.js";
+
 export const PROTOCOL = 2;
 const HEADER = 56;
 const RETRY = { first: 500, longest: 5000 }; // milliseconds
@@ -15,11 +17,27 @@ export class Connection extends EventTarget {
     this.number = 0;
     this.retry = RETRY.first;
     this.connect();
+    // A page that the browser keeps for "back" must not keep its control.
+    addEventListener("pagehide", () => this.socket.close());
+    addEventListener("pageshow", ({ persisted }) => { if (persisted) this.connectNow(); });
+  }
+
+  get token() { return new URLSearchParams(location.hash.slice(1)).get("token"); }
+
+  // Connect with another token; the address keeps it.
+  useToken(token) {
+    history.replaceState(null, "", `#${new URLSearchParams({ token })}`);
+    this.connectNow();
+  }
+
+  connectNow() {
+    clearTimeout(this.timer);
+    this.retry = RETRY.first;
+    if (this.socket.readyState > WebSocket.OPEN) this.connect();
   }
 
   connect() {
-    const token = new URLSearchParams(location.hash.slice(1)).get("token");
-    const query = token ? `?token=${encodeURIComponent(token)}` : "";
+    const query = this.token ? `?${new URLSearchParams({ token: this.token })}` : "";
     this.socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/v${PROTOCOL}${query}`);
     this.socket.binaryType = "arraybuffer";
     this.socket.onmessage = ({ data }) => (typeof data === "string" ? this.receiveMessage(JSON.parse(data)) : this.receiveFrame(data));
@@ -28,24 +46,18 @@ export class Connection extends EventTarget {
 
   get connected() { return this.hello !== null; }
 
-  async handleClose({ code, reason }) {
+  async handleClose({ code }) {
     const wasConnected = this.connected;
     this.hello = null;
     this.sent.clear();
-    for (const { reject } of this.pending.values()) reject(new Error("the connection to the board was lost"));
+    for (const { reject } of this.pending.values()) reject(new Error("the connection to the server was lost"));
     this.pending.clear();
-    const why = wasConnected ? "" : await this.askWhy();
-    this.emit("disconnected", { wasConnected, code, reason, why, retry: this.retry });
-    setTimeout(() => this.connect(), this.retry);
+    const { socket } = this;
+    const refusal = code === 1013 ? { reason: "full" } : wasConnected ? { reason: "lost" } : await askForReason(`/v${PROTOCOL}`, this.token ? { token: this.token } : {});
+    if (socket !== this.socket) return; // somebody has connected meanwhile
+    this.emit("disconnected", { ...refusal, retry: this.retry });
+    this.timer = setTimeout(() => this.connect(), this.retry);
     this.retry = Math.min(this.retry * 1.6, RETRY.longest);
-  }
-
-  // Why the server refuses the connection, in its own words: browsers do not tell a page the answer to a WebSocket.
-  async askWhy() {
-    try {
-      const answer = await fetch(this.socket.url.replace(/^ws/, "http"), { signal: AbortSignal.timeout(5000) });
-      return [401, 403, 503].includes(answer.status) ? (await answer.text()).trim() : "";
-    } catch { return ""; }
   }
 
   emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }
@@ -94,15 +106,17 @@ export class Connection extends EventTarget {
     this.emit("frame", frame);
   }
 
-  // Change the view; a frame with this request follows.
+  // Change the view; a frame with this request follows. Returns the request's number.
   changeView(fields) {
-    if (!this.connected) return;
-    this.sent.set(this.send("view", fields), performance.now());
+    if (!this.connected) return 0;
+    const number = this.send("view", fields);
+    this.sent.set(number, performance.now());
+    return number;
   }
 
   // Send a request; resolves with its answer, rejects with the reason of a refusal.
   request(type, fields = {}, progress = null) {
-    if (!this.connected) return Promise.reject(new Error("there is no connection to the board"));
+    if (!this.connected) return Promise.reject(new Error("there is no connection to the server"));
     const number = this.send(type, fields);
     return new Promise((resolve, reject) => this.pending.set(number, { resolve, reject, progress, number }));
   }

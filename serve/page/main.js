@@ -1,73 +1,72 @@
-// The page: it joins connection, picture, camera controls and panel. While this viewer has control, the page owns the
-// view and sends it to the server. While another viewer has control, the page follows the view of the server.
+// The page: it joins connection, picture, navigation and panel. While this viewer has control, the page owns the view and
+// sends it to the server. While another viewer has control, the page follows the view of the server.
 
-import { fromRegisters, toRegisters } from "./camera.js";
+import { Advanced } from "./advanced.js";
+import { fromRegisters, measure, pixelDirection, toRegisters } from "./camera.js";
 import { Connection } from "./connection.js";
-import { CameraControls } from "./controls.js";
-import { $, Panel, toggled } from "./panel.js";
+import { $, isPressed, makeToolbar, pressed } from "./elements.js";
+import { Figures } from "./figures.js";
+import { Flight } from "./flight.js";
+import { FrameRequests } from "./frame_requests.js";
+import { Gestures } from "./gestures.js";
+import { Glide } from "./glide.js";
+import { Light } from "./light.js";
+import { dolly, fly, focus, frame, look, orbit, pan } from "./navigation.js";
+import { dismiss, hideAway, notice, showAway } from "./notices.js";
 import { Picture } from "./picture.js";
-import { uploadFiles } from "./upload.js";
+import { Scenes } from "./scenes.js";
+import { add, scale } from "./vectors.js";
+import { Views } from "./views.js";
 
 const connection = new Connection();
-const picture = new Picture($("picture"), $("overlay"));
+const canvas = $("picture");
+const picture = new Picture(canvas);
+const figures = new Figures($("figures"));
+const frames = new FrameRequests(connection, $("stage"));
+const glide = new Glide();
 let view = null; // the camera for people of camera.js
-let viewChanged = false; // the server does not have `view` yet
 let scene = null; // number of the scene to which `view` belongs
+let had = false; // control
+let unconfirmed = {}; // fields of the view that the state of the server does not have yet
 
 const state = () => connection.state;
 const hasControl = () => connection.connected && state()?.controller === connection.hello.viewer;
-const size = () => state().view.size;
 
 const app = {
+  connection,
+  hasControl,
+  state,
   view: () => view,
-  size,
+  device: () => connection.hello.device,
+  size: () => frames.size,
   side: () => 2 ** state().scene.depth,
+  bounds: () => state().scene.bounds ?? [[0, 0, 0], Array(3).fill(app.side())],
+  limit: () => Math.min(8 * app.side() + 512, app.device().position_limit / 16 - 1),
   change(how) {
     if (!view || !hasControl()) return;
+    glide.stop();
     view = how(view);
-    viewChanged = true;
+    frames.change();
   },
-  set(fields) { if (hasControl()) connection.changeView(fields); },
-  resize(to) { if (hasControl() && view) connection.changeView({ size: to, camera: toRegisters(view, to) }); },
-  load(name) { loadScene(name, (report) => connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total))); },
+  glide(how) { if (view && hasControl()) glide.start(view, how(view), frames.resolution.seconds(frames.size) > 1); },
+  set(fields) {
+    if (!hasControl()) return;
+    Object.assign(unconfirmed, fields);
+    Object.assign(state().view, fields); // the next change starts from it
+    frames.change(fields);
+  },
+  fixSize(size) { frames.resolution.fixed = size; },
+  coarsen() { if (view) frames.coarsen(view); },
 };
-const panel = new Panel(app);
-
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the board", verify: "Verifying", render: "Rendering the first frame",
-  load: "Loading the file", fit: "Fitting the grid", voxelize: "Voxelizing", octree: "Building the octree" };
-
-function notice(kind, title, text = "", progress = null) {
-  const box = $("notice");
-  box.hidden = false;
-  box.dataset.kind = kind;
-  box.querySelector("strong").textContent = title;
-  box.querySelector("p").textContent = text;
-  const bar = box.querySelector("progress");
-  bar.hidden = progress === null;
-  if (progress !== null) bar.value = progress;
-  box.querySelector("button").hidden = kind !== "error";
-}
-const dismiss = () => { $("notice").hidden = true; };
-$("notice").querySelector("button").onclick = dismiss;
-
-// Run what loads another scene, and show its progress.
-async function loadScene(name, run) {
-  if (!hasControl()) return notice("error", "You do not have control", "Take control before you change the scene.");
-  notice("progress", `${name} …`, "", 0);
-  try {
-    await run((stage, done, total) => notice("progress", `${name} …`, STAGES[stage] ?? stage, total ? done / total : 0));
-    dismiss();
-  } catch (error) {
-    notice("error", `${name} was not loaded`, `${error.message}. The scene has not changed.`);
-  }
-}
-const openFiles = (files) => { if (files.length) loadScene(files[0].name, (report) => uploadFiles(connection, [...files], report)); };
+const panels = { scenes: new Scenes(app), views: new Views(app), light: new Light(app), advanced: new Advanced(app) };
 
 connection.addEventListener("hello", ({ detail }) => {
   $("connection").dataset.state = "connected";
-  $("connection").textContent = "connected";
+  $("connection").textContent = detail.device.name;
+  hideAway();
   dismiss();
-  panel.hello(detail);
+  had = false;
+  for (const panel of [panels.scenes, panels.light, panels.advanced]) panel.hello(detail);
 });
 
 connection.addEventListener("disconnected", ({ detail }) => {
@@ -75,112 +74,189 @@ connection.addEventListener("disconnected", ({ detail }) => {
   $("connection").textContent = "not connected";
   $("control").textContent = "";
   $("take").hidden = $("release").hidden = true;
-  const reason = detail.code === 1013 ? "The server has too many viewers." : detail.wasConnected ? "The connection was lost."
-    : detail.why ? `The server refuses: ${detail.why}.`
-    : "No frame server answers, or the token is missing: open the address that the server printed.";
-  notice("disconnected", "Not connected to the board", `${reason} The page tries again by itself.`);
+  dismiss();
+  showAway(detail, detail.retry / 1000);
 });
+$("token-form").onsubmit = (event) => {
+  event.preventDefault();
+  connection.useToken(event.target.elements.token.value);
+};
+$("retry").onclick = () => connection.connectNow();
 
-let requested = false; // control, since nobody has it
-connection.addEventListener("state", ({ detail }) => {
-  const { controller, waiting, viewers } = detail;
-  const mine = controller === connection.hello.viewer;
-  if (!mine || detail.trouble) connection.sent.clear(); // no frame will answer these
-  if (controller === null && !requested) connection.request("take").catch(() => {});
-  requested = controller === null;
+function showControl({ controller, waiting, viewers }, mine) {
   $("control").dataset.state = mine ? "mine" : "";
   $("control").textContent = mine
-    ? waiting.length ? `viewer ${waiting[0]} asks for control` : `you have control${viewers > 1 ? ` · ${viewers} viewers` : ""}`
+    ? waiting.length ? `viewer ${waiting[0]} asks for control` : viewers > 1 ? `you have control · ${viewers} viewers` : ""
     : controller === null ? "nobody has control" : `viewer ${controller} has control`;
   $("take").hidden = mine;
   $("take").disabled = waiting.includes(connection.hello.viewer);
   $("take").textContent = $("take").disabled ? "Control requested" : "Take control";
   $("release").hidden = !mine || waiting.length === 0;
-  if (scene !== detail.scene.number || !mine || !view) {
-    scene = detail.scene.number;
-    view = fromRegisters(detail.view.camera, detail.view.size);
-    viewChanged = false;
+  for (const made of document.querySelectorAll("#panel :is(button, input, select), #empty button, #frame, #pad button"))
+    if (made.id !== "help") made.disabled = !mine;
+}
+
+// The view of registers, with the middle of the scene as target.
+function readView(camera, size) {
+  const [low, high] = app.bounds();
+  return fromRegisters(camera, size, scale(add(low, high), 0.5), frames.size);
+}
+
+// Forget the fields that the server has, and keep the others in its view.
+function confirm(shown, mine) {
+  const same = (name) => JSON.stringify(shown[name]) === JSON.stringify(unconfirmed[name]);
+  unconfirmed = mine ? Object.fromEntries(Object.entries(unconfirmed).filter(([name]) => !same(name))) : {};
+  Object.assign(shown, unconfirmed);
+}
+
+let requested = false; // control, since nobody has it
+connection.addEventListener("state", ({ detail }) => {
+  const mine = hasControl();
+  confirm(detail.view, mine);
+  if (!mine || detail.trouble) connection.sent.clear(); // no frame will answer these
+  if (detail.controller === null && !requested) connection.request("take").catch(() => {});
+  requested = detail.controller === null;
+  showControl(detail, mine);
+  const another = scene !== detail.scene.number;
+  scene = detail.scene.number;
+  if (another || !mine || !had || !view) {
+    glide.stop();
+    frames.discard();
+    view = another && mine ? readView(detail.scene.camera, detail.scene.size) : readView(detail.view.camera, detail.view.size);
+    if (mine) frames.change();
   }
-  panel.show(detail, mine);
-  panel.showCamera(view, detail.view.size);
+  had = mine;
+  $("scene").textContent = scene === 0 ? "" : detail.scene.name;
+  $("details").textContent = scene === 0 ? "" : `${2 ** detail.scene.depth}³ voxels · ${detail.scene.words.toLocaleString()} words`;
+  canvas.style.backgroundColor = `rgb(${detail.view.background.join()})`;
+  panels.scenes.mark(detail);
+  panels.light.show(detail);
+  panels.advanced.show(detail);
+  panels.advanced.showCamera(view);
   $("connection").dataset.state = detail.trouble ? "disconnected" : "connected";
-  $("connection").textContent = detail.trouble ? "no frames" : "connected";
-  if (detail.trouble) notice("error", "The device has failed", detail.trouble);
-  else if (detail.scene.number === 0) notice("hint", "No scene yet", `Drop a file on the picture: ${connection.hello.suffixes.join(" ")}`);
-  else if (["hint"].includes($("notice").dataset.kind)) dismiss();
+  $("connection").textContent = detail.trouble ? "no frames" : connection.hello.device.name;
+  if (detail.trouble) notice("error", "There are no frames", detail.trouble);
 });
 
-connection.addEventListener("refused", ({ detail }) => notice("error", "The request was refused", detail.problem));
-connection.addEventListener("frame", ({ detail }) => picture.show(detail));
+connection.addEventListener("refused", ({ detail }) => {
+  unconfirmed = {};
+  notice("error", "The request was refused", detail.problem);
+});
+connection.addEventListener("frame", ({ detail }) => {
+  const samples = frames.receive(detail);
+  picture.show(detail, samples, frames.resolution.fixed !== null);
+  figures.add(detail, samples);
+});
+
+// The voxel under a place of the page becomes the target.
+async function focusAt(x, y) {
+  if (!view || !hasControl()) return;
+  const box = canvas.getBoundingClientRect();
+  const size = [canvas.width, canvas.height];
+  const part = Math.min(box.width / size[0], box.height / size[1]); // the canvas keeps the shape of the frame
+  const column = Math.floor((x - box.left - box.width / 2) / part + size[0] / 2);
+  const row = Math.floor((y - box.top - box.height / 2) / part + size[1] / 2);
+  const registers = toRegisters(view, size);
+  try {
+    const { hit } = await connection.request("ray", { origin: registers.position, direction: pixelDirection(registers, size, column, row) });
+    if (hit) app.glide((now) => focus(now, hit.point, app.limit()));
+  } catch (error) { notice("error", "There is no point to focus", error.message); }
+}
+
+const flies = () => isPressed($("fly"));
+const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
+const mirrored = (of) => [of.flipX ? -1 : 1, of.flipY ? -1 : 1];
+function turn(right, down) { // pixels of the page: the scene follows the pointer
+  app.change((now) => {
+    const [x, y] = mirrored(now);
+    const angle = flies() ? (now.fov * Math.PI) / 180 / across() : (2 * Math.PI) / canvas.clientHeight;
+    return flies() ? look(now, -right * angle * x, down * angle * y) : orbit(now, right * angle * x, down * angle * y);
+  });
+}
+const gestures = new Gestures(canvas, {
+  turn,
+  pan: (right, down) => app.change((now) => {
+    const [x, y] = mirrored(now);
+    return pan(now, (right * x) / across(), (down * y) / across(), app.limit());
+  }),
+  dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
+  focus: focusAt,
+});
 
 const commands = {
-  KeyR: () => { if (state()) app.change(() => fromRegisters(state().scene.camera, state().scene.size)); },
+  KeyF: () => app.glide((now) => frame(now, app.bounds(), app.size(), app.limit())),
+  KeyR: () => app.glide(() => readView(state().scene.camera, state().scene.size)),
   KeyN: () => $("nonstop").click(),
   KeyO: () => $("statistics").click(),
   KeyP: () => $("save").click(),
   KeyH: () => $("keys").showModal(),
 };
-for (let i = 0; i < 7; i++) commands[`Digit${i + 1}`] = () => { if (state()) panel.preset(i); };
-const controls = new CameraControls($("picture"), $("pad"), {
-  change: app.change,
-  world: () => ({ side: app.side(), limit: Math.min(8 * app.side() + 512, connection.hello.device.position_limit / 16 - 1) }),
+for (let i = 0; i < 7; i++) commands[`Digit${i + 1}`] = () => panels.views.choose(i);
+const flight = new Flight($("pad"), {
   commands,
+  fly: (...parts) => app.change((now) => {
+    const [x, y] = mirrored(now);
+    return fly(now, scale([parts[0] * x, parts[1] * y, parts[2]], app.side()), app.limit());
+  }),
+  rotate: (right, up) => app.change((now) => (flies() ? look(now, right * mirrored(now)[0], up * mirrored(now)[1])
+    : orbit(now, -right * mirrored(now)[0], -up * mirrored(now)[1]))),
+  dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
 });
 
-$("take").onclick = () => connection.request("take").catch(() => {});
-$("release").onclick = () => connection.request("release").catch(() => {});
+function setFlying(on) {
+  pressed($("fly"), on);
+  pressed($("orbit"), !on);
+  $("pad").hidden = !on || !matchMedia("(pointer: coarse)").matches;
+}
+$("fly").onclick = () => setFlying(true);
+$("orbit").onclick = () => setFlying(false);
+$("frame").onclick = commands.KeyF;
 $("reset").onclick = commands.KeyR;
 $("help").onclick = commands.KeyH;
-$("save").onclick = () => picture.save(`${state()?.scene.name ?? "voxrt"}-${picture.newest?.sequence ?? 0}`);
-$("open").onclick = () => $("files").click();
-$("files").onchange = ({ target }) => { openFiles(target.files); target.value = ""; };
-$("nonstop").onclick = ({ currentTarget }) => app.set({ nonstop: toggled(currentTarget) });
-$("statistics").onclick = ({ currentTarget }) => {
-  const on = toggled(currentTarget);
-  currentTarget.setAttribute("aria-pressed", String(on));
-  $("overlay").hidden = !on;
-};
+$("take").onclick = () => connection.request("take").catch(() => {});
+$("release").onclick = () => connection.request("release").catch(() => {});
+$("close").onclick = dismiss;
+$("save").onclick = () => picture.save(`${state()?.scene.name ?? "voxrt"}-${figures.newest?.sequence ?? 0}`);
+makeToolbar($("tools"));
+
+const setFigures = (on) => { pressed($("statistics"), on); $("figures").hidden = !on; };
+$("statistics").onclick = ({ currentTarget }) => setFigures(!isPressed(currentTarget));
+setFigures(!matchMedia("(max-width: 56rem), (max-height: 30rem)").matches);
+
 $("toggle-panel").onclick = ({ currentTarget }) => {
   const hidden = document.body.classList.toggle("panel-hidden");
   currentTarget.setAttribute("aria-expanded", String(!hidden));
 };
 
-let drags = 0;
-addEventListener("dragenter", (event) => { event.preventDefault(); drags += 1; $("drop").hidden = false; });
-addEventListener("dragleave", () => { drags -= 1; $("drop").hidden = drags <= 0; });
-addEventListener("dragover", (event) => event.preventDefault());
-addEventListener("drop", (event) => {
-  event.preventDefault();
-  drags = 0;
-  $("drop").hidden = true;
-  openFiles(event.dataTransfer.files);
-});
+$("fullscreen").hidden = !document.fullscreenEnabled;
+$("fullscreen").onclick = () => (document.fullscreenElement ? document.exitFullscreen() : $("stage").requestFullscreen());
+document.addEventListener("fullscreenchange", () => pressed($("fullscreen"), document.fullscreenElement !== null));
+canvas.addEventListener("keydown", ({ code }) => { if (code === "Enter") $("fullscreen").click(); });
 
-// At most two view changes wait for their frames. Later changes are sent together with the next one.
+function showWaiting() {
+  const { waiting } = hasControl() ? frames : {};
+  $("rendering").hidden = !waiting;
+  if (!waiting) return;
+  const left = Math.ceil(waiting.seconds - (performance.now() - waiting.since) / 1000);
+  const text = left > 0 ? `rendering, about ${left} s` : "rendering, a moment more";
+  if ($("rendering").textContent !== text) $("rendering").textContent = text;
+}
+
 function animate() {
-  if (hasControl() && view) {
-    controls.step();
-    if (viewChanged && connection.sent.size < 2) {
-      viewChanged = false;
-      connection.changeView({ camera: toRegisters(view, size()) });
-      panel.showCamera(view, size());
-    }
-  }
   requestAnimationFrame(animate);
+  if (!hasControl() || !view || scene === 0) return;
+  gestures.step();
+  flight.step();
+  const gliding = glide.step();
+  if (gliding) {
+    view = gliding;
+    frames.change();
+  }
+  const { changed } = frames;
+  const rests = frames.step(view, gestures.active || flight.active);
+  const busy = String(!rests || gliding !== null);
+  if ($("stage").getAttribute("aria-busy") !== busy) $("stage").setAttribute("aria-busy", busy);
+  if (changed) panels.advanced.showCamera(view);
 }
 requestAnimationFrame(animate);
-
-async function readRegisters() {
-  if (!$("registers").open || !connection.connected) return;
-  try {
-    const [{ registers }, { counters }] = await Promise.all([connection.request("registers"), connection.request("counters")]);
-    const rows = [...Object.entries(registers), ...Object.entries(counters).map(([name, value]) => [`server ${name}`, value])];
-    $("registers").querySelector("tbody").replaceChildren(...rows.map(([name, value]) => {
-      const row = document.createElement("tr");
-      for (const text of [name, value.toLocaleString()]) row.insertCell().textContent = text;
-      return row;
-    }));
-  } catch { /* the connection was lost; the notice says so */ }
-}
-$("registers").addEventListener("toggle", readRegisters);
-setInterval(() => { picture.showStatistics(); readRegisters(); }, 500);
+setInterval(() => { figures.show(); showWaiting(); panels.advanced.readRegisters(); }, 250);

@@ -1,59 +1,36 @@
-// The picture, and the statistics over it.
+// The picture on the canvas. A frame with four rays per pixel is averaged in linear light.
+
+const STEPS = 4096; // of linear light
+const linear = Float32Array.from({ length: 256 }, (_, value) => {
+  const part = value / 255;
+  return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+});
+const encoded = Uint8Array.from({ length: STEPS + 1 }, (_, step) => {
+  const part = step / STEPS;
+  return Math.round(255 * (part <= 0.0031308 ? 12.92 * part : 1.055 * part ** (1 / 2.4) - 0.055));
+});
 
 export class Picture {
-  constructor(canvas, overlay) {
+  constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d", { alpha: false });
-    this.overlay = overlay;
-    this.times = [];
-    this.missed = 0;
-    this.latency = null;
   }
 
-  show(frame) {
-    const { width, height, pixels } = frame;
-    if (this.canvas.width !== width || this.canvas.height !== height || !this.image) {
-      Object.assign(this.canvas, { width, height });
-      this.image = this.context.createImageData(width, height);
+  // Show a frame that has `samples` columns and rows per pixel.
+  show({ width, height, pixels }, samples, sharp) {
+    const [columns, rows] = [width / samples, height / samples];
+    if (this.canvas.width !== columns || this.canvas.height !== rows || !this.image) {
+      Object.assign(this.canvas, { width: columns, height: rows });
+      this.image = this.context.createImageData(columns, rows);
       this.words = new Uint32Array(this.image.data.buffer);
     }
     const { words } = this;
-    for (let i = 0, at = 0; i < words.length; i++, at += 3)
-      words[i] = 0xff000000 | (pixels[at + 2] << 16) | (pixels[at + 1] << 8) | pixels[at]; // every browser is little-endian
+    if (samples === 1) {
+      for (let i = 0, at = 0; i < words.length; i++, at += 3)
+        words[i] = 0xff000000 | (pixels[at + 2] << 16) | (pixels[at + 1] << 8) | pixels[at]; // every browser is little-endian
+    } else average(pixels, width, columns, rows, this.image.data);
     this.context.putImageData(this.image, 0, 0);
-    this.canvas.classList.toggle("pixels", this.canvas.clientWidth > 1.9 * width);
-    const now = performance.now();
-    if (this.newest && frame.sequence > this.newest.sequence + 1) this.missed += frame.sequence - this.newest.sequence - 1;
-    this.newest = frame;
-    this.times = [...this.times.filter((time) => now - time < 2000), now];
-    if (frame.requested) this.latency = now - frame.requested;
-  }
-
-  // Frames per second while frames arrive; 0 when they have stopped.
-  rate() {
-    const now = performance.now();
-    const recent = this.times.filter((time) => now - time < 2000);
-    return recent.length < 2 ? 0 : ((recent.length - 1) * 1000) / (recent[recent.length - 1] - recent[0]);
-  }
-
-  showStatistics() {
-    const frame = this.newest;
-    if (!frame) return;
-    const rows = [
-      ["frames per second", this.rate() ? this.rate().toFixed(1) : "idle"],
-      ["latency", this.latency === null ? "–" : `${this.latency.toFixed(0)} ms`],
-      ["render time", `${(frame.seconds * 1000).toFixed(1)} ms`],
-      ["cycles per pixel", frame.cycles === null ? "no clock" : (frame.cycles / frame.rays).toFixed(2)],
-      ["words per ray", frame.words === null ? "not counted" : (frame.words / frame.rays).toFixed(2)],
-      ["picture", `${frame.width} × ${frame.height}`],
-      ["frame", frame.sequence.toLocaleString() + (this.missed ? ` (${this.missed} missed)` : "")],
-    ];
-    this.overlay.replaceChildren(...rows.flatMap(([name, value]) => {
-      const [term, figure] = [document.createElement("dt"), document.createElement("dd")];
-      term.textContent = name;
-      figure.textContent = value;
-      return [term, figure];
-    }));
+    this.canvas.classList.toggle("pixels", sharp && this.canvas.clientWidth > 1.9 * columns);
   }
 
   save(name) {
@@ -64,5 +41,20 @@ export class Picture {
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     }, "image/png");
+  }
+}
+
+// The mean of each 2 x 2 pixels, sRGB.
+function average(pixels, width, columns, rows, result) {
+  const below = 3 * width;
+  for (let row = 0, to = 0; row < rows; row++) {
+    for (let column = 0, at = 2 * row * below; column < columns; column++, at += 6) {
+      for (let channel = 0; channel < 3; channel++) {
+        const from = at + channel;
+        const sum = linear[pixels[from]] + linear[pixels[from + 3]] + linear[pixels[from + below]] + linear[pixels[from + below + 3]];
+        result[to++] = encoded[Math.round((sum * STEPS) / 4)];
+      }
+      result[to++] = 255;
+    }
   }
 }

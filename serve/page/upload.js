@@ -24,8 +24,9 @@ function chunk(upload, offset, bytes) {
   return message;
 }
 
-// Calls `report(stage, done, total)`; resolves with the scene, rejects with the reason of the server.
-export async function uploadFiles(connection, files, report) {
+// Calls `report(stage, done, total)`; resolves with the scene, rejects with the reason of the server, or when `signal`
+// aborts. The caller then tells the server.
+export async function uploadFiles(connection, files, report, signal) {
   const parts = await Promise.all(files.map(async (file) => new Uint8Array(await file.arrayBuffer())));
   const total = parts.reduce((sum, part) => sum + part.length, 0);
   const { upload: limit, chunk: step } = connection.hello.limits;
@@ -48,6 +49,7 @@ export async function uploadFiles(connection, files, report) {
   let failure = null;
   const done = new Promise((resolve, reject) => connection.pending.set(ready.request, { resolve, reject, progress }));
   done.catch((error) => { failure = error; wake(); });
+  signal.addEventListener("abort", () => connection.pending.get(ready.request)?.reject(new Error("cancelled")));
   for (let offset = 0; offset < total && !failure; offset += step) {
     while (offset - received >= WINDOW * step && !failure) await new Promise((resolve) => { wake = resolve; });
     if (!failure) connection.socket.send(chunk(ready.upload, offset, data.subarray(offset, offset + step)));

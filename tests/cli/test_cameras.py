@@ -7,6 +7,7 @@ import pytest
 from oracles.gltf_writer import GltfWriter
 
 import voxrt
+from voxrt import octree
 from voxrt.sim import render as render_frame
 from voxrt.viewpoint import authored_camera, stands_inside
 from voxrt.voxelize import EMPTY, Material, Scene, SceneObject, Viewpoint
@@ -68,6 +69,37 @@ def test_a_camera_in_a_solid_shows_the_whole_scene_and_says_so():
     assert built.preview.camera == voxrt.aim_camera(built.rom, SIZE)
     assert stands_inside(built.rom, authored_camera(INSIDE, built.rom.grid, SIZE))
     assert 0.2 < np.mean(built.preview.frame.material > 0) < 0.8
+
+
+X, Y, Z = np.indices((32, 32, 32))
+SHAPES = {
+    "one voxel": (X == 9) & (Y == 20) & (Z == 3),
+    "the whole world": X >= 0,
+    "a plate": Y == 4,
+    "a tower": (X // 4 == 3) & (Z // 4 == 3),
+    "a wall": Z == 17,
+    "a ball": (X - 15.5) ** 2 + (Y - 15.5) ** 2 + (Z - 15.5) ** 2 < 200,
+    "a staircase": (Y <= X) & (Z < 9),
+    "two corners": (X + Y + Z == 0) | (X + Y + Z == 93),
+}
+
+
+@pytest.mark.parametrize("size", [(640, 480), (480, 640), (300, 300)])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_default_camera_leaves_a_margin_and_stands_outside(shape, size):
+    materials = (EMPTY, Material("stone", (150, 150, 160)))
+    rom = octree.Rom("shape", octree.from_dense(SHAPES[shape].astype(np.uint8)), materials)
+    camera = voxrt.aim_camera(rom, size)
+    rows, columns = np.nonzero(render_frame(rom, camera, size, engine="model").material)
+    free = [
+        columns.min() / size[0],
+        (size[0] - 1 - columns.max()) / size[0],
+        rows.min() / size[1],
+        (size[1] - 1 - rows.max()) / size[1],
+    ]
+    assert min(free) >= 0.08
+    assert min(max(free[:2]), max(free[2:])) <= 0.2
+    assert not stands_inside(rom, camera)
 
 
 def test_a_file_names_its_cameras(tmp_path, voxrt):

@@ -22,7 +22,7 @@ def test_it_lists_the_configurations(voxrt):
     listed = {line.split()[0]: line.split()[1:] for line in finished.out.splitlines()[1:]}
     assert list(listed) == list(read_configurations())
     assert listed["octo"] == ["8", "10", "32,769", "private"]
-    assert listed["lit"] == ["1", "16", "32,769", "private", "flat", "light", "mirrors"]
+    assert listed["lit"] == ["1", "16", "32,769", "private", "light", "mirrors"]
 
 
 def test_its_path_is_the_folder_of_the_sources(voxrt):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
@@ -10,6 +11,8 @@ import sys
 from contextlib import contextmanager
 
 import pytest
+
+from voxrt.serve.frame_client import open_client
 
 
 @contextmanager
@@ -29,6 +32,22 @@ def serving(folder, *arguments):
             process.send_signal(signal.SIGINT)
             _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
+
+
+def test_a_server_without_scenes_offers_the_examples(folder):
+    async def load_all(url):
+        async with open_client(url) as client:
+            await client.take_control()
+            for name in client.hello["scenes"]:
+                number = await client.send("show", scene=name)
+                while (answer := await client._answer(number))["type"] != "done":
+                    pass
+                assert answer["scene"]["words"] > 100
+            return client.hello["scenes"]
+
+    with serving(folder, "--depth", "5") as served:
+        names = asyncio.run(asyncio.wait_for(load_all(served["url"]), 300))
+    assert names == ["courtyard", "dog", "house", "planet"]
 
 
 def test_upload_to_a_server(voxrt, folder):

@@ -109,4 +109,12 @@ def test_the_authors_camera(size):
 def test_an_authors_camera_that_cannot_be():
     grid = Grid(7, (0.0, 0.0, 0.0), 1.0)
     with pytest.raises(ViewpointError, match="the scene's camera: "):
-        authored_camera(Viewpoint((1, 9, 1), (1, 1, 1)), grid, (64, 48))
+        authored_camera(Viewpoint((1, 9, 1), (1, 1, 1), up=(0, 2, 0)), grid, (64, 48))
+
+
+@pytest.mark.parametrize(("target", "up"), [((4, 0, 4), (0, 0, -1)), ((4, 18, 4), (0, 0, 1))])
+def test_an_authors_camera_may_look_straight_down_or_up(target, up):
+    """As a map: -z is at the top of what lies below, +z of what hangs above."""
+    camera = authored_camera(Viewpoint((4, 9, 4), target), Grid(3, (0.0, 0.0, 0.0), 1.0), (64, 48))
+    assert camera.look[0] == camera.look[2] == 0
+    assert np.sign(camera.up).tolist() == list(up)

@@ -22,7 +22,7 @@ _ARGUMENTS = (
     "--no-first-run",
     "--no-pings",
     "--proxy-server=direct://",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+    "--host-resolver-rules=MAP voxrt.example 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
 _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
@@ -69,16 +69,75 @@ class Browser:
         actions = [*press, {"type": "pause", "duration": int(seconds * 1000)}, *lift]
         self._call("POST", f"{self._session}/actions", {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
 
-    def drag(self, start: tuple[int, int], end: tuple[int, int]) -> None:
-        actions = [
-            {"type": "pointerMove", "x": start[0], "y": start[1], "duration": 0},
-            {"type": "pointerDown", "button": 0},
-            {"type": "pointerMove", "x": end[0], "y": end[1], "duration": 100},
-            {"type": "pointerUp", "button": 0},
-        ]
-        self._call(
-            "POST", f"{self._session}/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]}
+    def cdp(self, command: str, **parameters: object) -> dict:
+        """Send a command of the Chrome DevTools Protocol."""
+        return self._call("POST", f"{self._session}/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def screen(self, width: int, height: int, *, touch: bool = False, ratio: float = 1) -> None:
+        """Make the page this large, pixels of the page; `touch` makes the screen one for fingers."""
+        self.cdp(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=touch
         )
+        self.cdp("Emulation.setTouchEmulationEnabled", enabled=touch, maxTouchPoints=5 if touch else 1)
+
+    def theme(self, *, dark: bool) -> None:
+        features = [
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+            {"name": "prefers-reduced-motion", "value": "reduce"},  # colours change at once
+        ]
+        self.cdp("Emulation.setEmulatedMedia", features=features)
+
+    def mouse(
+        self, path: list[tuple[float, float]], button: str = "left", *, clicks: int = 1, modifiers: int = 0
+    ) -> None:
+        """Press a button at the first place, move through the others, and let it go at the last.
+
+        Shift is modifier 8.
+        """
+        held = {"left": 1, "right": 2, "middle": 4}[button]
+        (x, y), (end_x, end_y) = path[0], path[-1]
+        common = {"button": button, "modifiers": modifiers}
+        self.cdp("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        for click in range(1, clicks + 1):
+            self.cdp(
+                "Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, buttons=held, clickCount=click, **common
+            )
+            for to_x, to_y in path[1:]:
+                self.cdp("Input.dispatchMouseEvent", type="mouseMoved", x=to_x, y=to_y, buttons=held, **common)
+            self.cdp("Input.dispatchMouseEvent", type="mouseReleased", x=end_x, y=end_y, clickCount=click, **common)
+
+    def wheel(self, x: float, y: float, pixels: float) -> None:
+        self.cdp("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)
+
+    def touch(self, *paths: list[tuple[float, float]]) -> None:
+        """Put down a finger per path, move all of them, and lift them; paths have the same number of places."""
+        for number, places in enumerate(zip(*paths, strict=True)):
+            points = [{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(places)]
+            self.cdp("Input.dispatchTouchEvent", type="touchMove" if number else "touchStart", touchPoints=points)
+        self.cdp("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def drop(self, x: float, y: float, files: list[str]) -> None:
+        """Drag files from the desktop to a place and drop them."""
+        data = {"items": [], "files": files, "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self.cdp("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+
+    def middle(self, selector: str) -> tuple[float, float]:
+        """Where the middle of an element is on the page."""
+        x, y = self.run(
+            "const b = document.querySelector(arguments[0]).getBoundingClientRect();"
+            "return [b.x + b.width / 2, b.y + b.height / 2]",
+            selector,
+        )
+        return x, y
+
+    def key(self, key: str, code: str = "") -> None:
+        """Press a key and let it go."""
+        text = {"text": key} if len(key) == 1 else {"text": "\r"} if key == "Enter" else {}
+        number = {"Tab": 9, "Enter": 13, "Escape": 27, "ArrowRight": 39, "ArrowLeft": 37}.get(key, ord(key[0].upper()))
+        known = {"key": key, "code": code or key, "windowsVirtualKeyCode": number}
+        self.cdp("Input.dispatchKeyEvent", type="keyDown", **known, **text)
+        self.cdp("Input.dispatchKeyEvent", type="keyUp", **known)
 
     def give_files(self, selector: str, paths: list[str]) -> None:
         found = self._call("POST", f"{self._session}/element", {"using": "css selector", "value": selector})

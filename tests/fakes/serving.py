@@ -31,11 +31,16 @@ class Serving:
 
     @property
     def log(self) -> str:
-        return self._errors.read_text()
+        """What it has said on standard error, besides where it serves."""
+        lines = self._errors.read_text().splitlines()
+        return "\n".join(line for line in lines if not re.match(r"serving |  (page|legacy) ", line))
 
     def megabytes(self) -> float:
         status = Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) / 1024
+
+    def open_files(self) -> int:
+        return len(list(Path(f"/proc/{self.process.pid}/fd").iterdir()))
 
     def children(self) -> list[int]:
         """Processes that it or its children started."""

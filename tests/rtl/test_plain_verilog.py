@@ -35,7 +35,7 @@ def bits(name: str, **fields: int) -> int:
     return sum(value << REGISTERS[name][1][field][0] for field, value in fields.items())
 
 
-def scene_commands(words, table, camera, *, shading, light):
+def scene_commands(words, table, camera, *, shading, faces, light):
     """What loads a scene, starts a frame, waits for its end and reads what it cost."""
     width, height = SIZE
     commands = [(WRITE_REGISTER, register("control"), bits("control", hold=1))]
@@ -48,6 +48,8 @@ def scene_commands(words, table, camera, *, shading, light):
         "depth": DEPTH,
         **{f"{name}[{axis}]": triple[axis] for name, triple in triples.items() for axis in range(3)},
         "shading": shading,
+        "lower_faces": bits("lower_faces", **dict(zip("xyz", faces[::2], strict=True))),
+        "upper_faces": bits("upper_faces", **dict(zip("xyz", faces[1::2], strict=True))),
         "control": bits("control", start=1),
     }
     commands += [(WRITE_REGISTER, register(name), value & 0xFFFFFFFF) for name, value in values.items()]
@@ -96,12 +98,13 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
     voxels = random_voxels(rng, DEPTH, 0.2)
     words = np.array(words_of(voxels), np.uint32)
     camera = np.array([[-45, 150, -60], [500, -280, 560], [24, 0, -22], [8, 32, 9]], np.int32)
-    asked, shading, light = {}, 0, (0, 0, 0)
+    faces = (189, 40, 140, 255, 219, 200)
+    asked, shading, light = {"brightness": np.array(faces, np.uint8)}, bits("shading", faces=1), (0, 0, 0)
     if configuration.features:
         mirrors[voxels[voxels > 0][::3]] = 1
         light = (40, 200, -30)
-        asked = {"light": np.array(light, np.int32), "ambient": 40, "bounces": 2, "mirrors": mirrors}
-        shading = bits("shading", light=1, ambient=40, bounces=2)
+        asked |= {"light": np.array(light, np.int32), "ambient": 40, "bounces": 2, "mirrors": mirrors}
+        shading = bits("shading", faces=1, light=1, ambient=40, bounces=2)
     model = _model.Memory(words, DEPTH).render(colours, camera, *SIZE, **asked)
     assert len(np.unique(model.material)) > 3
     table = [
@@ -110,7 +113,7 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
     ]
     transfers, reads = simulate(
         plain(name),
-        scene_commands(words, table, camera, shading=shading, light=light),
+        scene_commands(words, table, camera, shading=shading, faces=faces, light=light),
         tmp_path,
         memory_clocks=2,
     )

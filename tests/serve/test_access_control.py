@@ -38,6 +38,15 @@ def test_origins():
     assert status_of(named, "http://localhost", address=("192.0.2.7", 80)) == 403
 
 
+def test_a_page_asks_why_it_is_refused_by_an_origin_in_the_query():
+    access = AccessControl("sesame")
+    assert status_of(access, target="/v2?token=sesame&origin=http%3A%2F%2F127.0.0.1") is None
+    assert status_of(access, target="/v2?token=sesame&origin=http%3A%2F%2Fevil.example") == 403
+    assert status_of(access, target="/v2?origin=http%3A%2F%2F127.0.0.1") == 401
+    # It allows nothing: the header counts too.
+    assert status_of(access, "http://evil.example", "/v2?token=sesame&origin=http%3A%2F%2F127.0.0.1") == 403
+
+
 def test_tokens():
     access = AccessControl("sesame")
     assert status_of(access) == 401

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from voxrt import octree, view
+from voxrt.octree.camera import FACES, look_at
 from voxrt.view.plotter import check_screen
+from voxrt.view.scene_overlay import preview_of
 from voxrt.voxelize import EMPTY, Material
 
 SIZE = (320, 240)
@@ -152,3 +154,83 @@ def test_a_click_in_the_preview_chooses_the_ray(rom, opened):
     window.plotter.iren._mouse_left_button_click(round(x), round(y))
     assert asked[-1] == (31, 20)
     assert texts(window)["table"] == "pixel (31, 20)"
+
+
+def box_of(text, renderer):
+    """Where a text is: left, right, bottom, top; parts of the subplot."""
+    size = [0.0, 0.0]
+    text.GetSize(renderer, size)
+    width, height = renderer.GetSize()
+    x, y = text.GetPositionCoordinate().GetValue()[:2]
+    style = text.GetTextProperty().GetVerticalJustificationAsString()
+    low = {"Bottom": y, "Centered": y - size[1] / height / 2, "Top": y - size[1] / height}[style]
+    return x, x + size[0] / width, low, low + size[1] / height
+
+
+def places(renderer, points):
+    """Where points of the scene are: parts of the subplot's width and height."""
+    left, bottom, right, top = renderer.viewport
+    window = renderer.GetVTKWindow().GetSize()
+    found = []
+    for point in points:
+        renderer.SetWorldPoint(*point, 1)
+        renderer.WorldToDisplay()
+        x, y, _ = renderer.GetDisplayPoint()
+        found.append(((x / window[0] - left) / (right - left), (y / window[1] - bottom) / (top - bottom)))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("size", [(320, 240), (640, 480), (1024, 400)])
+@pytest.mark.parametrize("by", ["level", "owner"])
+def test_legends_stand_beside_the_scene_and_in_their_pane(rom, opened, size, by):
+    names = (*(f"object {number} with a name that is long" for number in range(40)), "last")
+    owners = octree.Owners(rom.octree, names)
+    cube = np.zeros((16, 16, 16), np.uint8)
+    cube[:, 0, :] = np.arange(256).reshape(16, 16) % 40 + 1
+    many = octree.Owners(octree.from_dense(cube), names)
+    world = octree.Rom("world", octree.from_dense((cube > 0).astype(np.uint8)), rom.materials)
+    for pane in (view.Pane(rom, by=by, owners=owners), view.Pane(world, by=by, owners=many)):
+        window = opened([pane, pane], size)
+        for renderer, grid in zip(window.plotter.renderers, window.grids, strict=True):
+            legend = {name: actor for name, actor in renderer.actors.items() if name.startswith("legend ")}
+            boxes = [box_of(actor, renderer) for name, actor in legend.items() if not name.endswith("squares")]
+            assert boxes
+            low, high = np.min(boxes, axis=0), np.max(boxes, axis=0)
+            assert low[[0, 2]].min() >= 0
+            assert high[[1, 3]].max() <= 1
+            scene = places(renderer, np.asarray(grid.points))
+            assert scene[:, 0].max() < low[0]
+            assert scene.min() > 0
+            assert scene[:, 1].max() < 1 - 20 / size[1]  # below the title
+    told = [actor.GetInput() for name, actor in legend.items() if not name.endswith("squares")]
+    if by == "owner" and size == (320, 240):
+        assert told[-1].startswith("and ")
+
+
+@pytest.mark.parametrize("size", [(320, 240), (640, 480), (1024, 640)])
+def test_the_hit_of_a_ray_is_in_the_table_and_in_the_middle(rom, opened, size):
+    camera = look_at((5.5, 30, 4.5), (5.5, 10, 4.6), up=(0, 0, -1), size=(40, 30))
+    window = opened([view.Pane(rom)], size, preview=preview_of(rom, camera, (40, 30), (20, 15)))
+    table = texts(window)["table"].splitlines()
+    assert table[0].startswith("pixel 20,15")
+    assert table[1].startswith("hits voxel 5, 10, 4, its y")
+    assert "0xFFFFFF02" in table[-1]
+    below, pane = (
+        next(renderer for renderer in window.plotter.renderers if name in renderer.actors) for name in ("table", "ray")
+    )
+    lowest = box_of(below.actors["table"], below)
+    assert min(lowest) >= 0
+    assert max(lowest) <= 1
+    legend = [actor for name, actor in below.actors.items() if name.startswith("ray legend ") and "squares" not in name]
+    assert legend[0].GetInput().startswith("words that are pointers")
+    assert max(box_of(actor, below)[3] for actor in legend) < lowest[2]
+    ray = preview_of(rom, camera, (40, 30), (20, 15)).follow((20, 15))
+    middle = ray.corners[-1] + (1 << ray.levels[-1]) / 2
+    assert places(pane, [middle])[0] == pytest.approx((0.5, 0.5), abs=0.01)
+
+
+def test_faces_have_the_brightness_of_pictures(rom):
+    pixels = view.picture([view.Pane(rom)], SIZE).reshape(-1, 3)
+    found = {tuple(pixel) for pixel in pixels.tolist()}
+    for brightness in (FACES[3], FACES[1], FACES[5]):  # those that the eye sees: top, right, front
+        assert tuple(round(channel * brightness / 255) for channel in (220, 40, 40)) in found

@@ -173,3 +173,34 @@ def test_ctrl_c_ends_a_long_run():
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         voxelize(one_object(mesh), grid)
+
+
+def tube(openings):
+    """Give a box of 18 x 27 x 18 voxels with a window in each of four sides: together this share of its area."""
+    side = (openings * 8 / 4) ** 0.5  # of a square window, where the box is 1 x 1.5 x 1
+    columns, rows = [0, 0.5 - side / 2, 0.5 + side / 2, 1], [0, 0.75 - side / 2, 0.75 + side / 2, 1.5]
+    cells = [(x, y) for x in range(3) for y in range(3)]
+    ring = ((0, 0), (1, 0), (1, 1), (0, 1))
+    wall = [[(columns[x + i], rows[y + k], 1) for i, k in ring] for x, y in cells if (x, y) != (1, 1)]
+    floor = [[(columns[x + i], 0, columns[z + k]) for i, k in ring] for x, z in cells]
+    roof = [[(x, 1.5, z) for x, _, z in reversed(quad)] for quad in floor]
+    quads = [*floor, *roof, *wall]
+    for _ in range(3):
+        wall = [[(z, y, 1 - x) for x, y, z in quad] for quad in wall]
+        quads += wall
+    corners = 2 + 18 * np.array(quads, float).reshape(-1, 3)
+    triangles = [(4 * n + a, 4 * n + b, 4 * n + c) for n in range(len(quads)) for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    return Mesh(corners, np.array(triangles, np.int32), np.ones(len(triangles), np.uint8))
+
+
+@pytest.mark.parametrize(
+    ("openings", "sheet", "noted"), [(0.005, False, False), (0.03, False, True), (0.08, True, True)]
+)
+def test_auto_keeps_a_sheet_whose_openings_are_large_together(openings, sheet, noted):
+    scene = one_object(tube(openings))
+    surface, solid, auto = (voxelize(scene, GRID, fill=fill) for fill in ("surface", "solid", "auto"))
+    voxels = [result.objects[0].voxels for result in (surface, solid, auto)]
+    assert voxels[0] < voxels[1]
+    assert voxels[2] == voxels[0 if sheet else 1]
+    assert [warning.kind for warning in solid.warnings] == ["mostly-filled"] * noted
+    assert [warning.kind for warning in auto.warnings] == (["open-surface"] if sheet else ["mostly-filled"] * noted)

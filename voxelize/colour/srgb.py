@@ -41,6 +41,26 @@ def linear_from_srgb(srgb: ArrayLike) -> NDArray[np.float64]:
     return LINEAR_OF_SRGB8[np.asarray(srgb, np.uint8)]
 
 
+def linear_from_hex(name: str, value: str) -> tuple[float, float, float]:
+    """Decode a colour like ``#9db4d0`` to linear light; `name` is the argument's, for errors.
+
+    Raises
+    ------
+    ValueError
+        It is no such colour.
+
+    Examples
+    --------
+    >>> linear_from_hex("sky", "#ff0000")
+    (1.0, 0.0, 0.0)
+    """
+    digits = value[1:]
+    if not (len(value) == 7 and value[0] == "#" and all(one in "0123456789abcdefABCDEF" for one in digits)):
+        raise ValueError(f"{name} must be a colour like '#9db4d0', not {value!r}")
+    red, green, blue = linear_from_srgb(np.frombuffer(bytes.fromhex(digits), np.uint8)).tolist()
+    return red, green, blue
+
+
 def _decode(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(encoded <= 0.04045, encoded / 12.92, np.power((encoded + 0.055) / 1.055, 2.4))
 

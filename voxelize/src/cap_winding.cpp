@@ -58,10 +58,19 @@ private:
     int wraps_ = 0;
 };
 
-/// On which side of a cap's plane q lies: the sign of the solid angle. Exact. On the plane q counts as just below it,
-/// or left of it where it is upright, as in the crossings of columns.
+/// On which side of a cap's plane q lies: the sign of the solid angle. Exact for coordinates in voxels. On the plane q
+/// counts as just below it, or left of it where it is upright, as in the crossings of columns.
+///
+/// Caps in the frame of a shared mesh may have coordinates of any size: they are scaled so that the products of three
+/// fit 128 bits.
 int side(const CapWinding::Cap& cap, const Point& q) {
-    auto whole = [](double v) { return int128(std::llround(v * (2 * kUnit))); };
+    double largest = 0;
+    for (const Point& corner : cap)
+        largest = std::max({largest, std::abs(corner.x - q.x), std::abs(corner.y - q.y), std::abs(corner.z - q.z)});
+    if (!(std::isfinite(largest) && std::isfinite(q.x + q.y + q.z)))
+        return 0;
+    const double scale = std::min(2.0 * kUnit, 0x1p40 / std::max(largest, 0x1p-100));
+    auto whole = [scale](double v) { return int128(std::llround(v * scale)); };
     int128 v[3][3];
     for (int i = 0; i < 3; ++i) {
         v[i][0] = whole(cap[i].x - q.x);

@@ -13,9 +13,11 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kLargeOpening = 0.15;   // of a component's area: a larger loop opens it
-constexpr double kClosedTogether = 0.87; // open components close one another where so many directions do not lead out
-constexpr double kEnclosure = 0.75;      // they enclose space where so many do not; a plain sheet encloses none
+constexpr double kLargeOpening = 0.15;     // of a component's area: a larger loop opens it
+constexpr double kClosedTogether = 0.87;   // open components close one another where so many directions do not lead out
+constexpr double kOpeningsTogether = 0.05; // Fill::automatic: of a component's area, all its loops
+constexpr double kTightTogether = 0.97;    // Fill::automatic: in place of kClosedTogether
+constexpr double kEnclosure = 0.75;        // they enclose space where so many do not; a plain sheet encloses none
 
 constexpr double kLeastOpening = 1e-300; // of a component that does not close
 
@@ -84,10 +86,10 @@ std::vector<BoundaryEdge> boundary_of(const MeshView& mesh, const std::vector<ui
 /// A mesh with its boundary loops, by connected component.
 class Components {
 public:
-    Components(const MeshView& mesh, const std::vector<Point>& points)
-        : mesh_(mesh), points_(points), welded_(weld(points)), sets_(points.size()),
-          loops_(cut_into_loops(boundary_of(mesh, welded_), points.size())), area_(points.size(), 0),
-          opening_(points.size(), 0) {
+    Components(const MeshView& mesh, const std::vector<Point>& points, Fill fill)
+        : automatic_(fill == Fill::automatic), mesh_(mesh), points_(points), welded_(weld(points)),
+          sets_(points.size()), loops_(cut_into_loops(boundary_of(mesh, welded_), points.size())),
+          area_(points.size(), 0), opening_(points.size(), 0), openings_(points.size(), 0) {
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
             const auto [a, b, c] = corners(t);
             count_work(5);
@@ -104,8 +106,10 @@ public:
                 const Point n = area(points[loop[0]], points[loop[i - 1]], points[loop[i]]);
                 sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
             }
+            const double size = 2 * inconsistent > loop.size() ? 0 : length(sum);
             double& opening = opening_[sets_.find(loop[0])];
-            opening = std::max({opening, 2 * inconsistent > loop.size() ? 0 : length(sum), kLeastOpening});
+            opening = std::max({opening, size, kLeastOpening});
+            openings_[sets_.find(loop[0])] += size;
         }
     }
 
@@ -115,10 +119,17 @@ public:
     }
     const std::vector<BoundaryLoop>& loops() const { return loops_; }
 
-    /// Whether the component of a vertex has a large opening.
+    /// All loops of the component of a vertex, closed, by its area.
+    double openings(uint32_t vertex) {
+        const uint32_t component = sets_.find(vertex);
+        return openings_[component] / std::max(area_[component], 1e-300);
+    }
+
+    /// Whether the component of a vertex has a large opening, or openings that are large together.
     bool is_open(uint32_t vertex) {
         const uint32_t component = sets_.find(vertex);
-        return opening_[component] > kLargeOpening * area_[component];
+        return opening_[component] > kLargeOpening * area_[component] ||
+               (automatic_ && openings_[component] > kOpeningsTogether * area_[component]);
     }
 
     /// How well all components that do not close enclose together, in the box of those with large openings.
@@ -148,25 +159,27 @@ public:
     }
 
 private:
+    bool automatic_;
     const MeshView& mesh_;
     const std::vector<Point>& points_;
     std::vector<uint32_t> welded_;
     DisjointSets sets_;
     std::vector<BoundaryLoop> loops_;
-    std::vector<double> area_, opening_; // by component: area of the surface, of its largest loop closed
+    // By component: area of the surface, of its largest loop closed, of all its loops closed.
+    std::vector<double> area_, opening_, openings_;
 };
 
 } // namespace
 
-HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points) {
-    Components components(mesh, points);
+HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, Fill fill) {
+    Components components(mesh, points, fill);
     HoleCaps found;
     bool any_open = false;
     for (const auto& loop : components.loops())
         any_open = any_open || components.is_open(loop.vertices[0]);
     if (any_open) {
         const EnclosureProbe::Enclosure enclosure = components.measure_enclosure();
-        if (enclosure.mean < kClosedTogether) {
+        if (enclosure.mean < (fill == Fill::automatic ? kTightTogether : kClosedTogether)) {
             found.has_open_enclosure = enclosure.highest > kEnclosure;
             found.shell_only.resize(mesh.triangle_count());
             for (size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -174,8 +187,11 @@ HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points) 
         }
     }
     for (const auto& loop : components.loops())
-        if (found.shell_only.empty() || !components.is_open(loop.vertices[0]))
+        if (found.shell_only.empty() || !components.is_open(loop.vertices[0])) {
             close_loop(loop.vertices, found.triangles);
+            if (!components.is_open(loop.vertices[0])) // else it is closed by others
+                found.opening = std::max(found.opening, components.openings(loop.vertices[0]));
+        }
     return found;
 }
 

@@ -6,9 +6,14 @@
 // an edge at which triangles are wound against one another opens nothing). Open components may close one another, as a
 // box and its lid or the panels around a room do. Then hardly any direction leads out of what they enclose; their
 // generalized winding number is the share of those that do not.
+//
+// Clothes are such that no opening is large, and yet nobody means them to be filled. With Fill::automatic a component
+// is open too where all its loops together, closed, exceed a smaller share of its area, and what open components
+// enclose together must be tighter. A scan with holes stays below that share.
 #pragma once
 
 #include "cap_winding.h"
+#include "fill.h"
 #include "parts.h"
 
 #include <memory>
@@ -19,11 +24,12 @@ namespace voxrt::voxelize {
 struct HoleCaps {
     std::vector<std::array<uint32_t, 3>> triangles; // vertices of the mesh
     std::vector<uint8_t> shell_only; // by triangle of the mesh: 1 in an open component; empty where none is
+    double opening = 0; // the largest share of its area that the loops of a filled component, closed, have together
     bool has_open_enclosure = false; // an open component encloses space, as a room without a front does
 };
 
 /// `points`: a position per vertex; vertices at one position count as one. Cost: sorting the edges.
-HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points);
+HoleCaps find_hole_caps(const MeshView& mesh, const std::vector<Point>& points, Fill fill);
 
 /// A mesh part and its caps in grid space.
 struct CappedSurface {

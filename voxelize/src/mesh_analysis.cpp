@@ -41,11 +41,11 @@ double determinant(const double* f) {
            f[2] * (f[4] * f[9] - f[5] * f[8]);
 }
 
-std::shared_ptr<const HoleCaps> caps_of(const MeshView& mesh, const std::vector<Vertex>& vertices) {
+std::shared_ptr<const HoleCaps> caps_of(const MeshView& mesh, const std::vector<Vertex>& vertices, Fill fill) {
     std::vector<Point> points(vertices.size());
     for (size_t v = 0; v < points.size(); ++v)
         points[v] = in_voxels(vertices[v]);
-    return std::make_shared<const HoleCaps>(find_hole_caps(mesh, points));
+    return std::make_shared<const HoleCaps>(find_hole_caps(mesh, points, fill));
 }
 
 } // namespace
@@ -65,7 +65,7 @@ TriangleSums sum_triangles(const MeshView& mesh, const std::vector<Vertex>& vert
     return sums;
 }
 
-SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, bool fill) {
+SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, Fill fill) {
     SharedMesh shared;
     std::vector<Point> points(mesh.vertex_count());
     std::vector<uint64_t> keys(points.size());
@@ -91,9 +91,9 @@ SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, bool fill) {
         }
     }
     shared.closed = boundary == 0;
-    if (fill && !shared.closed)
-        shared.hole_caps = std::make_shared<const HoleCaps>(find_hole_caps(mesh, points));
-    if (shared.closed || fill)
+    if (fills(fill) && !shared.closed)
+        shared.hole_caps = std::make_shared<const HoleCaps>(find_hole_caps(mesh, points, fill));
+    if (shared.closed || fills(fill))
         shared.flipped =
             find_flipped_components(mesh, in_lattice(points, shared.low, shared.high), shared.hole_caps.get());
     return shared;
@@ -108,19 +108,19 @@ TriangleSums instance_sums(const SharedMesh& shared, const PartView& part) {
 }
 
 void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSums& sums, const SharedMesh* shared,
-                  bool fill) {
+                  Fill fill) {
     analysis.closed = sums.boundary == 0;
     analysis.inverted = analysis.closed && sums.volume6 < 0;
     for (int i = 0; i < 3; ++i) {
         analysis.box.low[i] = voxel_floor(sums.bounds.min[i]);
         analysis.box.high[i] = voxel_below(sums.bounds.max[i]);
     }
-    if (!analysis.closed && !fill)
+    if (!analysis.closed && !fills(fill))
         return;
     if (!analysis.closed) {
         analysis.hole_caps = shared != nullptr ? shared->hole_caps : nullptr;
         if (!analysis.hole_caps)
-            analysis.hole_caps = caps_of(*part.mesh, analysis.vertices);
+            analysis.hole_caps = caps_of(*part.mesh, analysis.vertices, fill);
     }
     analysis.flipped = shared != nullptr
                            ? shared->flipped

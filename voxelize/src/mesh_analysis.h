@@ -6,6 +6,7 @@
 #pragma once
 
 #include "capped_surface.h"
+#include "fill.h"
 #include "flipped_components.h"
 #include "tiling.h"
 
@@ -57,7 +58,7 @@ struct SharedMesh {
 
 /// Analyses a mesh with triangles. `fill`: find what an open mesh needs to be filled. Throws OutOfRange with `object`
 /// where a position is not a number.
-SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, bool fill);
+SharedMesh analyze_shared(const MeshView& mesh, uint32_t object, Fill fill);
 
 /// The sums of an instance, from its mesh's; the bounds are never too small.
 TriangleSums instance_sums(const SharedMesh& shared, const PartView& part);
@@ -65,6 +66,6 @@ TriangleSums instance_sums(const SharedMesh& shared, const PartView& part);
 /// Completes the analysis of a part whose sums are known: all but `vertices` and `capped`. `shared` is null where the
 /// part is the only one of its mesh; `analysis.vertices` must then be there.
 void analyze_part(MeshAnalysis& analysis, const PartView& part, const TriangleSums& sums, const SharedMesh* shared,
-                  bool fill);
+                  Fill fill);
 
 } // namespace voxrt::voxelize

@@ -5,6 +5,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -86,9 +87,14 @@ template <typename T, size_t N> nb::object take(SparseVoxels::Array<std::array<T
 
 NamedTuple voxelized;
 
+Fill fill_of(const std::string& name) {
+    require(name == "surface" || name == "solid" || name == "auto", "fill must be surface, solid or auto");
+    return name == "surface" ? Fill::surface : name == "solid" ? Fill::solid : Fill::automatic;
+}
+
 nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
                           InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
-                          InputOf<int32_t> objects_of, int objects, bool fill, int threads) {
+                          InputOf<int32_t> objects_of, int objects, const std::string& fill, int threads) {
     require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
     require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024");
     require(objects >= 0, "objects must not be negative");
@@ -125,7 +131,7 @@ nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Inpu
     SparseVoxels out;
     {
         const LongCall call;
-        out = voxelize(depth, parts, size_t(objects), fill, threads);
+        out = voxelize(depth, parts, size_t(objects), fill_of(fill), threads);
     }
     nb::dict seconds;
     const StageSeconds& took = out.seconds;
@@ -136,7 +142,8 @@ nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Inpu
         seconds[stage] = value;
     return voxelized(take(out.brick_codes), take(out.brick_masks), take(out.brick_materials), take(out.brick_rows),
                      take(out.cells), take(out.octant_codes), take(out.octant_levels), take(out.octant_materials),
-                     take(out.object_voxels), take(out.object_modes), take(out.object_flipped), seconds);
+                     take(out.object_voxels), take(out.object_modes), take(out.object_flipped),
+                     take(out.object_mostly_filled), seconds);
 }
 
 nb::object hull_of(InputOf<double> positions, InputOf<double> frame) {
@@ -181,7 +188,7 @@ materials
 objects_of
     Shape (P,): ascending, below `objects`.
 fill
-    Whether parts claim what they enclose, not their shells alone.
+    "surface", "solid" or "auto": src/fill.h.
 threads
     0 takes as many as the machine has. The result does not depend on it.
 
@@ -189,8 +196,8 @@ Returns
 -------
 Voxelized
     The arrays of :class:`voxrt.voxelize.Voxels` under their names; by object: the voxels that belong to it (int64),
-    its mode (uint8, an index of OBJECT_MODES) and how many of its components were flipped (int64); the wall seconds
-    per stage.
+    its mode (uint8, an index of OBJECT_MODES), how many of its components were flipped (int64) and whether those of
+    its parts that have holes have more inside than shell (uint8); the wall seconds per stage.
 
 Raises
 ------
@@ -228,11 +235,11 @@ NB_MODULE(_native, m) {
     NamedTuple(m, "MeshArrays",
                {"positions", "triangles", "materials", "raster_sizes", "raster_coordinates", "raster_materials"},
                "A mesh as voxelize() takes it.");
-    voxelized =
-        NamedTuple(m, "Voxelized",
-                   {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
-                    "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_flipped", "seconds"},
-                   "What voxelize() returns.");
+    voxelized = NamedTuple(m, "Voxelized",
+                           {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
+                            "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_flipped",
+                            "object_mostly_filled", "seconds"},
+                           "What voxelize() returns.");
     nb::register_exception_translator(
         [](const std::exception_ptr& failure, void*) {
             try {

@@ -1,6 +1,8 @@
 // How the inside of an object was told from its outside.
 #pragma once
 
+#include "fill.h"
+
 #include <array>
 #include <cstdint>
 
@@ -26,8 +28,8 @@ struct ObjectFindings {
 };
 
 /// Decides the mode of an object. `fill`: its inside was asked for.
-constexpr ObjectMode object_mode(bool fill, const ObjectFindings& found) {
-    if (!fill)
+constexpr ObjectMode object_mode(Fill fill, const ObjectFindings& found) {
+    if (!fills(fill))
         return ObjectMode::surface;
     if (found.has_open_enclosure)
         return ObjectMode::open;

@@ -13,11 +13,14 @@
 #include "tile_voxels.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace voxrt::voxelize {
 
 struct Claim {
     int64_t voxels = 0; // that no earlier object had
+    int64_t shell = 0;  // voxels of the shell, and
+    int64_t inside = 0; // of what it encloses, whoever has them
     bool simple = true; // all winding numbers were 0 and 1, or 0 and -1
 };
 
@@ -126,6 +129,7 @@ private:
     }
 
     void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {
+        result.inside += int64_t{to - from} * kBrickSide * std::popcount(inside);
         if (inside == ~uint64_t{0}) {
             result.voxels += tile.claim_full(column, from, to, interior);
         } else if (inside != 0) {
@@ -209,6 +213,8 @@ private:
         for (int z = 0; z < kBrickSide; ++z) {
             hidden[z] = within[z] & ~surface[z];
             mask[z] = shell[z] | hidden[z];
+            result.shell += std::popcount(shell[z]);
+            result.inside += std::popcount(hidden[z]);
         }
         if (is_empty(mask))
             return;

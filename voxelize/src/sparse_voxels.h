@@ -52,9 +52,10 @@ struct SparseVoxels {
     Array<std::uint64_t> octant_codes;
     Array<std::uint8_t> octant_levels;
     Array<std::uint8_t> octant_materials;
-    Array<std::int64_t> object_voxels;  // by object: voxels that belong to it
-    Array<std::uint8_t> object_modes;   // by object: ObjectMode
-    Array<std::int64_t> object_flipped; // by object: connected components that were flipped
+    Array<std::int64_t> object_voxels;        // by object: voxels that belong to it
+    Array<std::uint8_t> object_modes;         // by object: ObjectMode
+    Array<std::int64_t> object_flipped;       // by object: connected components that were flipped
+    Array<std::uint8_t> object_mostly_filled; // by object: its open parts have more inside than shell
     StageSeconds seconds;
 
     /// Borrows the voxels: valid as long as this is.

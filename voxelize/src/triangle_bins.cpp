@@ -38,7 +38,7 @@ Bounds solid_bounds(const PartView& part) {
 /// Analyses parts and lists their triangles by tile, unsorted.
 class PartBinning {
 public:
-    PartBinning(const Tiling& tiling, bool fill) : tiling_(tiling), fill_(fill) {}
+    PartBinning(const Tiling& tiling, Fill fill) : tiling_(tiling), fill_(fill) {}
 
     /// One mesh part. `run(count, job)` calls job(index) for each index; `emit()` makes the next list of entries, in
     /// authored order.
@@ -123,13 +123,13 @@ private:
     }
 
     const Tiling& tiling_;
-    bool fill_;
+    Fill fill_;
 };
 
 using SharedMeshes = std::unordered_map<const MeshView*, SharedMesh>;
 
 /// The meshes of several parts.
-SharedMeshes analyze_instanced(const std::vector<PartView>& parts, bool fill, const Workers& workers) {
+SharedMeshes analyze_instanced(const std::vector<PartView>& parts, Fill fill, const Workers& workers) {
     std::unordered_map<const MeshView*, std::pair<size_t, uint32_t>> uses; // how many, and the first object
     SharedMeshes shared;
     for (const PartView& part : parts)
@@ -172,7 +172,7 @@ void sort_by_tile(TriangleBins& bins, std::vector<std::vector<TileEntry>>& lists
 
 } // namespace
 
-TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, bool fill, const Workers& workers) {
+TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, Fill fill, const Workers& workers) {
     const Tiling tiling(side);
     const PartBinning binning(tiling, fill);
     TriangleBins bins;

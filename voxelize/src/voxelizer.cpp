@@ -12,23 +12,29 @@
 namespace voxrt::voxelize {
 namespace {
 
+/// Parts whose openings exceed this share of their area are noted where they are mostly filled. Those of a scan with
+/// pinholes do not.
+constexpr double kNotedOpening = 0.01;
+
 /// What a thread keeps from tile to tile.
 struct Scratch {
     explicit Scratch(int side, size_t objects, size_t parts)
-        : surface(side), tile(side), object_voxels(objects, 0), overlaps_itself(parts, 0) {}
+        : surface(side), tile(side), object_voxels(objects, 0), shell_of_open(objects, 0), inside_of_open(objects, 0),
+          overlaps_itself(parts, 0) {}
     TileSurface surface;
     TileVoxels tile;
     SolidFill fill;
     TileSorter sorter;
     std::vector<Vertex> vertices;
     std::vector<int64_t> object_voxels;
-    std::vector<uint8_t> overlaps_itself; // by part: ObjectFindings
+    std::vector<int64_t> shell_of_open, inside_of_open; // by object: of parts with openings worth a note
+    std::vector<uint8_t> overlaps_itself;               // by part: ObjectFindings
     StageSeconds seconds;
 };
 
 class TileWorker {
 public:
-    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, bool fill)
+    TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill)
         : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
 
     void work(uint32_t index, Scratch& s, TileResult& out) const {
@@ -65,12 +71,12 @@ private:
         if (part.kind == PartKind::box)
             claimed =
                 claim_convex(s.tile, window, AxisBox{{whole(0), whole(1), whole(2)}, {whole(3), whole(4), whole(5)}},
-                             fill_, part.material);
+                             fills(fill_), part.material);
         else if (part.kind == PartKind::ball)
-            claimed =
-                claim_convex(s.tile, window, Ball{{whole(0), whole(1), whole(2)}, whole(3)}, fill_, part.material);
+            claimed = claim_convex(s.tile, window, Ball{{whole(0), whole(1), whole(2)}, whole(3)}, fills(fill_),
+                                   part.material);
         else
-            claimed = claim_convex(s.tile, window, Ellipsoid(f), fill_, part.material);
+            claimed = claim_convex(s.tile, window, Ellipsoid(f), fills(fill_), part.material);
         s.object_voxels[part.object] += claimed;
     }
 
@@ -92,7 +98,7 @@ private:
             own.emplace(analysis.hole_caps, [vertices](uint32_t v) { return (*vertices)[v]; });
         const CappedSurface* capped = own ? &*own : analysis.capped.get();
         s.seconds.holes += lap();
-        if (fill_)
+        if (fills(fill_))
             cover<true>(part, analysis, capped, *vertices, triangles, window, s.surface);
         else
             cover<false>(part, analysis, capped, *vertices, triangles, window, s.surface);
@@ -101,12 +107,16 @@ private:
         if (s.surface.empty() && !has_holes)
             return;
         const uint8_t interior = part.material != 0 ? part.material : part.mesh->materials[0];
-        const Claim claim = !fill_      ? s.fill.claim_shell(s.tile, s.surface)
-                            : has_holes ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
-                                                                    analysis.box, window)
-                                        : s.fill.claim_solid(s.tile, s.surface, interior);
+        const Claim claim = !fills(fill_) ? s.fill.claim_shell(s.tile, s.surface)
+                            : has_holes   ? s.fill.claim_capped_solid(s.tile, s.surface, interior, capped->cap_winding,
+                                                                      analysis.box, window)
+                                          : s.fill.claim_solid(s.tile, s.surface, interior);
         s.object_voxels[part.object] += claim.voxels;
         s.overlaps_itself[index] |= !claim.simple;
+        if (has_holes && capped->hole_caps->opening > kNotedOpening) {
+            s.shell_of_open[part.object] += claim.shell;
+            s.inside_of_open[part.object] += claim.inside;
+        }
         (has_holes ? s.seconds.holes : s.seconds.fill) += lap();
     }
 
@@ -177,7 +187,7 @@ private:
     const std::vector<PartView>& parts_;
     const TriangleBins& bins_;
     int side_;
-    bool fill_;
+    Fill fill_;
 };
 
 /// Eight equal octants in a row that share a parent become the parent.
@@ -258,19 +268,24 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& wo
 }
 
 /// Sets the voxels, modes and flipped components of all objects.
-void report_objects(const std::vector<PartView>& parts, size_t objects, bool fill, const TriangleBins& bins,
+void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fill, const TriangleBins& bins,
                     const std::vector<std::unique_ptr<Scratch>>& scratch, SparseVoxels& out) {
     out.object_voxels.allocate(objects);
     out.object_modes.allocate(objects);
     out.object_flipped.allocate(objects);
+    out.object_mostly_filled.allocate(objects);
     std::fill_n(out.object_voxels.data.get(), objects, 0);
     std::fill_n(out.object_flipped.data.get(), objects, 0);
     std::vector<ObjectFindings> found(objects);
+    std::vector<int64_t> shell(objects, 0), inside(objects, 0);
     for (const auto& s : scratch) {
         if (!s)
             continue;
-        for (size_t i = 0; i < objects; ++i)
+        for (size_t i = 0; i < objects; ++i) {
             out.object_voxels.data[i] += s->object_voxels[i];
+            shell[i] += s->shell_of_open[i];
+            inside[i] += s->inside_of_open[i];
+        }
         for (size_t p = 0; p < parts.size(); ++p)
             found[parts[p].object].overlaps_itself |= s->overlaps_itself[p] != 0;
     }
@@ -284,13 +299,15 @@ void report_objects(const std::vector<PartView>& parts, size_t objects, bool fil
             out.object_flipped.data[parts[p].object] += mesh.flipped->count;
         }
     }
-    for (size_t i = 0; i < objects; ++i)
+    for (size_t i = 0; i < objects; ++i) {
         out.object_modes.data[i] = uint8_t(object_mode(fill, found[i]));
+        out.object_mostly_filled.data[i] = inside[i] > shell[i];
+    }
 }
 
 } // namespace
 
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, int threads) {
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
     const int side = 1 << depth;
     const Workers workers(threads);
     Stopwatch lap;

@@ -7,7 +7,7 @@
 //
 //     const MeshView mesh{positions, triangles, materials};            // spans, borrowed
 //     const double frame[12] = {s, 0, 0, x, 0, s, 0, y, 0, 0, s, z};   // mesh to grid space, in 1/4096 voxel
-//     const SparseVoxels voxels = voxelize(8, {{PartKind::mesh, &mesh, frame, 0, 0}}, 1, true, 0);
+//     const SparseVoxels voxels = voxelize(8, {{PartKind::mesh, &mesh, frame, 0, 0}}, 1, Fill::solid, 0);
 //     const std::vector<octree::Word> words = octree::build(voxels.view(), 0);
 //
 // The grid is cut into tiles of 64 x 64 columns over its whole height. A column's voxels depend on that column's
@@ -27,6 +27,7 @@
 // A part that touches few tiles is not binned by triangle: its tiles take it whole and snap its vertices themselves.
 #pragma once
 
+#include "fill.h"
 #include "interrupt.h"
 #include "object_mode.h"
 #include "parts.h"
@@ -38,10 +39,10 @@ namespace voxrt::voxelize {
 
 /// Voxelizes `parts`, ascending by object, on a grid of 2^depth voxels per side.
 ///
-/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: claim what parts enclose, not their shells
-/// alone. `threads`: 0 takes as many as the machine has; the result does not depend on it. The arguments are not
-/// checked. Throws OutOfRange (parts.h), std::length_error where the tiles would list 2^32 triangles or more, and what
-/// the caller's interrupt check throws (interrupt.h).
-SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, bool fill, int threads);
+/// `depth` is 1 … 16, `objects` is above the object of every part. `fill`: fill.h. `threads`: 0 takes as many as the
+/// machine has; the result does not depend on it. The arguments are not checked. Throws OutOfRange (parts.h),
+/// std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt check throws
+/// (interrupt.h).
+SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads);
 
 } // namespace voxrt::voxelize

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from math import inf, isfinite
 from pathlib import Path
+from string import hexdigits
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from cyclopts import Parameter
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from cyclopts import Token
 
 SIZE_LIMIT = 1 << 14
+BRIGHTEST = 16  # of a sky
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 _TIMES = "xX\N{MULTIPLICATION SIGN}"
@@ -106,6 +108,39 @@ def shades(kind: type, tokens: Sequence[Token]) -> int:
     if not 1 <= number <= 254:
         raise ValueError(f"{number} is not 1 to 254")
     return number
+
+
+def samples(kind: type, tokens: Sequence[Token]) -> int:
+    """Read a number of rays."""
+    number = whole(kind, tokens)
+    if not 1 <= number <= 4096:
+        raise ValueError(f"{number} is not 1 to 4096")
+    return number
+
+
+def direction(_type: object, tokens: Sequence[Token]) -> tuple[float, float, float]:
+    """Read a direction, ``1,3,2``."""
+    try:
+        x, y, z = (float(part) for part in _three(tokens[0].value))
+    except ValueError as error:
+        raise ValueError(f"{tokens[0].value!r} is not three numbers such as 1,3,2") from error
+    if not (isfinite(x) and isfinite(y) and isfinite(z)):
+        raise ValueError(f"{tokens[0].value} is not three finite numbers")
+    return x, y, z
+
+
+def sky_light(_type: object, tokens: Sequence[Token]) -> float | str:
+    """Read the light of a sky: a strength, ``0.4``, or a colour, ``#9db4d0``."""
+    text = tokens[0].value
+    if len(text) == 7 and text[0] == "#" and all(one in hexdigits for one in text[1:]):
+        return text
+    try:
+        strength = float(text)
+    except ValueError:
+        strength = -1.0
+    if not 0 <= strength <= BRIGHTEST:
+        raise ValueError(f"{text!r} is no strength of 0 to {BRIGHTEST} and no colour such as #9db4d0")
+    return strength
 
 
 def words(kind: type, tokens: Sequence[Token]) -> int:
@@ -268,6 +303,10 @@ def _sixteenths(text: str) -> int:
 
 
 Pixels = Annotated[tuple[int, int], Parameter(converter=pixels, n_tokens=1, metavar="WxH", show_default=False)]
+Direction = Annotated[
+    tuple[float, float, float],
+    Parameter(converter=direction, n_tokens=1, metavar="X,Y,Z", allow_leading_hyphen=True),
+]
 Pixel = Annotated[tuple[int, int], Parameter(converter=pixel, n_tokens=1, metavar="X,Y", show_default=False)]
 Backdrop = Annotated[
     tuple[int, int, int] | Literal["transparent"] | None,

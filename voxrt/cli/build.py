@@ -11,6 +11,7 @@ import voxrt
 from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 from voxrt.cli.arguments import (
     Backdrop,
+    Direction,
     Pixels,
     Reporting,
     UsageError,
@@ -21,8 +22,10 @@ from voxrt.cli.arguments import (
     metres,
     metres_per_unit,
     png,
+    samples,
     seconds,
     shades,
+    sky_light,
     words,
 )
 from voxrt.cli.arguments import background as read_colour
@@ -30,6 +33,8 @@ from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
 from voxrt.cli.results import build_report, print_json
+
+_NAMED = 32  # so many materials still read as a list
 
 _ASSET = (
     "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml)."
@@ -76,6 +81,10 @@ def build(
     allow_empty: Annotated[bool, _option("allow_empty", show_default=False)] = BuildOptions.allow_empty,
     allow_outside: Annotated[bool, _option("allow_outside", show_default=False)] = BuildOptions.allow_outside,
     colours: Annotated[int, _option("colours", converter=shades, metavar="K")] = BuildOptions.colours,
+    bake: Annotated[bool, _option("bake", show_default=False)] = BuildOptions.bake,
+    sun: Annotated[Direction, _option("sun")] = BuildOptions.sun,
+    sky: Annotated[float | str, _option("sky", converter=sky_light, metavar="STRENGTH|COLOUR")] = BuildOptions.sky,
+    bake_samples: Annotated[int, _option("bake_samples", converter=samples, metavar="N")] = BuildOptions.bake_samples,
     budget: Annotated[int | None, _option("budget", converter=words, metavar="WORDS")] = None,
     board: Annotated[
         str | None,
@@ -102,6 +111,8 @@ def build(
     """Build the octree memory of an asset: NAME.mem, its manifest NAME.json and a preview picture."""
     if depth is not None and voxel_size is not None:
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
+    if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
+        raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     _check_company(assets, output, preview)
@@ -122,6 +133,10 @@ def build(
         allow_empty=allow_empty,
         allow_outside=allow_outside,
         colours=colours,
+        bake=bake,
+        sun=sun,
+        sky=sky,
+        bake_samples=bake_samples,
         budget=board or budget,
         dialect=dialect,
         preview=png(Path(preview)) if preview else preview is not None,
@@ -187,13 +202,14 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
     rom, total = result.rom, sum(result.seconds.values())
     size, shown = len(rom.octree.words), rom.materials[1:]
     voxel = f", {rom.grid.voxel_size:.4g} m each" if rom.grid else ""
-    names = ", ".join(material.name for material in shown)
+    names = ", ".join(material.name for material in shown) if len(shown) <= _NAMED else "voxrt info lists them"
     stages = ", ".join(f"{stage} {took:.2f}" for stage, took in result.seconds.items() if took >= 0.005)
     return [
         ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
         *([("interior", _interior(result.interior, rom))] if result.interior else []),
+        *([("baked", _baked(result.bake))] if result.bake else []),
         *([("budget", _budget(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
@@ -205,6 +221,13 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
 def _interior(interior: voxrt.InteriorFit, rom: voxrt.Rom) -> str:
     made = "of any material" if interior.material is None else f"of {rom.materials[interior.material].name}"
     return f"{interior.hidden:,} hidden voxels are {made}; the memory took {interior.words_before:,} words before"
+
+
+def _baked(bake: voxrt.Bake) -> str:
+    return (
+        f"{bake.voxels:,} voxels, {bake.samples} rays to the sky each; {bake.words:,} words, "
+        f"{bake.words / bake.words_before:.1f} times the {bake.words_before:,} without baked light"
+    )
 
 
 def _loss(budget: voxrt.BudgetFit) -> str:

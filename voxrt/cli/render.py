@@ -39,7 +39,7 @@ def render(
     ] = None,
     ambient: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
     bounces: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
-    shading: Literal["faces", "report", "flat"] | None = None,
+    shading: Annotated[Literal["faces", "report", "flat"] | None, Parameter(converter=choice)] = None,
     samples: Literal[1, 2, 4] = 1,
     background: Backdrop = None,
     latency: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,

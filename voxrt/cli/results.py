@@ -6,6 +6,7 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -120,6 +121,25 @@ class InteriorEntry(msgspec.Struct, frozen=True):
     """What the memory takes when they keep their materials."""
 
 
+class BakedEntry(msgspec.Struct, frozen=True):
+    """The light that was baked."""
+
+    sun: tuple[float, float, float]
+    """The direction towards the sun, scene frame."""
+    sky: tuple[float, float, float]
+    """Linear light of the sky: red, green, blue."""
+    samples: int
+    """Rays to the sky per voxel."""
+    voxels: int
+    """Voxels with baked colours."""
+    colours: int
+    """The most baked colours."""
+    words_before: int
+    """What the memory takes without baked light."""
+    words: int
+    """What it takes with it, before a budget."""
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -139,6 +159,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when there was none."""
     interior: InteriorEntry | None = None
     """Null when they keep their materials."""
+    baked: BakedEntry | None = None
+    """Null when no light was baked."""
 
 
 def build_report(result: BuildResult) -> BuildReport:
@@ -159,6 +181,7 @@ def build_report(result: BuildResult) -> BuildReport:
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
+        baked=None if result.bake is None else BakedEntry(**asdict(result.bake)),
     )
 
 

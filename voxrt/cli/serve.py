@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import signal
-from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.arguments import Reporting, UsageError, choice, whole
 from voxrt.cli.board_results import ServeResult
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
@@ -28,7 +28,7 @@ _port = Parameter(converter=whole, metavar="PORT")
 
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
-    device: Literal["model", "sim", "pynq"] = "model",
+    device: Annotated[Literal["model", "sim", "pynq"], Parameter(converter=choice)] = "model",
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
@@ -45,8 +45,8 @@ def serve(
     Parameters
     ----------
     scenes
-        Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, drop a file
-        on the page.
+        Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the page
+        lists examples and has a place to drop files.
     device
         The renderer: the exact model, the simulated hardware, which is slow, or the PYNQ board that runs this command.
     config
@@ -89,12 +89,20 @@ def serve(
     except Refused as refusal:
         raise UsageError(str(refusal)) from refusal
     first = _read_first(scenes[0], depth) if scenes else None
-    named = {name: _files(path) for name, path in scene_names(scenes).items()}
+    named = {name: _files(path) for name, path in scene_names(scenes or _examples()).items()}
     library = SceneLibrary(asset_reader(depth), named, asset_reader(depth, memory_depth=depth))
     options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, library, options, json=reporting.json))
+
+
+def _examples() -> list[Path]:
+    """Return the example scenes that are installed with voxrt; in a checkout they are links."""
+    from voxrt.board_scenes import ASSET_READER_SUFFIXES  # noqa: PLC0415 - it imports NumPy
+
+    folder = Path(voxrt.__file__).with_name("example_scenes")
+    return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
 
 
 def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:

@@ -6,22 +6,23 @@ traceback. Standard streams that the caller closed are opened again, so that no 
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # signal brings enum, during whose import Ctrl-C prints a traceback
 import os
-import signal
 import sys
-from typing import TYPE_CHECKING, NoReturn
 
+TYPE_CHECKING = False  # for the same reason
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import FrameType
+    from typing import NoReturn
 
-_INTERRUPTED = 128 + signal.SIGINT
+_INTERRUPTED = 128 + _signal.SIGINT
 
 
 def start(arguments: Sequence[str]) -> NoReturn:
     """Run a command line and exit."""
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, _leave)
+    if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
+        _signal.signal(_signal.SIGINT, _leave)
     _open_closed_streams()
     from voxrt.cli.app import run  # noqa: PLC0415 - slow, and may be interrupted
 
@@ -29,8 +30,8 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = int(run(arguments))
     except KeyboardInterrupt:  # once more, while the first was reported
         code = _INTERRUPTED
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
+        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
     sys.exit(code)
 
 

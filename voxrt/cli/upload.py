@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError
+from voxrt.cli.arguments import Reporting, UsageError, choice
 from voxrt.cli.board_results import UploadResult
 from voxrt.cli.messages import summarize
 from voxrt.cli.progress import transfer_bar
@@ -27,7 +27,7 @@ def upload(
     /,
     *,
     to: Annotated[str | None, Parameter(metavar="URL")] = None,
-    device: Literal["model", "sim"] | None = None,
+    device: Annotated[Literal["model", "sim"] | None, Parameter(converter=choice)] = None,
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     dry_run: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008

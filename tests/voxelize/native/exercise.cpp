@@ -177,7 +177,7 @@ private:
 bool agree(const Scene& scene, int depth) {
     const Parts held(scene);
     const std::vector<PartView>& parts = held.get();
-    for (const bool fill : {false, true}) {
+    for (const Fill fill : {Fill::surface, Fill::solid, Fill::automatic}) {
         const uint64_t alone = fingerprint(voxelize(depth, parts, parts.size(), fill, 1));
         if (alone != fingerprint(voxelize(depth, parts, parts.size(), fill, 3))) {
             std::printf("depth %d: the result depends on the number of threads\n", depth);

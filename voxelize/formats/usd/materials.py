@@ -159,6 +159,10 @@ class Materials:
             message = "textured faces took one colour of their image: no texture coordinates are connected to it"
             self.log.add("texture", message, faces)
             stored = np.broadcast_to(np.array(source.point), (len(surface.triangles), 3, 2))
+        elif source.point is not None:
+            # By that specification they have one colour; that the mesh has coordinates says what the author meant.
+            message = "textures without connected coordinates were placed by the coordinates 'st' of their meshes"
+            self.log.add("texture", message, faces)
         plain = shading.colour if shading.image is None and shading.colour else (1.0, 1.0, 1.0)
         opacity = 1.0 if shading.alpha is not None else shading.opacity
         cutoff = shading.cutoff if shading.alpha is not None else 0.0

@@ -1,0 +1,80 @@
+"""Benchmark of baked light: seconds of each step and words, on spheres with bumps and on the project's scenes.
+
+Usage: ``python bench/bake.py [--threads N] [--write]``. ``--write`` puts the table into ``bench/results/bake.md`` as
+well. Seconds are the least of three runs, wall clock and CPU; 64 directions to the sky above a surface.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import resource
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import voxrt
+from voxelize import displaced_sphere
+from voxrt.sim.baking.bake import bake_light
+
+if TYPE_CHECKING:
+    from voxrt.voxelize import Scene
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "bench" / "results" / "bake.md"
+HEAD = "| scene | triangles | side | lit voxels | light | palette, memory | in all | CPU | words | words without |"
+RUNS = 3
+
+
+def cpu() -> float:
+    """Give the seconds of CPU that this process took."""
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime
+
+
+def measure(scene: Scene, depth: int, threads: int) -> str:
+    """Give the row of one scene."""
+    built = voxrt.build(scene, depth=depth, threads=threads)
+    best = None
+    for _ in range(RUNS):
+        start, used = time.perf_counter(), cpu()
+        light = bake_light(built.rom, built.scene, threads=threads)
+        lit = time.perf_counter()
+        rom = light.memory(threads=threads)
+        end = time.perf_counter()
+        took = (end - start, lit - start, end - lit, cpu() - used, len(light.voxels), len(rom.octree.words))
+        best = took if best is None else min(best, took)
+    whole, light_s, palette_s, cpu_s, voxels, words = best
+    triangles = sum(len(item.mesh.triangles) for item in scene.objects)
+    return (
+        f"| {scene.name} | {triangles:,} | {1 << depth} | {voxels:,} | {light_s:.2f} s | {palette_s:.2f} s | "
+        f"{whole:.2f} s | {cpu_s:.2f} s | {words:,} | {len(built.octree.words):,} |"
+    )
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
+    rows = []
+    for scene, depth in (
+        (displaced_sphere(133), 8),
+        (displaced_sphere(133), 9),
+        (displaced_sphere(133), 10),
+        *((voxrt.load(ROOT / "examples" / name), 8) for name in ("courtyard.glb", "planet.glb", "house.obj")),
+    ):
+        rows.append(measure(scene, depth, options.threads))
+        print(rows[-1], flush=True)
+    if options.write:
+        about = (
+            f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
+            f"threads: {options.threads or 'all'}; load average {os.getloadavg()[0]:.1f}\n"
+        )
+        RESULTS.write_text("\n".join(["# Baked light", "", about, HEAD, "|---|" + "--:|" * 9, *rows]) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,90 @@
+// Requests of frames: each asks for the newest view, at a size that suits the device. At most two wait for their frames,
+// one where frames are slow; later changes are sent together with the next one.
+
+import { toRegisters } from "./camera.js";
+import { Resolution } from "./resolution.js";
+
+const REST = 180; // milliseconds without a change, until finer frames are asked for
+const LONG_REST = 1200; // before frames that are announced: no change can be shown while they are rendered
+const SLOW = 0.3; // seconds
+const SAID = 1; // seconds: longer frames are announced
+
+export class FrameRequests {
+  constructor(connection, stage) {
+    this.connection = connection;
+    this.stage = stage;
+    this.resolution = new Resolution();
+    this.fields = {}; // of the view, all but camera and size, that the server does not have yet
+    this.changed = false;
+    this.changedAt = 0;
+    this.shown = { size: [1, 1], samples: 1 }; // the newest request
+    this.samples = new Map(); // request -> columns and rows per pixel
+    this.frameAt = 0;
+  }
+
+  get device() { return this.connection.hello.device; }
+
+  // The shape of the picture at rest.
+  get size() { return this.resolution.finest(this.stage, this.device).size; }
+
+  // Seconds that the frame takes for which the page waits, and since when; null for quick frames.
+  get waiting() {
+    const [since] = this.connection.sent.values();
+    const seconds = this.resolution.seconds(this.shown.size);
+    return since === undefined || seconds < SAID ? null : { since, seconds };
+  }
+
+  change(fields = {}) {
+    Object.assign(this.fields, fields);
+    this.changed = true;
+    this.changedAt = performance.now();
+  }
+
+  // Forget what was not sent, since another view counts now.
+  discard() { Object.assign(this, { changed: false, fields: {} }); }
+
+  // Ask for a coarse frame if fine ones are slow: the next scene is then shown soon.
+  coarsen(view) {
+    if (this.resolution.seconds(this.shown.size) > SLOW) this.send(view, this.resolution.moving(this.stage, this.device));
+  }
+
+  // Called once per frame of the screen; `busy` while keys or the mouse are held. Returns whether the finest frame of the
+  // newest view is shown.
+  step(view, busy) {
+    const waiting = this.connection.sent.size;
+    const slow = this.resolution.seconds(this.shown.size) > SLOW;
+    if (this.changed) {
+      if (waiting < (slow ? 1 : 2)) this.send(view, this.resolution.moving(this.stage, this.device));
+    } else if (waiting === 0 && performance.now() - this.changedAt > REST) {
+      const next = this.resolution.next(this.stage, this.device, this.shown.size);
+      const long = this.resolution.seconds(next.size) > SAID;
+      if (long && performance.now() - this.changedAt < LONG_REST) return false;
+      const finer = next.size[0] * next.samples > this.shown.size[0] * this.shown.samples;
+      const reshaped = this.shape !== this.size.join();
+      if (!finer && !reshaped) return true;
+      if (!busy || this.resolution.seconds(next.size) <= SLOW) this.send(view, next);
+    }
+    return false;
+  }
+
+  send(view, { size, samples }) {
+    const columns = size.map((side) => side * samples);
+    const number = this.connection.changeView({ camera: toRegisters(view, columns), size: columns, ...this.fields });
+    this.samples.set(number, samples);
+    this.shown = { size, samples };
+    this.shape = this.size.join();
+    this.discard();
+  }
+
+  // Learn from a frame; returns its columns and rows per pixel.
+  receive(frame) {
+    const now = performance.now();
+    const mine = frame.viewer === this.connection.hello?.viewer;
+    const waited = frame.requested ? (now - Math.max(frame.requested, this.frameAt)) / 1000 : 0;
+    this.frameAt = now;
+    this.resolution.measure([frame.width, frame.height], Math.max(frame.seconds, waited, 1e-4));
+    if (!mine) return 1;
+    for (const number of this.samples.keys()) if (number < frame.request) this.samples.delete(number);
+    return this.samples.get(frame.request) ?? 1;
+  }
+}

@@ -1,0 +1,1 @@
+"""Baked light: the colours that surface voxels have under a sun and a sky."""

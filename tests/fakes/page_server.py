@@ -1,0 +1,77 @@
+"""A frame server in a thread of its own, for tests of the page."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import numpy as np
+from fakes.scene_reader import ReadyScenes
+from oracles.cuts import memory_of
+
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board_scenes import asset_reader, board_scene
+from voxrt.export import Blob
+from voxrt.octree import Octree, Rom
+from voxrt.serve.scene_library import SceneLibrary
+from voxrt.serve.server import FrameServer
+from voxrt.serve.server_options import ServerOptions
+from voxrt.voxelize import Material
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from voxrt.board.device import Device
+    from voxrt.board.scene import Scene
+    from voxrt.serve.scene_files import SceneReader
+
+
+def rom_of(name: str, world: NDArray[np.uint8], depth: int) -> Rom:
+    """A memory of dense voxels, in bright colours."""
+    colours = np.random.default_rng(5).integers(90, 256, (256, 3)).tolist()
+    return Rom(name, Octree(depth, memory_of(world)), tuple(Material(f"m{i}", tuple(c)) for i, c in enumerate(colours)))
+
+
+def scene_of(name: str, world: NDArray[np.uint8], depth: int) -> Scene:
+    return board_scene(Blob(rom_of(name, world, depth)))
+
+
+@contextmanager
+def serving(
+    scene: Scene,
+    port: int = 0,
+    *,
+    device: Device | None = None,
+    token: str | None = None,
+    shown: bool = True,
+    reader: SceneReader | None = None,
+) -> Iterator[FrameServer]:
+    """Serve a scene; with `shown` it is loaded at once, else the page lists it. `reader` reads uploads."""
+    ready, loop = threading.Event(), asyncio.new_event_loop()
+    kept = {}
+
+    async def serve() -> None:
+        kept["stop"] = asyncio.Event()
+        own = ReadyScenes(**{scene.name: scene})
+        library = SceneLibrary(reader or asset_reader(depth=4), own.files, own)
+        options = ServerOptions(port=port, token=token)
+        async with FrameServer(device or ModelDevice(), library, options) as server:
+            if shown:
+                await server.session.renderer.load(scene, lambda *_: None)
+            kept["server"] = server
+            ready.set()
+            await kept["stop"].wait()
+
+    thread = threading.Thread(target=lambda: loop.run_until_complete(serve()))
+    thread.start()
+    assert ready.wait(60)
+    try:
+        yield kept["server"]
+    finally:
+        loop.call_soon_threadsafe(kept["stop"].set)
+        thread.join(30)
+        loop.close()
