@@ -170,8 +170,9 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     dram = Dram(latency=options.latency, interval=options.interval)
+    only = f" --only '{options.only}'" if options.only else ""
     lines = [
-        f"`python bench/cached.py --write`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
+        f"`python bench/cached.py --write{only}`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
         f"a line per {dram.interval} clocks. Caches are empty at the start of each frame. Modelled: cycles per",
         "pixel of a cycle model of such caches, with a memory that always answers and behind the caches; it drew close",
         "and grazing places of its own.",

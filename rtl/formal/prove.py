@@ -23,7 +23,6 @@ PROOFS = {
     "voxrt_registers": ("bmc", 11),
     "voxrt_axi_read_master": ("bmc", 10),
     "voxrt_miss_list": ("bmc", 9),
-    "voxrt_l1_cache": ("bmc", 26),
 }
 
 # What a module is made of.
