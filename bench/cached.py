@@ -174,8 +174,8 @@ def main() -> None:
     lines = [
         f"`python bench/cached.py --write{only}`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
         f"a line per {dram.interval} clocks. Caches are empty at the start of each frame. Modelled: cycles per",
-        "pixel of a cycle model of such caches, with a memory that always answers and behind the caches; it drew close",
-        "and grazing places of its own.",
+        "pixel of a cycle model of such caches, with a memory that always answers and behind the caches; its cameras",
+        "were its own.",
         "",
         f"| {' | '.join(HEADS)} |",
         "|" + "---|" * len(HEADS),
