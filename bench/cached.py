@@ -172,8 +172,8 @@ def main() -> None:
     dram = Dram(latency=options.latency, interval=options.interval)
     only = f" --only '{options.only}'" if options.only else ""
     lines = [
-        f"`python bench/cached.py --write{only}`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency} clocks,",
-        f"a line per {dram.interval} clocks. Caches are empty at the start of each frame. Modelled: cycles per",
+        f"`python bench/cached.py --write{only}`: {options.config}, {SIZE[0]}x{SIZE[1]}, latency {dram.latency},",
+        f"a line per {dram.interval} clocks. The caches are empty at the start of each frame. Modelled: cycles per",
         "pixel of a cycle model of such caches, with a memory that always answers and behind the caches; its cameras",
         "were its own.",
         "",
