@@ -7,7 +7,7 @@ PIP := $(BIN)/pip --quiet --disable-pip-version-check
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
 CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test lint lint-workflows hardware docs bench soak sanitize fuzz clean
+.PHONY: help demo test lint lint-workflows hardware boards docs bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -15,6 +15,7 @@ help:
 	@echo "make test    set up $(VENV), run the tests on the installed wheel"
 	@echo "make lint    ruff, mypy --strict, clang-format, verilator --lint-only -Wall; the workflows"
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
+	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
 	@echo "make docs    build the manual into build/docs"
 	@echo "make bench   run the benchmarks"
 	@echo "make soak MINUTES=15  load and attack the frame server, write bench/results/soak.md"
@@ -63,6 +64,13 @@ hardware: $(VENV)/.hardware
 	git diff --exit-code -- rtl/generated board/registers.py
 	$(BIN)/python rtl/benches/coverage.py
 	$(BIN)/python rtl/formal/prove.py
+
+# Ten minutes and more per board. BOARDS chooses.
+BOARDS := ulx3s-85f
+boards: $(VENV)/.installed $(VENV)/.tools $(VENV)/.estimate
+	for board in $(BOARDS); do \
+	  $(BIN)/python -m voxrt.board.designs.build $$board --netlist && \
+	  $(BIN)/python bench/boards.py $$board --rebuilt --write || exit 1; done
 
 docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
@@ -145,7 +153,7 @@ $(VENV)/.actionlint: $(VENV)/.ready Makefile
 	  echo "actionlint cannot be built by the Go that is here"; fi
 	@touch $@
 
-$(VENV)/.hardware $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml
+$(VENV)/.hardware $(VENV)/.estimate $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group $*
 	@touch $@
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -25,6 +26,22 @@ class Progress(Protocol):
         """Receive that `done` of `total` parts of `stage` are complete."""
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class LoadedScene:
+    """A scene in the memory of a device.
+
+    Attributes
+    ----------
+    scene
+        Its words count from its own word 0.
+    base
+        The word of the memory where the scene's word 0 is.
+    """
+
+    scene: Scene
+    base: int
+
+
 class SceneMemory:
     """The memory of one device.
 
@@ -38,12 +55,14 @@ class SceneMemory:
     ----------
     device
         No other caller uses it while a method or a step runs.
+    loaded
+        The scene that the device shows already.
     """
 
-    def __init__(self, device: Device) -> None:
+    def __init__(self, device: Device, loaded: LoadedScene | None = None) -> None:
         self._device = device
-        self._loaded: Scene | None = None
-        self._base = 0
+        self._loaded = loaded.scene if loaded else None
+        self._base = loaded.base if loaded else 0
 
     @property
     def loaded(self) -> Scene | None:

@@ -145,6 +145,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
         source=told.source,
         view=blob.view,
         lighting=blob.lighting,
+        baked=told.baked,
     )
     return files.mem, files.manifest
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.export.atomic import write_atomically
-from voxrt.export.provenance import Provenance, Source
+from voxrt.export.provenance import BakedLight, Provenance, Source
 from voxrt.octree import Dialect, RomError, census
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
@@ -48,39 +48,6 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         tuple[float, float, float, float],
         tuple[float, float, float, float],
     ]
-
-
-class BakedLight(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The light that was baked into the materials: show the memory flat.
-
-    Attributes
-    ----------
-    sun
-        The direction towards the sun, scene frame; zeros for no sun.
-    sky
-        Linear light of the sky: red, green, blue.
-    samples
-        Rays to the sky per voxel.
-    voxels
-        Voxels with baked colours.
-    colours
-        The most baked colours.
-    words_before, words
-        Words of the memory without and with baked light, before it was fitted to a budget.
-
-    Examples
-    --------
-    >>> BakedLight((1, 3, 2), (0.4, 0.4, 0.4), 64, 1000, 254, 721, 2049).samples
-    64
-    """
-
-    sun: tuple[float, float, float]
-    sky: tuple[float, float, float]
-    samples: int
-    voxels: int
-    colours: int
-    words_before: int
-    words: int
 
 
 class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -146,7 +113,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def provenance(self) -> Provenance:
         """What it says of the build."""
-        return Provenance(self.source, self.objects, self.warnings, self.seconds)
+        return Provenance(self.source, self.objects, self.warnings, self.seconds, self.baked)
 
     @property
     def grid(self) -> Grid | None:

@@ -20,6 +20,39 @@ class Source(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     settings: dict[str, str | int | float | bool | None]
 
 
+class BakedLight(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The light that was baked into the materials: show the memory flat.
+
+    Attributes
+    ----------
+    sun
+        The direction towards the sun, scene frame; zeros for no sun.
+    sky
+        Linear light of the sky: red, green, blue.
+    samples
+        Rays to the sky per voxel.
+    voxels
+        Voxels with baked colours.
+    colours
+        The most baked colours.
+    words_before, words
+        Words of the memory without and with baked light, before it was fitted to a budget.
+
+    Examples
+    --------
+    >>> BakedLight((1, 3, 2), (0.4, 0.4, 0.4), 64, 1000, 254, 721, 2049).samples
+    64
+    """
+
+    sun: tuple[float, float, float]
+    sky: tuple[float, float, float]
+    samples: int
+    voxels: int
+    colours: int
+    words_before: int
+    words: int
+
+
 class Provenance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a manifest says of the build.
 
@@ -33,6 +66,8 @@ class Provenance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         What the asset said and the build did not honour as it stands.
     seconds
         Wall seconds per stage.
+    baked
+        The light that was baked into the materials; None where none was.
 
     Examples
     --------
@@ -44,3 +79,4 @@ class Provenance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     objects: tuple[ObjectReport, ...] = ()
     warnings: tuple[SceneWarning, ...] = ()
     seconds: dict[str, float] = {}
+    baked: BakedLight | None = None

@@ -30,8 +30,8 @@ from voxrt.voxelize.arguments import choice, instance
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from voxrt.export.manifest import BakedLight, Manifest
-    from voxrt.export.provenance import Source
+    from voxrt.export.manifest import Manifest
+    from voxrt.export.provenance import BakedLight, Source
     from voxrt.export.word_file import WordFile
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport

@@ -6,6 +6,7 @@ the model that its compiler gives.
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -24,6 +25,47 @@ def peakrdl(*arguments: str | Path) -> None:
     subprocess.run([sys.executable, "-m", "peakrdl", *arguments], check=True)
 
 
+def register_decode(text: str) -> str:
+    """Put a register behind the address decode of PeakRDL's block, which would be the longest path of a small core.
+
+    The decode becomes `decode_*`, and what it gives takes effect a clock later, as `decoded_*`. A request waits while
+    one is between the two, so that the order of answers does not change.
+    """
+    begin, end = text.index("    decoded_reg_strb_t decoded_reg_strb;"), text.index("    // Field logic")
+    part = text[begin:end]
+    signals = re.findall(r"^ +(decoded_reg_strb_t|logic(?: \[\d+:0\])?) (decoded_\w+);$", part, re.MULTILINE)
+    clocked = ["decoded_reg_strb", "decoded_err", "decoded_req_is_external", "decoded_addr", "decoded_req"]
+    clocked += ["decoded_req_is_wr", "decoded_wr_data", "decoded_wr_biten"]
+    if [name for _, name in signals] != clocked:
+        raise ValueError(f"PeakRDL's block has another decode: {signals}; look at register_decode")
+    declarations = "".join(f"    {kind} {name.replace('decoded', 'decode', 1)};\n" for kind, name in signals)
+    # The external memory's requests are followed where they take effect.
+    pending_begin, pending_end = part.index("    logic external_wr_ack;"), part.index("    // Pass down signals")
+    pending = part[pending_begin:pending_end]
+    decode = re.sub(r"\bdecoded_", "decode_", part[part.index("    always_comb begin") : pending_begin])
+    passed = re.sub(r"\bdecoded_", "decode_", part[pending_end:])
+    passed_end = passed.index("    //----")
+    registers = ["    always_ff @(posedge clk) begin", "        if(~rst_n) begin"]
+    registers += [f"            {name} <= '0;" for name in ("decoded_req", "decoded_req_is_external", "decoded_err")]
+    registers += ["            decoded_reg_strb <= '{default: '0};", "        end else begin"]
+    registers += [f"            {name} <= decode_{name[8:]};" for name in clocked[:3] + clocked[4:5]]
+    registers += ["        end"]
+    registers += [f"        {name} <= decode_{name[8:]};" for name in clocked if name not in clocked[:3] + clocked[4:5]]
+    registers += ["    end", ""]
+    kept = part[: part.index("    always_comb begin")]
+    joined = kept + declarations + "\n" + decode + pending + passed[:passed_end]
+    joined += "\n    // A clock for the wires from the decode to all registers.\n" + "\n".join(registers)
+    text = text[:begin] + joined + passed[passed_end:] + text[end:]
+    for kind in ("rd", "wr"):
+        stall = re.search(rf"    assign cpuif_req_stall_{kind} = (.*);\n", text)
+        if stall is None:
+            raise ValueError("PeakRDL's block stalls in another way; look at register_decode")
+        text = text.replace(stall[0], f"    assign cpuif_req_stall_{kind} = {stall[1]} | decoded_req;\n")
+    # It is used before the decode.
+    text = text.replace("    logic decoded_req;\n", "", 1)
+    return text.replace("    logic external_pending;\n", "    logic external_pending;\n    logic decoded_req;\n", 1)
+
+
 def main() -> None:
     """Make everything."""
     GENERATED.mkdir(exist_ok=True)
@@ -37,6 +79,8 @@ def main() -> None:
         "--err-if-bad-addr",
     ]
     peakrdl("regblock", SOURCE, "-o", GENERATED, *flags)
+    block = GENERATED / "voxrt_registers.sv"
+    block.write_text(register_decode(block.read_text()))
     peakrdl("c-header", SOURCE, "-o", GENERATED / "voxrt_registers.h")
 
     compiler = RDLCompiler()

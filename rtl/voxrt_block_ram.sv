@@ -1,7 +1,11 @@
 // True dual-port block RAM with output registers: port A reads or writes, port B reads.
+//
+// Where port B reads a row while port A writes it, the word read is undefined: the lanes work with any word, and what
+// is read later is right. (A simulation reads the old word.)
 module voxrt_block_ram #(
   parameter int unsigned Width = 18,
-  parameter int unsigned Depth = 1024
+  parameter int unsigned Depth = 1024,
+  parameter string       File  = ""  // What it holds from the beginning, for $readmemh.
 ) (
   input  logic                     clk_i,
   input  logic                     a_read_i,
@@ -13,9 +17,14 @@ module voxrt_block_ram #(
   input  logic [$clog2(Depth)-1:0] b_row_i,
   output logic [        Width-1:0] b_data_o
 );
-  // Public, so that a simulation can fill a large memory at once.
+  // Without no_rw_check, yosys would build the memory twice. Public, so that a simulation can fill it at once.
+  (* no_rw_check *)
   logic [Width-1:0] data_q[Depth]  /* verilator public_flat_rw */;
   logic [Width-1:0] a_read_q, a_out_q, b_read_q, b_out_q;
+
+  if (File != "") begin : gen_content
+    initial $readmemh(File, data_q);
+  end
 
   always_ff @(posedge clk_i) begin
     if (a_write_i) data_q[a_row_i] <= a_data_i;

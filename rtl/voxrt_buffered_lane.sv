@@ -1,7 +1,7 @@
 // A lane, the queue of its rays, and the reorder buffer of its pixels.
 //
-// Credits: issue_i, only while credit_o is high, reserves a place in the queue for a ray of the camera, which comes
-// some clocks later. Shadow rays have a queue of their own, whose places voxrt_light counts.
+// Credits: issue_i, only where credit_o was high, reserves a place in the queue for a ray of the camera, which comes some
+// clocks later. Shadow rays have a queue of their own, whose places voxrt_light counts.
 module voxrt_buffered_lane
   import voxrt_pkg::*;
 #(
@@ -10,6 +10,7 @@ module voxrt_buffered_lane
   parameter int unsigned BlockBits    = 12,
   parameter int unsigned MemoryClocks = 2,
   parameter int unsigned RayDepth     = 16,    // Rays that wait, of the camera and shadow rays each.
+  parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -114,8 +115,8 @@ module voxrt_buffered_lane
   always_ff @(posedge clk_i) begin
     returned_q <= rst_ni && ray_valid && ray_ready && !shadow;
     credits_q  <= credits_q - CountBits'(issue_i) + CountBits'(returned_q);
-    // One clock late: a credit may have been taken since.
-    credit_q   <= credits_q > CountBits'(1) && rst_ni;
+    // Late: credits may have been taken since.
+    credit_q   <= credits_q > CountBits'(CreditClocks) && rst_ni;
     if (!rst_ni) credits_q <= CountBits'(Credits);
   end
 
@@ -270,7 +271,7 @@ module voxrt_buffered_lane
 
   always_ff @(posedge clk_i) begin
     if (rst_ni && reset_seen_q) begin
-      assert (!issue_i || credit_q) else $error("a ray is issued without a credit");
+      assert (!issue_i || credits_q != '0) else $error("a ray is issued without a credit");
       assert (credits_q <= CountBits'(Credits)) else $error("more credits than places");
     end
   end

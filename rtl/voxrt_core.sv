@@ -26,7 +26,9 @@ module voxrt_core
   parameter int unsigned L2SetBits    = 9,
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
+  parameter string       OctreeFile   = ""
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -216,7 +218,8 @@ module voxrt_core
     .L1SetBits   (L1SetBits),
     .L2SetBits   (L2SetBits),
     .Light       (Light),
-    .Mirrors     (Mirrors)
+    .Mirrors     (Mirrors),
+    .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,
     .rst_ni          (rst_n),

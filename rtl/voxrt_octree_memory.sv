@@ -15,7 +15,9 @@ module voxrt_octree_memory
   parameter int unsigned BlockBits  = 12,
   parameter int unsigned MemoryForm = PrivateForm,
   parameter int unsigned L1SetBits  = 5,
-  parameter int unsigned L2SetBits  = 9
+  parameter int unsigned L2SetBits  = 9,
+  // What private copies hold from the beginning, for $readmemh: row a has word 1 + a, as voxrt_word_encoder encodes it.
+  parameter string       File       = ""
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -44,6 +46,10 @@ module voxrt_octree_memory
   output memory_events_t                   events_o
 );
   localparam int unsigned AddressBits = BlockBits + 3;
+
+  if (MemoryForm != PrivateForm && File != "") begin : gen_bad_file
+    $error("voxrt_octree_memory: only private copies can hold words from the beginning");
+  end
 
   if (MemoryForm == CachedForm) begin : gen_cached
     logic unused_access;
@@ -94,7 +100,8 @@ module voxrt_octree_memory
     voxrt_on_chip_memory #(
       .Lanes    (Lanes),
       .BlockBits(BlockBits),
-      .Banked   (MemoryForm == BankedForm)
+      .Banked   (MemoryForm == BankedForm),
+      .File     (File)
     ) u_memory (
       .clk_i,
       .rst_ni,

@@ -11,7 +11,8 @@ module voxrt_on_chip_memory
 #(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned BlockBits = 12,
-  parameter bit          Banked    = 1'b0
+  parameter bit          Banked    = 1'b0,
+  parameter string       File      = ""     // As voxrt_octree_memory has it.
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -76,7 +77,8 @@ module voxrt_on_chip_memory
     voxrt_private_memory #(
       .Lanes      (Lanes),
       .AddressBits(AddressBits),
-      .PayloadBits(PayloadBits)
+      .PayloadBits(PayloadBits),
+      .File       (File)
     ) u_memory (
       .clk_i,
       .rst_ni,

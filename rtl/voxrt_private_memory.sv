@@ -10,7 +10,8 @@
 module voxrt_private_memory #(
   parameter int unsigned Lanes       = 1,
   parameter int unsigned AddressBits = 15,
-  parameter int unsigned PayloadBits = 12
+  parameter int unsigned PayloadBits = 12,
+  parameter string       File        = ""  // For $readmemh: a row per line, encoded.
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -76,7 +77,8 @@ module voxrt_private_memory #(
 
     voxrt_block_ram #(
       .Width(PayloadBits + 1),
-      .Depth(2 ** AddressBits)
+      .Depth(2 ** AddressBits),
+      .File (File)
     ) u_ram (
       .clk_i,
       .a_read_i (read_i[Even] || accessed),

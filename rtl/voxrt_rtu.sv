@@ -4,6 +4,9 @@
 //                        ^                    |
 //                        +------- light ------+---- octree memory
 //
+// What all lanes read, rays and values of the frame, goes from lane to lane, through a register at each but the first:
+// with a wire to all lanes at once, the wires would be the longest paths.
+//
 // start_i, while busy_o is low, latches the whole frame (voxrt_frame): nothing that changes later shows in it, but
 // words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started
 // before its pixels can be accepted: pixel_ready_i may be low at any time.
@@ -20,7 +23,8 @@ module voxrt_rtu
   parameter int unsigned L1SetBits    = 5,
   parameter int unsigned L2SetBits    = 9,
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  parameter string       OctreeFile   = ""
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
@@ -108,7 +112,8 @@ module voxrt_rtu
     .BlockBits (BlockBits),
     .MemoryForm(MemoryForm),
     .L1SetBits (L1SetBits),
-    .L2SetBits (L2SetBits)
+    .L2SetBits (L2SetBits),
+    .File      (OctreeFile)
   ) u_memory (
     .clk_i,
     .rst_ni,
@@ -212,6 +217,54 @@ module voxrt_rtu
     .weights_o      (ray_weights)
   );
 
+  // Credits: with several lanes, a register on the way to them and one on the way back.
+  localparam int unsigned CreditClocks = Lanes > 1 ? 3 : 1;
+  logic [Lanes-1:0] lane_credit, lane_issue;
+
+  if (Lanes > 1) begin : gen_credit_registers
+    always_ff @(posedge clk_i) begin
+      credit     <= rst_ni ? lane_credit : '0;
+      lane_issue <= rst_ni ? issue : '0;
+    end
+  end else begin : gen_credit
+    assign credit     = lane_credit;
+    assign lane_issue = issue;
+  end
+
+  // Doors: what a lane reads. Lane i gets all i clocks late.
+  typedef struct packed {
+    world_t               world;
+    logic [PayloadBits:0] root;
+    shading_t             shading;
+  } frame_values_t;
+
+  logic          [Lanes-1:0] door_start;
+  frame_values_t             door_frame  [Lanes];
+  logic          [Lanes-1:0] door_lane   [Lanes];  // Whose ray it is; 0: none.
+  ray_t                      door_ray    [Lanes];
+  weights_t                  door_weights[Lanes];
+
+  assign door_start[0]   = root_valid;
+  assign door_frame[0]   = '{world: world, root: root, shading: frame.shading};
+  assign door_lane[0]    = ray_valid ? ray_lane : '0;
+  assign door_ray[0]     = ray;
+  assign door_weights[0] = ray_weights;
+
+  for (genvar i = 1; i < Lanes; i++) begin : gen_door
+    always_ff @(posedge clk_i) begin
+      door_start[i] <= rst_ni && door_start[i-1];
+      door_lane[i]  <= rst_ni ? door_lane[i-1] : '0;
+      if (door_start[i-1]) door_frame[i] <= door_frame[i-1];
+      if (door_lane[i-1] != '0) begin
+        door_ray[i]     <= door_ray[i-1];
+        door_weights[i] <= door_weights[i-1];
+      end
+    end
+  end
+
+  logic unused_door_start;
+  assign unused_door_start = door_start[Lanes-1];
+
   // Lanes.
   light_planes_t               light_planes;
   logic          [  Lanes-1:0] lane_pixel_valid, lane_pixel_ready, lane_pixel_lit;
@@ -226,21 +279,22 @@ module voxrt_rtu
       .BlockBits   (BlockBits),
       .MemoryClocks(memory_clocks(MemoryForm)),
       .RayDepth    (RayDepth),
+      .CreditClocks(CreditClocks),
       .Light       (Light),
       .Mirrors     (Mirrors)
     ) u_lane (
       .clk_i,
       .rst_ni,
-      .world_i          (world),
-      .root_i           (root),
-      .shading_i        (frame.shading),
+      .world_i          (door_frame[i].world),
+      .root_i           (door_frame[i].root),
+      .shading_i        (door_frame[i].shading),
       .light_planes_i   (light_planes),
       .material_write_i,
-      .issue_i          (issue[i]),
-      .credit_o         (credit[i]),
-      .ray_valid_i      (ray_valid && ray_lane[i]),
-      .ray_i            (ray),
-      .weights_i        (ray_weights),
+      .issue_i          (lane_issue[i]),
+      .credit_o         (lane_credit[i]),
+      .ray_valid_i      (door_lane[i][i]),
+      .ray_i            (door_ray[i]),
+      .weights_i        (door_weights[i]),
       .shadow_issued_o  (shadow_issued[i]),
       .mem_read_o       (lane_read[i]),
       .mem_address_o    (lane_address[i]),

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.octree.camera import FACES
 from voxrt.octree.owners import SEVERAL
 from voxrt.view.cells import import_pyvista, open_sides
 from voxrt.view.legend import draw_legend, legend_width, remove_legend
@@ -184,7 +183,7 @@ def _sides(pane: Pane, grid: pyvista.UnstructuredGrid, levels: tuple[int, int]) 
     facing = np.cross(right - corner, up - corner)
     axis = np.abs(facing).argmax(axis=1)
     faces = 2 * axis + (np.take_along_axis(facing, axis[:, None], axis=1)[:, 0] > 0)
-    sides.cell_data["colour"] = np.rint(colours * (np.array(FACES)[faces, None] / 255)).astype(np.uint8)
+    sides.cell_data["colour"] = np.rint(colours * (np.array(pane.faces)[faces, None] / 255)).astype(np.uint8)
     return sides
 
 

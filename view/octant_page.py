@@ -16,12 +16,13 @@ from voxrt.octree.camera import FACES
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
+    from voxrt.octree.camera import Faces
     from voxrt.view.octant_mesh import OctantMesh
 
 _PAGE = Path(__file__).with_suffix(".html")
 
 
-def write_page(path: Path, rom: Rom, mesh: OctantMesh) -> None:
+def write_page(path: Path, rom: Rom, mesh: OctantMesh, faces: Faces = FACES) -> None:
     """Write octants as a page that needs no other file. A click shows an octant's address, word, level and material.
 
     Parameters
@@ -32,6 +33,8 @@ def write_page(path: Path, rom: Rom, mesh: OctantMesh) -> None:
         The memory and its materials.
     mesh
         Some of its octants.
+    faces
+        The brightness of the sides.
 
     Raises
     ------
@@ -61,7 +64,7 @@ def write_page(path: Path, rom: Rom, mesh: OctantMesh) -> None:
     for name, text in (
         ("title", html.escape(rom.name)),
         ("background", f"rgb({red}, {green}, {blue})"),
-        ("faces", ", ".join(f"{brightness}.0" for brightness in FACES)),
+        ("faces", ", ".join(f"{brightness}.0" for brightness in faces)),
         ("scene", json.dumps(scene).replace("<", "\\u003c")),
     ):
         page = page.replace("{{" + name + "}}", text)

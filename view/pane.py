@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from voxrt.octree.budget import coarsen
+from voxrt.octree.camera import FACES
 from voxrt.octree.leaf_arrays import Leaves, solid_leaves
 from voxrt.octree.octant import octant_at
 from voxrt.view.cells import octant_cells
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import pyvista
     from numpy.typing import NDArray
 
+    from voxrt.octree.camera import Faces
     from voxrt.octree.owners import Owners
     from voxrt.octree.query import Corner
     from voxrt.octree.rom import Rom
@@ -47,6 +49,8 @@ class Pane:
         The owners of the voxels.
     triangles
         A mesh drawn over the octants: float64, shape (T, 3, 3), voxels, grid frame.
+    flat
+        Show materials in their own colour, as where their light is baked; else each side has its brightness.
 
     Examples
     --------
@@ -62,6 +66,12 @@ class Pane:
     by: Aspect = "material"
     owners: Owners | None = None
     triangles: NDArray[np.float64] | None = None
+    flat: bool = False
+
+    @property
+    def faces(self) -> Faces:
+        """The brightness of the sides along -x, +x, -y, +y, -z, +z: 0 ... 255."""
+        return (255,) * 6 if self.flat and self.by == "material" else FACES
 
     def solid(self) -> Leaves:
         """Return the solid octants, hidden ones included."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import Owners, build
+from voxrt.octree.camera import Lighting
 from voxrt.sim import follow_pixel, render
 from voxrt.view.pane import DrawnRay, Preview
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
@@ -66,8 +67,10 @@ def find_owners(scene: Scene, grid: Grid) -> Owners:
     return Owners(build(voxelize(replace(scene, objects=tuple(owned), materials=materials), grid).voxels), names)
 
 
-def preview_of(rom: Rom, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Preview:
-    """Give a memory's picture, in which a pixel can be chosen to see its ray.
+def preview_of(
+    rom: Rom, camera: Camera, size: tuple[int, int], pixel: tuple[int, int], *, flat: bool = False
+) -> Preview:
+    """Give a memory's picture, in which a pixel can be chosen to see its ray; `flat` shows materials as they are.
 
     Raises
     ------
@@ -78,7 +81,8 @@ def preview_of(rom: Rom, camera: Camera, size: tuple[int, int], pixel: tuple[int
     def follow(pixel: tuple[int, int]) -> DrawnRay:
         return drawn_ray(rom, follow_pixel(rom.octree, camera, size, pixel), pixel)
 
-    return Preview(render(rom, camera, size, engine="model").colour, pixel, follow)
+    lighting = Lighting(flat=flat)
+    return Preview(render(rom, camera, size, engine="model", lighting=lighting).colour, pixel, follow)
 
 
 def drawn_ray(rom: Rom, path: RayPath, pixel: tuple[int, int]) -> DrawnRay:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING
 
-from voxrt.export import Blob, Provenance
+from voxrt.export import BakedLight, Blob, Provenance
 from voxrt.octree import census, to_dense, to_points
 
 if TYPE_CHECKING:
@@ -95,8 +95,13 @@ class BuildResult:
     @property
     def blob(self) -> Blob:
         """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
-        told = Provenance(self.source, self.objects, self.warnings, self.seconds)
+        told = Provenance(self.source, self.objects, self.warnings, self.seconds, self.baked)
         return Blob(self.rom, self.view, self.lighting, told)
+
+    @property
+    def baked(self) -> BakedLight | None:
+        """The light that was baked, as the manifest tells it; None if no light was."""
+        return None if self.bake is None else BakedLight(**asdict(self.bake))
 
     @property
     def octree(self) -> Octree:

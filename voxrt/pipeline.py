@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
@@ -351,7 +351,7 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
                 source=result.source,
                 view=result.view,
                 lighting=result.lighting,
-                baked=None if result.bake is None else export.BakedLight(**asdict(result.bake)),
+                baked=result.baked,
                 beside=pictures,
             )
             outputs = {"mem": written.mem, "manifest": written.manifest}

@@ -50,7 +50,9 @@ WRITERS: dict[str, Writer] = {
     ".ply": Writer("a PLY mesh of the visible sides", lambda path, pane: write_ply(path, pane.rom, pane.mesh())),
     ".glb": Writer("a glTF scene of the visible sides", lambda path, pane: write_glb(path, pane.rom, pane.mesh())),
     ".vtu": Writer("octants for ParaView and PyVista", lambda path, pane: write_octants(path, pane.grid())),
-    ".html": Writer("a page that shows the octants", lambda path, pane: write_page(path, pane.rom, pane.mesh())),
+    ".html": Writer(
+        "a page that shows the octants", lambda path, pane: write_page(path, pane.rom, pane.mesh(), pane.faces)
+    ),
 }
 """How files are written, by their suffix."""
 

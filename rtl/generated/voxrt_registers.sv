@@ -214,6 +214,7 @@ module voxrt_registers (
 
     logic cpuif_req_masked;
     logic external_pending;
+    logic decoded_req;
 
     // Read latency > write latency. May need to delay next write that follows a read
     logic [1:0] cpuif_req_stall_sr;
@@ -226,8 +227,8 @@ module voxrt_registers (
             cpuif_req_stall_sr <= (cpuif_req_stall_sr >> 'd1);
         end
     end
-    assign cpuif_req_stall_rd = external_pending;
-    assign cpuif_req_stall_wr = cpuif_req_stall_sr[0] | external_pending;
+    assign cpuif_req_stall_rd = external_pending | decoded_req;
+    assign cpuif_req_stall_wr = cpuif_req_stall_sr[0] | external_pending | decoded_req;
     assign cpuif_req_masked = cpuif_req
                             & !(!cpuif_req_is_wr & cpuif_req_stall_rd)
                             & !(cpuif_req_is_wr & cpuif_req_stall_wr);
@@ -269,10 +270,18 @@ module voxrt_registers (
     logic decoded_req_is_external;
 
     logic [10:0] decoded_addr;
-    logic decoded_req;
     logic decoded_req_is_wr;
     logic [31:0] decoded_wr_data;
     logic [31:0] decoded_wr_biten;
+
+    decoded_reg_strb_t decode_reg_strb;
+    logic decode_err;
+    logic decode_req_is_external;
+    logic [10:0] decode_addr;
+    logic decode_req;
+    logic decode_req_is_wr;
+    logic [31:0] decode_wr_data;
+    logic [31:0] decode_wr_biten;
 
     always_comb begin
         automatic logic is_valid_addr;
@@ -281,73 +290,73 @@ module voxrt_registers (
         is_external = '0;
         is_valid_addr = '0;
         is_valid_rw = '1; // No valid RW check
-        decoded_reg_strb.identity = cpuif_req_masked & (cpuif_addr == 11'h0) & !cpuif_req_is_wr;
+        decode_reg_strb.identity = cpuif_req_masked & (cpuif_addr == 11'h0) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h0);
-        decoded_reg_strb.version = cpuif_req_masked & (cpuif_addr == 11'h4) & !cpuif_req_is_wr;
+        decode_reg_strb.version = cpuif_req_masked & (cpuif_addr == 11'h4) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h4);
-        decoded_reg_strb.configuration = cpuif_req_masked & (cpuif_addr == 11'h8) & !cpuif_req_is_wr;
+        decode_reg_strb.configuration = cpuif_req_masked & (cpuif_addr == 11'h8) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h8);
-        decoded_reg_strb.control = cpuif_req_masked & (cpuif_addr == 11'hc);
+        decode_reg_strb.control = cpuif_req_masked & (cpuif_addr == 11'hc);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc);
-        decoded_reg_strb.status = cpuif_req_masked & (cpuif_addr == 11'h10);
+        decode_reg_strb.status = cpuif_req_masked & (cpuif_addr == 11'h10);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h10);
-        decoded_reg_strb.size = cpuif_req_masked & (cpuif_addr == 11'h14);
+        decode_reg_strb.size = cpuif_req_masked & (cpuif_addr == 11'h14);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h14);
-        decoded_reg_strb.depth = cpuif_req_masked & (cpuif_addr == 11'h18);
+        decode_reg_strb.depth = cpuif_req_masked & (cpuif_addr == 11'h18);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h18);
-        decoded_reg_strb.features = cpuif_req_masked & (cpuif_addr == 11'h1c) & !cpuif_req_is_wr;
+        decode_reg_strb.features = cpuif_req_masked & (cpuif_addr == 11'h1c) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h1c);
         for(int i0=0; i0<3; i0++) begin
-            decoded_reg_strb.position[i0] = cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
+            decode_reg_strb.position[i0] = cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h20 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
-            decoded_reg_strb.look[i0] = cpuif_req_masked & (cpuif_addr == 11'h30 + (11)'(i0) * 11'h4);
+            decode_reg_strb.look[i0] = cpuif_req_masked & (cpuif_addr == 11'h30 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h30 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
-            decoded_reg_strb.right[i0] = cpuif_req_masked & (cpuif_addr == 11'h40 + (11)'(i0) * 11'h4);
+            decode_reg_strb.right[i0] = cpuif_req_masked & (cpuif_addr == 11'h40 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h40 + (11)'(i0) * 11'h4);
         end
         for(int i0=0; i0<3; i0++) begin
-            decoded_reg_strb.up[i0] = cpuif_req_masked & (cpuif_addr == 11'h50 + (11)'(i0) * 11'h4);
+            decode_reg_strb.up[i0] = cpuif_req_masked & (cpuif_addr == 11'h50 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h50 + (11)'(i0) * 11'h4);
         end
-        decoded_reg_strb.cycles = cpuif_req_masked & (cpuif_addr == 11'h60) & !cpuif_req_is_wr;
+        decode_reg_strb.cycles = cpuif_req_masked & (cpuif_addr == 11'h60) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h60);
-        decoded_reg_strb.rays = cpuif_req_masked & (cpuif_addr == 11'h64) & !cpuif_req_is_wr;
+        decode_reg_strb.rays = cpuif_req_masked & (cpuif_addr == 11'h64) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h64);
-        decoded_reg_strb.words_read = cpuif_req_masked & (cpuif_addr == 11'h68) & !cpuif_req_is_wr;
+        decode_reg_strb.words_read = cpuif_req_masked & (cpuif_addr == 11'h68) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h68);
-        decoded_reg_strb.hits = cpuif_req_masked & (cpuif_addr == 11'h6c) & !cpuif_req_is_wr;
+        decode_reg_strb.hits = cpuif_req_masked & (cpuif_addr == 11'h6c) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h6c);
-        decoded_reg_strb.stalls = cpuif_req_masked & (cpuif_addr == 11'h70) & !cpuif_req_is_wr;
+        decode_reg_strb.stalls = cpuif_req_masked & (cpuif_addr == 11'h70) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h70);
-        decoded_reg_strb.shading = cpuif_req_masked & (cpuif_addr == 11'h74);
+        decode_reg_strb.shading = cpuif_req_masked & (cpuif_addr == 11'h74);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h74);
-        decoded_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
+        decode_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h78);
         for(int i0=0; i0<3; i0++) begin
-            decoded_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
+            decode_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
         end
-        decoded_reg_strb.lower_faces = cpuif_req_masked & (cpuif_addr == 11'h90);
+        decode_reg_strb.lower_faces = cpuif_req_masked & (cpuif_addr == 11'h90);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h90);
-        decoded_reg_strb.upper_faces = cpuif_req_masked & (cpuif_addr == 11'h94);
+        decode_reg_strb.upper_faces = cpuif_req_masked & (cpuif_addr == 11'h94);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h94);
-        decoded_reg_strb.memory_base = cpuif_req_masked & (cpuif_addr == 11'hc0);
+        decode_reg_strb.memory_base = cpuif_req_masked & (cpuif_addr == 11'hc0);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc0);
-        decoded_reg_strb.word_requests = cpuif_req_masked & (cpuif_addr == 11'hc4) & !cpuif_req_is_wr;
+        decode_reg_strb.word_requests = cpuif_req_masked & (cpuif_addr == 11'hc4) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc4);
-        decoded_reg_strb.line_requests = cpuif_req_masked & (cpuif_addr == 11'hc8) & !cpuif_req_is_wr;
+        decode_reg_strb.line_requests = cpuif_req_masked & (cpuif_addr == 11'hc8) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc8);
-        decoded_reg_strb.lines_read = cpuif_req_masked & (cpuif_addr == 11'hcc) & !cpuif_req_is_wr;
+        decode_reg_strb.lines_read = cpuif_req_masked & (cpuif_addr == 11'hcc) & !cpuif_req_is_wr;
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hcc);
-        decoded_reg_strb.materials = cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
+        decode_reg_strb.materials = cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_external |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
-        decoded_err = ~is_valid_addr & decoded_req;
-        decoded_req_is_external = is_external;
+        decode_err = ~is_valid_addr & decode_req;
+        decode_req_is_external = is_external;
     end
     logic external_wr_ack;
     logic external_rd_ack;
@@ -367,12 +376,31 @@ module voxrt_registers (
     end
 
     // Pass down signals to next stage
-    assign decoded_addr = cpuif_addr;
-    assign decoded_req = cpuif_req_masked;
-    assign decoded_req_is_wr = cpuif_req_is_wr;
-    assign decoded_wr_data = cpuif_wr_data;
-    assign decoded_wr_biten = cpuif_wr_biten;
+    assign decode_addr = cpuif_addr;
+    assign decode_req = cpuif_req_masked;
+    assign decode_req_is_wr = cpuif_req_is_wr;
+    assign decode_wr_data = cpuif_wr_data;
+    assign decode_wr_biten = cpuif_wr_biten;
 
+
+    // A clock for the wires from the decode to all registers.
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            decoded_req <= '0;
+            decoded_req_is_external <= '0;
+            decoded_err <= '0;
+            decoded_reg_strb <= '{default: '0};
+        end else begin
+            decoded_reg_strb <= decode_reg_strb;
+            decoded_err <= decode_err;
+            decoded_req_is_external <= decode_req_is_external;
+            decoded_req <= decode_req;
+        end
+        decoded_addr <= decode_addr;
+        decoded_req_is_wr <= decode_req_is_wr;
+        decoded_wr_data <= decode_wr_data;
+        decoded_wr_biten <= decode_wr_biten;
+    end
     //--------------------------------------------------------------------------
     // Field logic
     //--------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 """``voxrt build --bake`` from the command line and from Python."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -47,3 +49,25 @@ def test_a_budget_is_weighed_against_colours(tmp_path):
 def test_wrong_light_is_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         voxrt.BuildOptions(bake=True, **wrong)
+
+
+def test_conversion_keeps_what_was_baked(tmp_path):
+    built = voxrt.build(HOUSE, tmp_path, depth=4, bake=True)
+    blob, _ = voxrt.read_any(built.outputs["mem"])
+    voxrt.convert(blob, tmp_path / "house.blob")
+    there, _ = voxrt.read_any(tmp_path / "house.blob")
+    voxrt.convert(there, tmp_path / "other" / "house.coe")
+    assert read_manifest(tmp_path / "other" / "house.json").baked == built.baked
+
+
+def test_octants_of_baked_light_keep_their_colours(tmp_path):
+    built = voxrt.build(HOUSE, tmp_path, depth=4, bake=True)
+    finished = subprocess.run(
+        [sys.executable, "-m", "voxrt", "view", built.outputs["mem"], "-o", tmp_path / "o.html"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert "wrote" in finished.stderr
+    assert "255.0, 255.0, 255.0, 255.0, 255.0, 255.0" in (tmp_path / "o.html").read_text()

@@ -98,6 +98,11 @@ _add_command(
     "Let a running board show another scene.",
     "voxrt upload courtyard.mem --to http://127.0.0.1:8080/",
 )
+_add_command(
+    "bitstream",
+    "Make the bitstream of a board that shows a scene on its monitor.",
+    "voxrt bitstream courtyard.glb --board ulx3s-85f --load",
+)
 _add_command("convert", "Write a memory in another format.", "voxrt convert courtyard.mem courtyard.blob")
 _add_command("info", "Print what a memory holds: sizes, levels, materials.", "voxrt info courtyard.mem")
 _add_command(

@@ -6,12 +6,12 @@ import asyncio
 import contextlib
 import signal
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, choice, whole
+from voxrt.cli.arguments import Reporting, UsageError, whole
 from voxrt.cli.board_results import ServeResult
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
@@ -19,16 +19,18 @@ from voxrt.cli.results import print_json
 if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
+    from voxrt.board.serial_device import SerialDevice
     from voxrt.serve.scene_library import SceneLibrary
     from voxrt.serve.server import FrameServer
     from voxrt.serve.server_options import ServerOptions
 
+SERIAL = "serial:"
 _port = Parameter(converter=whole, metavar="PORT")
 
 
 def serve(
     *scenes: Annotated[Path, Parameter(metavar="SCENE")],
-    device: Annotated[Literal["model", "sim", "pynq"], Parameter(converter=choice)] = "model",
+    device: Annotated[str, Parameter(metavar="model|sim|pynq|serial:PORT")] = "model",
     config: Annotated[str, Parameter(metavar="NAME")] = "lit",
     bitstream: Annotated[Path | None, Parameter(metavar="FILE")] = None,
     host: Annotated[str, Parameter(metavar="ADDRESS")] = "127.0.0.1",
@@ -48,7 +50,8 @@ def serve(
         Blobs, memories (.mem) and assets. The first is shown at once; the page lists all. Without scenes, the page
         lists examples and has a place to drop files.
     device
-        The renderer: the exact model, the simulated hardware, which is slow, or the PYNQ board that runs this command.
+        The renderer: the exact model, the simulated hardware, which is slow, the PYNQ board that runs this command, or
+        a board at a serial line, such as serial:/dev/ttyUSB0. Its monitor follows the page.
     config
         The configuration of the simulated hardware: tiny has no optional features, lit has all of them.
     bitstream
@@ -106,22 +109,44 @@ def _examples() -> list[Path]:
 
 
 def open_device(name: str, config: str, bitstream: Path | None = None) -> Device:
-    """Open a device of this machine: ``model``, ``sim`` or ``pynq``."""
+    """Open a device of this machine: ``model``, ``sim``, ``pynq`` or ``serial:PORT``."""
     from voxrt.board.errors import DeviceError  # noqa: PLC0415 - it imports NumPy
     from voxrt.board.pynq_device import open_pynq  # noqa: PLC0415
     from voxrt.board.simulated.core import open_rtl  # noqa: PLC0415
     from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
 
-    if name == "model":
+    if name.lower() == "model":
         return ModelDevice()
-    if name == "sim":
+    if name.lower() == "sim":
         return open_rtl(config)
+    if name.startswith(SERIAL):
+        try:
+            return open_serial_device(name.removeprefix(SERIAL))
+        except DeviceError as error:
+            raise voxrt.SimulatorError(str(error)) from error
+    if name.lower() != "pynq":
+        raise UsageError(f"--device {name} is no device; there are model, sim, pynq and serial:PORT")
     if bitstream is None:
         raise UsageError("--device pynq needs the ray tracer's --bitstream FILE")
     try:
         return open_pynq(str(bitstream))
     except DeviceError as error:
         raise voxrt.SimulatorError(str(error)) from error
+
+
+def open_serial_device(port: str) -> SerialDevice:
+    """Open the board at a serial line.
+
+    Raises
+    ------
+    DeviceError
+        There is no port of this name, or no board of voxrt at it.
+    """
+    from voxrt.board.serial_device import SerialDevice  # noqa: PLC0415
+    from voxrt.board.serial_link import open_serial  # noqa: PLC0415
+    from voxrt.board.simulated.model import ModelDevice  # noqa: PLC0415
+
+    return SerialDevice(open_serial(port), ModelDevice())
 
 
 def _read_first(path: Path, depth: int | None) -> Scene:

@@ -11,15 +11,16 @@ from cyclopts import Parameter
 import voxrt
 from voxrt.cli.arguments import Reporting, UsageError, choice
 from voxrt.cli.board_results import UploadResult
+from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize
 from voxrt.cli.progress import transfer_bar
 from voxrt.cli.results import print_json
-from voxrt.cli.serve import open_device
+from voxrt.cli.serve import SERIAL, open_device, open_serial_device
 
 if TYPE_CHECKING:
     from voxrt.board.device import Device
     from voxrt.board.scene import Scene
-    from voxrt.board.scene_memory import Progress
+    from voxrt.board.scene_memory import LoadedScene, Progress
 
 
 def upload(
@@ -39,7 +40,8 @@ def upload(
     rom
         A blob, or a .mem file; its manifest, the .json in the same folder, is sent with it.
     to
-        The address of the page, with its token, as the frame server printed it.
+        The address of the page, with its token, as the frame server printed it. Or the serial line of a board, such as
+        serial:/dev/ttyUSB0.
     device
         A device of this machine, to try the upload without a server.
     config
@@ -55,7 +57,9 @@ def upload(
         raise UsageError(f"{rom}: is no .mem or .blob; build it first: voxrt build {rom}")
     scene = _read(rom)
     with transfer_bar() as progress:
-        if to is not None:
+        if to is not None and to.startswith(SERIAL):
+            _write_serial(rom, scene, to.removeprefix(SERIAL), progress, dry_run=dry_run)
+        elif to is not None:
             asyncio.run(_send(rom, scene, to, progress, dry_run=dry_run))
         else:
             _write(scene, open_device(device or "model", config), progress, dry_run=dry_run)
@@ -103,11 +107,42 @@ def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
         )
 
 
-def _write(scene: Scene, device: Device, progress: Progress, *, dry_run: bool) -> None:
+def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
+    """Let the board at a serial line show the scene and turn, as from its bitstream."""
+    from voxrt.beam import SCREEN, fit_beam  # noqa: PLC0415
+    from voxrt.board.errors import DeviceError  # noqa: PLC0415
+    from voxrt.orbit import orbit  # noqa: PLC0415
+
+    rom = voxrt.read_any(path)[0].rom
+    try:
+        device = open_serial_device(port)
+        try:
+            _write(scene, device, progress, dry_run=True)
+            if not dry_run:
+                lighting = supported(scene.lighting or voxrt.Lighting(), device.identity.features)
+                beam = fit_beam(
+                    rom,
+                    orbit(rom, SCREEN),
+                    lighting,
+                    lanes=device.lanes,
+                    clock_hz=device.clock_hz,
+                    progress=lambda done, total: progress("count cycles", done, total),
+                )
+                device.prepare_orbit(orbit(rom, beam.size), lighting, beam.scale)
+                _write(scene, device, progress, dry_run=False, loaded=device.loaded())
+        finally:
+            device.close()
+    except DeviceError as error:
+        raise voxrt.SimulatorError(str(error)) from error
+
+
+def _write(
+    scene: Scene, device: Device, progress: Progress, *, dry_run: bool, loaded: LoadedScene | None = None
+) -> None:
     from voxrt.board.errors import DeviceError, Refused  # noqa: PLC0415 - only this command needs them
     from voxrt.board.scene_memory import SceneMemory  # noqa: PLC0415
 
-    memory = SceneMemory(device)
+    memory = SceneMemory(device, loaded)
     try:
         if dry_run:
             memory.check(scene)

@@ -167,7 +167,8 @@ def _check_company(
 
 
 def _pane(source: Source, name: str, by: Literal["material", "level", "owner"], overlay: bool) -> Pane:
-    pane = drawing.Pane(replace(source.rom, name=name), by=by)
+    lighting = source.blob.lighting
+    pane = drawing.Pane(replace(source.rom, name=name), by=by, flat=lighting is not None and lighting.flat)
     if by != "owner" and not overlay:
         return pane
     if source.scene is None or source.rom.grid is None:
@@ -182,7 +183,7 @@ def _pane(source: Source, name: str, by: Literal["material", "level", "owner"], 
 
 
 def _preview(source: Source, pane: Pane, ray: tuple[int, int]) -> Preview:
-    return preview_of(pane.rom, source.camera(PREVIEW_SIZE, Sight()), PREVIEW_SIZE, ray)
+    return preview_of(pane.rom, source.camera(PREVIEW_SIZE, Sight()), PREVIEW_SIZE, ray, flat=pane.flat)
 
 
 def _told(panes: list[Pane]) -> list[tuple[str, str]]:

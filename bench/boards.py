@@ -1,0 +1,191 @@
+"""Verify the placed design of a board: ``python bench/boards.py NAME [--folder DIR] [--rebuilt] [--write]``.
+
+Needs the folder in which ``python -m voxrt.board.designs.build NAME --netlist`` worked, and a C++ compiler. The
+netlist after place and route is simulated with what was patched into its ``.config``: a monitor decodes the DVI pins,
+and the frames are compared with the exact model's, on three scenes, and after a swap by the serial line. With
+``--rebuilt``, one scene is built into the design from its sources as well, which takes another place and route: both
+``.config`` must be equal. ``--write`` writes ``report.md`` beside the board's description.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import struct
+import sys
+import tempfile
+import time
+import zlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from voxrt.board.designs import build
+from voxrt.board.designs.base_design import Slice, patch_config
+from voxrt.board.designs.boot_table import (
+    BOARD_REGISTERS,
+    CAMERAS,
+    OCTREE_MEMORY,
+    RUN,
+    STEERED,
+    TABLE,
+    TURN,
+    boot_table,
+    camera_writes,
+    encode_list,
+    encode_octree,
+    scene_writes,
+)
+from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_verilog
+from voxrt.board.designs.simulation.placed_netlist import MODELS, placed_verilog, write_block_rams
+from voxrt.board.scene import relocate
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board.view import CAMERA_LIGHT, View
+from voxrt.board_scenes import load_scene
+from voxrt.octree.camera import look_at
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from voxrt.board.scene import Scene
+    from voxrt.board.view import Camera
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+SCENES = {"house.obj": 5, "planet.glb": 5, "courtyard.glb": 6}
+SCALE = 2  # 65 cycles per pixel at 75 MHz: no line comes too late, whatever the lanes.
+SIZE = (640 >> SCALE, 480 >> SCALE)
+FREE_LIST = 1024  # words of the table that the boot list does not use
+
+
+def orbit(scene: Scene) -> list[Camera]:
+    """Make cameras about the middle of the world."""
+    side = 2.0**scene.depth
+    angles = 2 * np.pi * np.arange(CAMERAS) / CAMERAS
+    return [
+        look_at(side * np.array([0.5 + 1.3 * np.cos(a), 1.2, 0.5 + 1.3 * np.sin(a)]), np.full(3, side / 2), size=SIZE)
+        for a in angles
+    ]
+
+
+def picture(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
+    """Give what the screen must show."""
+    model = ModelDevice()
+    model.write_memory(0, scene.words)
+    model.write_materials(scene.colours, scene.mirrors)
+    model.select_scene(0, scene.depth)
+    frame = model.frame(View(camera, SIZE, scene.background, CAMERA_LIGHT)).colour
+    return frame.repeat(1 << SCALE, 0).repeat(1 << SCALE, 1)
+
+
+def contents_of(scene: Scene, board: dict[str, Any]) -> dict[str, NDArray[np.uint32]]:
+    """Give what the memories hold for a scene."""
+    return {
+        "octree": encode_octree(scene.words, board["core"]["BlockBits"]),
+        "table": boot_table(scene, orbit(scene), CAMERA_LIGHT, scale=SCALE, control=RUN | TURN, period=1),
+    }
+
+
+def send(simulation: BoardSimulation, address: int, words: list[int]) -> bool:
+    """Write words by the serial line; tell whether all were acknowledged."""
+    done = True
+    for start in range(0, len(words), 255):
+        part = words[start : start + 255]
+        data = bytes([0x56, 2, 0, len(part)]) + (address + 4 * start).to_bytes(3, "little")
+        data += struct.pack(f"<{len(part)}I", *part)
+        answer = simulation.transfer(data + struct.pack("<I", zlib.crc32(data)), 8)
+        done &= answer[:4] == bytes([0x76, 0, 0, 0])
+    return done
+
+
+def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[str, bool]]:
+    """Check the placed design in a folder; give what was checked, and whether it holds."""
+    board = build.read_board(name)
+    described = build.describe(board, name, board["seed"], folder)
+    slices = {m: [Slice(**piece) for piece in d["slices"]] for m, d in described["memories"].items()}
+    config = (folder / "top.config").read_text()
+    (work / "placed.v").write_text(placed_verilog(json.loads((folder / "placed.json").read_text())))
+    program = compile_verilog([*MODELS, work / "placed.v"], work / "placed", [], top="top", opt="-O1")
+    scenes = {file: load_scene(EXAMPLES / file, depth) for file, depth in SCENES.items()}
+    found: list[tuple[str, bool]] = []
+
+    def note(what: str, *, holds: bool) -> None:
+        print(f"{what}: {'holds' if holds else 'FAILS'}", file=sys.stderr)
+        found.append((what, holds))
+
+    for number, (file, scene) in enumerate(scenes.items()):
+        write_block_rams(patch_config(config, slices, contents_of(scene, board)), work)
+        cameras = orbit(scene)
+        with BoardSimulation(program, work) as simulation:
+            seen = simulation.frames(3)[1:]
+            equal = all(np.array_equal(pixels, picture(scene, cameras[i])) for i, (pixels, _) in enumerate(seen))
+            note(f"{file}: two frames at the pins are the exact model's, byte for byte", holds=equal)
+            note(f"{file}: timing at the pins is that of 640 x 480", holds=all(timing.is_vga for _, timing in seen))
+            if number:
+                continue
+            new = scenes["planet.glb"]
+            base = -(-(len(scene.words) - 1) // 8) * 8
+            control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
+            swap = [*scene_writes(new, CAMERA_LIGHT, SIZE, base), *camera_writes(orbit(new)[9]), control]
+            done = send(simulation, OCTREE_MEMORY + 4 * base, relocate(new.words, base).tolist())
+            done &= send(simulation, TABLE + 4 * FREE_LIST, encode_list(swap))
+            done &= send(simulation, BOARD_REGISTERS["play"], [FREE_LIST])
+            after = simulation.frames(3)[-1][0]
+            equal = done and np.array_equal(after, picture(new, orbit(new)[9]))
+            note(f"{file}: planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
+    if rebuilt:
+        contents = contents_of(scenes["house.obj"], board)
+        build.synthesize(board, contents, work)
+        build.place_and_route(board, described["seed"], work)
+        same = (work / "top.config").read_text() == patch_config(config, slices, contents)
+        note("the patched .config is the one of a full rebuild with the scene, byte for byte", holds=same)
+    return found
+
+
+def report(described: dict[str, Any], title: str, checks: list[tuple[str, bool]], seconds: float) -> str:
+    """Give the text of `report.md`."""
+    core = ", ".join(f"{name} {value}" for name, value in described["core"].items())
+    lines = [
+        f"# {title}",
+        "",
+        "Made by `python bench/boards.py`. No board was at hand: this is what simulation and the tools say.",
+        "",
+        f"Core: {core}. Seed {described['seed']}. "
+        + ", ".join(f"{tool} {number}" for tool, number in described["tools"].items())
+        + ".",
+        "",
+        "| clock | needed, MHz | allowed by the longest path, MHz |",
+        "|---|---|---|",
+    ]
+    needed = {"system": described["clock_hz"] / 1e6, "pixel": 25, "bit": 125}
+    lines += [f"| {clock} | {needed[clock]:g} | {mhz:g} |" for clock, mhz in described["fmax_mhz"].items()]
+    lines += ["", "| cells | used | of |", "|---|---|---|"]
+    lines += [f"| {cell} | {used:,} | {of:,} |" for cell, (used, of) in described["utilisation"].items()]
+    lines += ["", f"Netlist after place and route, simulated ({seconds:.0f} s):", ""]
+    lines += [f"- {what}: {'holds' if holds else '**fails**'}" for what, holds in checks]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Verify, and print or write the report; give the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("name", choices=build.board_names())
+    parser.add_argument("--folder", type=Path, default=Path("build", "board"), help="where the board's design was made")
+    parser.add_argument("--rebuilt", action="store_true", help="compare with a rebuild from the sources, too")
+    parser.add_argument("--write", action="store_true", help="write report.md too")
+    options = parser.parse_args()
+    folder = options.folder / options.name
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory(dir=options.folder) as work:
+        checks = verify(options.name, folder, Path(work), rebuilt=options.rebuilt)
+    board = build.read_board(options.name)
+    described = build.describe(board, options.name, board["seed"], folder)
+    text = report(described, board["title"], checks, time.perf_counter() - started)
+    print(text, end="")
+    if options.write:
+        (build.DESIGNS / options.name / "report.md").write_text(text)
+    return 0 if all(holds for _, holds in checks) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,43 @@
+// Types and constants that the modules of the board designs share.
+package board_pkg;
+
+  // An access to the address map (docs/ecp5_boards.md): a whole word.
+  typedef struct packed {
+    logic        write;
+    logic [23:0] address;
+    logic [31:0] data;
+  } access_t;
+
+  // 640 x 480 at 25 MHz, 800 x 525 with blanking.
+  localparam int unsigned Columns = 640;
+  localparam int unsigned Rows = 480;
+  localparam int unsigned ColumnsTotal = 800;
+  localparam int unsigned RowsTotal = 525;
+  localparam int unsigned ColumnSyncBegin = 656;
+  localparam int unsigned ColumnSyncEnd = 752;
+  localparam int unsigned RowSyncBegin = 490;
+  localparam int unsigned RowSyncEnd = 492;
+
+  // What the pixel clock tells the system clock at the beginning of each row.
+  typedef struct packed {
+    logic [9:0] row;
+    logic [8:0] line;      // What it shows, 0 in the blanking.
+    logic       underrun;  // It shows an older line than it should, or none.
+  } row_event_t;
+
+  // What the system clock tells the pixel clock at each complete line, and when a frame starts.
+  typedef struct packed {
+    logic       parity;  // Of the frame.
+    logic [8:0] lines;   // Complete lines of the frame.
+  } line_event_t;
+
+  // Words of the table.
+  localparam int unsigned TableBits = 12;
+
+  // What the player, the requests and the core tell the board's registers: one clock each.
+  typedef struct packed {
+    logic request_done;
+    logic request_bad;
+    logic write_refused;
+  } count_events_t;
+endpackage

@@ -1,0 +1,12 @@
+// A bit from another clock, two clocks later.
+module board_synchronizer (
+  input  logic clk_i,
+  input  logic bit_i,
+  output logic bit_o
+);
+  logic [1:0] bits_q;
+
+  always_ff @(posedge clk_i) bits_q <= {bits_q[0], bit_i};
+
+  assign bit_o = bits_q[1];
+endmodule

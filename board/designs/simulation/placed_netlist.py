@@ -1,0 +1,289 @@
+"""The netlist that nextpnr-ecp5 writes after place and route (``--write``), as plain Verilog for a simulation.
+
+It is written cell by cell as the hardware works: an unconnected input of a lookup table, a block RAM or a multiplier
+is 1; a parameter ``<PIN>MUX`` ties a pin to 0 or 1, or inverts it. What block RAMs hold is read when the simulation
+starts, from the files ``bram_WID.hex``: 1,024 rows of 18 bits, as `write_block_rams` takes them from a ``.config``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..base_design import read_block_rams
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+_HERE = Path(__file__).resolve().parent
+MODELS = (_HERE / "ecp5_models.sv", _HERE / "placed_ram.v")
+"""The models of PLL, output register and block RAM that the Verilog needs."""
+
+_PIN_WIDTHS = {"AD": 14, "DI": 18, "DO": 18}
+
+
+class UnknownCellError(ValueError):
+    """A cell, or a use of it, that this module cannot write."""
+
+
+def write_block_rams(config: str, folder: Path) -> None:
+    """Write what the block RAMs of a ``.config`` hold as `bram_WID.hex` into a folder."""
+    for wid, rows in read_block_rams(config).items():
+        (folder / f"bram_{wid}.hex").write_text("".join(f"{row:05x}\n" for row in rows.tolist()))
+
+
+def placed_verilog(netlist: Mapping[str, Any]) -> str:
+    """Give the Verilog of a netlist after place and route.
+
+    Parameters
+    ----------
+    netlist
+        The JSON of ``nextpnr-ecp5 --write``.
+
+    Returns
+    -------
+    str
+        Module `top` with the ports of the design. MODELS has what it instantiates.
+
+    Raises
+    ------
+    UnknownCellError
+        A cell is used in a way that is not known here.
+    """
+    return _Writer(netlist["modules"]["top"]).text()
+
+
+class _Writer:
+    def __init__(self, module: Mapping[str, Any]) -> None:
+        self._module = module
+        self._declarations: list[str] = []
+        self._lines: list[str] = []
+        self._driven: set[int] = set()
+        self._used: set[int] = set()
+        self._pads: dict[int, str] = {}
+
+    def text(self) -> str:
+        ports = []
+        for name, port in self._module["ports"].items():
+            width = f"[{len(port['bits']) - 1}:0] " if len(port["bits"]) > 1 else ""
+            ports.append(f"  {port['direction']} {width}{name}")
+            for index, bit in enumerate(port["bits"]):
+                self._pads[bit] = name + (f"[{index}]" if width else "")
+        for number, (name, cell) in enumerate(self._module["cells"].items()):
+            write = _CELLS.get(cell["type"])
+            if write is None:
+                raise UnknownCellError(f"{name}: cells of type {cell['type']} are not known")
+            write(self, number, cell)
+        wires = [f"  wire n{bit};" for bit in sorted(self._used | self._driven)]
+        undriven = [f"  assign n{bit} = 1'b1;" for bit in sorted(self._used - self._driven)]
+        head = "module top (\n" + ",\n".join(ports) + "\n);\n"
+        body = "\n".join([*wires, *self._declarations, *undriven, *self._lines])
+        return head + body + "\nendmodule\n"
+
+    def net(self, cell: Mapping[str, Any], pin: str) -> int | str | None:
+        """Give the net of a pin: a number, "0" or "1", or None where there is none."""
+        bits = cell["connections"].get(pin) or [None]
+        bit: int | str | None = bits[0]
+        return bit
+
+    def value(self, cell: Mapping[str, Any], pin: str, default: str = "1'b1") -> str:
+        """Give what comes in at a pin, as an expression."""
+        chosen = cell["parameters"].get(f"{pin}MUX", pin).strip()
+        if chosen in {"0", "1"}:
+            return f"1'b{chosen}"
+        bit = self.net(cell, pin)
+        inside = default if bit is None else f"1'b{bit}" if isinstance(bit, str) else self._use(bit)
+        if chosen == "INV":
+            return {"1'b0": "1'b1", "1'b1": "1'b0"}.get(inside, f"~{inside}")
+        return inside
+
+    def _use(self, bit: int) -> str:
+        self._used.add(bit)
+        return f"n{bit}"
+
+    def drive(self, cell: Mapping[str, Any], pin: str, expression: str) -> None:
+        """Connect an output, if anything is connected to it."""
+        bit = self.net(cell, pin)
+        if isinstance(bit, int):
+            self._driven.add(bit)
+            self._lines.append(f"  assign n{bit} = {expression};")
+
+    def output(self, cell: Mapping[str, Any], pin: str) -> str:
+        """Give the net that an instance drives."""
+        bit = self.net(cell, pin)
+        if not isinstance(bit, int):
+            return ""
+        self._driven.add(bit)
+        return f"n{bit}"
+
+    def comb(self, number: int, cell: Mapping[str, Any]) -> None:
+        parameters = cell["parameters"]
+        mode = parameters.get("MODE", "LOGIC").strip()
+        if mode == "RAMW_BLOCK":
+            return
+        initial = int(parameters["INITVAL"].strip()[-16:], 2)
+        a, b, c, d = (self.value(cell, pin) for pin in "ABCD")
+        if mode == "DPRAM":
+            self._declarations.append(f"  reg [15:0] ram{number} = 16'd{initial};")
+            clock, enable, data = (self.value(cell, pin) for pin in ("WCK", "WRE", "WD"))
+            place = ", ".join(self.value(cell, f"WAD{i}") for i in (3, 2, 1, 0))
+            self._lines.append(f"  always @(posedge {clock}) if ({enable}) ram{number}[{{{place}}}] <= {data};")
+            f = f"ram{number}[{{{a}, {c}, {b}, {d}}}]"
+        else:
+            f = _lookup(initial, (a, b, c, d))
+        if mode == "CCU2":
+            # The carry is passed on, or generated by the lowest quarter of the table, of A and B.
+            carry, propagates, generates = self.value(cell, "FCI", "1'b0"), f, _lookup(initial & 0xF, (a, b))
+            if parameters["CCU2_INJECT1"].strip() == "YES":
+                generates = "1'b0"
+            else:
+                f = _xor(propagates, carry)
+            self.drive(cell, "FCO", f"{propagates} ? {carry} : {generates}")
+        self.drive(cell, "F", f)
+        if self.net(cell, "OFX") is not None:
+            m = self.value(cell, "M")
+            if self.net(cell, "FXA") is not None or self.net(cell, "FXB") is not None:
+                self.drive(cell, "OFX", f"{m} ? {self.value(cell, 'FXB')} : {self.value(cell, 'FXA')}")
+            else:
+                self.drive(cell, "OFX", f"{m} ? {self.value(cell, 'F1')} : ({f})")
+
+    def flip_flop(self, number: int, cell: Mapping[str, Any]) -> None:
+        parameters = cell["parameters"]
+        data = self.value(cell, "DI" if parameters["SD"].strip() == "1" else "M")
+        value = 1 if parameters["REGSET"].strip() == "SET" else 0
+        self._declarations.append(f"  reg q{number} = 1'b{value};")
+        enable = self.value(cell, "CE")
+        assignment = f"q{number} <= {data};"
+        if enable != "1'b1":
+            assignment = f"if ({enable}) {assignment}"
+        edge = ""
+        if self.net(cell, "LSR") is not None and parameters["LSRMUX"].strip() not in {"0", "1"}:
+            reset = self.value(cell, "LSR")
+            mode = parameters.get("SRMODE", "LSR_OVER_CE").strip()
+            assignment = f"if ({reset}) q{number} <= 1'b{value}; else {assignment}"
+            if mode == "ASYNC":
+                edge = f" or posedge {reset}"
+            elif mode != "LSR_OVER_CE":
+                raise UnknownCellError(f"a flip-flop with SRMODE {mode} is not known")
+        self._lines.append(f"  always @(posedge {self.value(cell, 'CLK')}{edge}) {assignment}")
+        self.drive(cell, "Q", f"q{number}")
+
+    def ram_write(self, _number: int, cell: Mapping[str, Any]) -> None:
+        for output, source in zip(("WADO0", "WADO1", "WADO2", "WADO3"), ("D0", "B0", "C0", "A0"), strict=True):
+            self.drive(cell, output, self.value(cell, source))
+        for output, source in zip(("WDO0", "WDO1", "WDO2", "WDO3"), ("C1", "A1", "D1", "B1"), strict=True):
+            self.drive(cell, output, self.value(cell, source))
+
+    def block_ram(self, number: int, cell: Mapping[str, Any]) -> None:
+        parameters = cell["parameters"]
+        for port in "AB":
+            if parameters.get(f"REGMODE_{port}", "NOREG").strip() != "NOREG":
+                raise UnknownCellError("a block RAM with output registers is not known")
+            selected = int(parameters[f"CSDECODE_{port}"].replace("0b", ""), 2)
+            for index in range(3):
+                if self.value(cell, f"CS{port}{index}") != f"1'b{selected >> index & 1}":
+                    raise UnknownCellError("a block RAM that is selected by logic is not known")
+        pins = []
+        for port in "AB":
+            pins += [f".{name}{port}({self.value(cell, name + port)})" for name in ("CLK", "CE", "WE", "RST")]
+            for name in ("AD", "DI"):
+                bits = ", ".join(self.value(cell, f"{name}{port}{i}") for i in reversed(range(_PIN_WIDTHS[name])))
+                pins.append(f".{name}{port}({{{bits}}})")
+            self._declarations.append(f"  wire [17:0] do{port.lower()}{number};")
+            pins.append(f".DO{port}(do{port.lower()}{number})")
+            for i in range(18):
+                self.drive(cell, f"DO{port}{i}", f"do{port.lower()}{number}[{i}]")
+        widths = ", ".join(f".WIDTH_{port}({int(parameters[f'DATA_WIDTH_{port}'], 2)})" for port in "AB")
+        wid = int(cell["attributes"]["WID"], 2)
+        self._lines.append(f'  placed_ram #({widths}, .FILE("bram_{wid}.hex")) b{number} ({", ".join(pins)});')
+
+    def multiplier(self, number: int, cell: Mapping[str, Any]) -> None:
+        for name, setting in cell["parameters"].items():
+            if name.startswith("REG_") and name.endswith("_CLK") and setting.strip() != "NONE":
+                raise UnknownCellError("a multiplier with registers is not known")
+        for pin in ("SIGNEDA", "SIGNEDB", "SOURCEA", "SOURCEB"):
+            if not self._is_zero(cell, pin):
+                raise UnknownCellError(f"a multiplier whose pin {pin} is used is not known")
+        a, b = ("{" + ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18))) + "}" for side in "AB")
+        self._declarations.append(f"  wire [35:0] p{number};")
+        self._lines.append(f"  assign p{number} = {a} * {b};")
+        for i in range(36):
+            self.drive(cell, f"P{i}", f"p{number}[{i}]")
+
+    def _is_zero(self, cell: Mapping[str, Any], pin: str) -> bool:
+        bit = self.net(cell, pin)
+        if bit == "0" or cell["parameters"].get(f"{pin}MUX", "").strip() == "0":
+            return True
+        drivers = [
+            other
+            for other in self._module["cells"].values()
+            if other["type"] == "TRELLIS_COMB" and bit in other["connections"].get("F", [])
+        ]
+        return len(drivers) == 1 and "1" not in drivers[0]["parameters"]["INITVAL"].strip()
+
+    def pad(self, _number: int, cell: Mapping[str, Any]) -> None:
+        place = self._pads[cell["connections"]["B"][0]]
+        direction = cell["parameters"]["DIR"].strip()
+        if direction == "INPUT":
+            self.drive(cell, "O", place)
+        elif direction == "OUTPUT":
+            source = "IOLDO" if cell["parameters"].get("DATAMUX_ODDR", "PADDO").strip() == "IOLDO" else "I"
+            self._lines.append(f"  assign {place} = {self.value(cell, source)};")
+        else:
+            raise UnknownCellError(f"{place}: a pin with direction {direction} is not known")
+
+    def pad_register(self, number: int, cell: Mapping[str, Any]) -> None:
+        if cell["parameters"]["MODE"].strip() != "IDDRX1_ODDRX1":
+            raise UnknownCellError("a register at a pin that is no ODDRX1F is not known")
+        pins = {"D0": "TXDATA0", "D1": "TXDATA1", "SCLK": "CLK"}
+        inputs = ", ".join(f".{name}({self.value(cell, pin)})" for name, pin in pins.items())
+        self._lines.append(f"  ODDRX1F o{number} ({inputs}, .RST(1'b0), .Q({self.output(cell, 'IOLDO')}));")
+
+    def clock_gate(self, _number: int, cell: Mapping[str, Any]) -> None:
+        self.drive(cell, "CLKO", self.value(cell, "CLKI"))
+
+    def pll(self, number: int, cell: Mapping[str, Any]) -> None:
+        names = [f"{clock}_{what}" for clock in ("CLKOP", "CLKOS", "CLKOS2") for what in ("DIV", "CPHASE")]
+        settings = ", ".join(f".{name}({int(cell['parameters'][name], 2)})" for name in names)
+        outputs = ", ".join(f".{pin}({self.output(cell, pin)})" for pin in ("CLKOP", "CLKOS", "CLKOS2", "LOCK"))
+        self._lines.append(f"  EHXPLLL #({settings}) l{number} (.CLKI({self.value(cell, 'CLKI')}), {outputs});")
+
+
+_CELLS: dict[str, Callable[[_Writer, int, Mapping[str, Any]], None]] = {
+    "TRELLIS_COMB": _Writer.comb,
+    "TRELLIS_FF": _Writer.flip_flop,
+    "TRELLIS_RAMW": _Writer.ram_write,
+    "DP16KD": _Writer.block_ram,
+    "MULT18X18D": _Writer.multiplier,
+    "TRELLIS_IO": _Writer.pad,
+    "SIOLOGIC": _Writer.pad_register,
+    "DCCA": _Writer.clock_gate,
+    "EHXPLLL": _Writer.pll,
+}
+
+
+def _lookup(table: int, inputs: tuple[str, ...]) -> str:
+    """Give the function of a table as an expression; the last input is the highest bit of the index."""
+    if not inputs:
+        return f"1'b{table & 1}"
+    *rest, last = inputs
+    half = 1 << len(rest)
+    low, high = table & ((1 << half) - 1), table >> half
+    if last == "1'b0" or low == high:
+        return _lookup(low, tuple(rest))
+    if last == "1'b1":
+        return _lookup(high, tuple(rest))
+    ones = (1 << half) - 1
+    if low == high ^ ones:
+        return _xor(_lookup(low, tuple(rest)), last)
+    zero, one = _lookup(low, tuple(rest)), _lookup(high, tuple(rest))
+    forms = {low == 0: f"({last} & {one})", low == ones: f"(~{last} | {one})"}
+    forms |= {high == 0: f"(~{last} & {zero})", high == ones: f"({last} | {zero})"}
+    return forms.get(True, f"({last} ? {one} : {zero})")
+
+
+def _xor(first: str, second: str) -> str:
+    if first in {"1'b0", "1'b1"} or second in {"1'b0", "1'b1"}:
+        constant, other = (first, second) if first in {"1'b0", "1'b1"} else (second, first)
+        return other if constant == "1'b0" else f"~{other}"
+    return f"({first} ^ {second})"

@@ -1,0 +1,314 @@
+"""An ECP5 board at a serial line as a :class:`~.device.Device`: its monitor shows what the page shows.
+
+The board sends no pictures. Frames for the page come from a second device, the exact model, which holds the same scene
+and renders the same camera.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .designs.boot_table import (
+    BOARD_REGISTERS,
+    CAMERA_WORDS,
+    CAMERAS,
+    CAMERAS_WORD,
+    OCTREE_MEMORY,
+    RUN,
+    SCREEN,
+    STEERED,
+    TABLE,
+    TURN,
+    camera_writes,
+    encode_list,
+    lighting_writes,
+    material_rows,
+    register_writes,
+)
+from .device import Counters, Frame, Identity
+from .errors import DeviceError, Refused
+from .registers import MATERIALS, REGISTERS
+from .scene import Scene, check_memory
+from .scene_memory import LoadedScene
+from .view import FEATURES, refit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from .designs.boot_table import Writes
+    from .device import Device
+    from .serial_link import SerialLink
+    from .view import Camera, Lighting, View
+
+_BOARD = int.from_bytes(b"VXBD", "big")
+_CORE = int.from_bytes(b"VXRT", "big")
+_MAJOR = 1
+_WAIT_SECONDS = 5.0
+_LARGEST_SCALE = 2
+_SCALE_BITS = 0x30
+_PERIOD_BITS = 0xFF00
+_SCENE_WORD = 0
+"""Where the list of the present scene is in the table: that of power-on, or the last one that changed the scene."""
+_FREE_WORDS = (1024, 1536)
+"""Parts of the table where other lists of the host are written, in turn."""
+_PROBLEMS = {
+    "direction_overflow": "a direction overflow",
+    "bad_pointer": "a bad pointer",
+    "step_limit": "an octree deeper than its depth",
+}
+
+
+class SerialDevice:
+    """The driver of the board designs; :class:`~.device.Device` documents the methods.
+
+    Opening changes nothing: the board goes on showing its scene. The first frame or the first scene makes it follow
+    this host. A list of writes takes effect between two frames of the board, so it shows the old scene or the new one.
+
+    Parameters
+    ----------
+    link
+        The serial line.
+    model
+        The device that renders the frames for the page.
+
+    Raises
+    ------
+    DeviceError
+        The board does not answer, or its design is not supported.
+
+    Attributes
+    ----------
+    lanes
+        Of the ray tracer.
+    clock_hz
+        Of the ray tracer.
+    """
+
+    def __init__(self, link: SerialLink, model: Device) -> None:
+        self._link = link
+        self._model = model
+        self._materials: tuple[NDArray[np.uint8], NDArray[np.bool_]] | None = None
+        self._orbit: tuple[NDArray[np.uint32], Writes] | None = None
+        self._next_list = 0
+        self._stopped = threading.Event()
+        if self._board("identity") != _BOARD or self._core("identity")["value"] != _CORE:
+            raise DeviceError(f"{link.name}: this is no board of voxrt; load a bitstream of voxrt bitstream")
+        version = self._board("version")
+        if version >> 8 & 0xFF != _MAJOR:
+            raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
+        configuration = self._core("configuration")
+        self.lanes = lanes = configuration["lanes"]
+        self.clock_hz = self._board("clock")
+        self.identity = Identity(
+            name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
+            version=f"{version >> 8 & 0xFF}.{version & 0xFF}",
+            capacity=1 + (8 << configuration["block_bits"]),
+            depth=configuration["max_depth"],
+            size=SCREEN,
+            position_limit=1 << (configuration["position_bits"] - 1),
+            features=frozenset(name for name in FEATURES if self._core("features")[name]),
+            clock=self.clock_hz,
+        )
+        self._repeated = self._board("underruns"), self._board("late")
+
+    def loaded(self) -> LoadedScene | None:
+        """Read the scene that the board shows, and where it is; None if its words are no octree."""
+        root, depth = (int(self._link.read(REGISTERS[name][0], 1)[0]) for name in ("root", "depth"))
+        words = self.read_memory(0, self.identity.capacity)[root:]
+        pointers = words >> 31 == 0
+        words = np.where(pointers, words - np.uint32(root), words)
+        try:
+            words = words[: _octree_end(words, depth)]
+            check_memory(words, depth)
+        except (Refused, IndexError):
+            return None
+        rows = _material_rows(self._link.read(TABLE + 4 * _SCENE_WORD, CAMERAS_WORD))
+        colours = np.stack([rows >> 16 & 0xFF, rows >> 8 & 0xFF, rows & 0xFF], axis=1).astype(np.uint8)
+        scene = Scene("the scene on the board", depth, words, colours, (rows >> 24 & 1).astype(np.bool_))
+        return LoadedScene(scene, root)
+
+    def registers(self) -> Mapping[str, int]:
+        """Read all registers, by name: the ray tracer's, then the board's."""
+        core = {name: int(self._link.read(address, 1)[0]) for name, (address, _) in REGISTERS.items()}
+        return {**core, **{f"board.{name}": self._board(name) for name in BOARD_REGISTERS}}
+
+    def hold(self) -> None:
+        """Let no frame start until :meth:`frame` is called, and wait until the present one ends."""
+        self._write_board("control", self._board("control") & ~RUN | STEERED)
+        self._wait_until(lambda: not self._core("status")["busy"], "the present frame does not end")
+
+    def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
+        """Write words from word `address` on, at once: the frame in progress, if any, goes on."""
+        self._link.write(OCTREE_MEMORY + 4 * address, words)
+        self._model.write_memory(address, words)
+
+    def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
+        """Read `count` words from word `address` on."""
+        return self._link.read(OCTREE_MEMORY + 4 * address, count)
+
+    def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
+        """Keep the material table; :meth:`select_scene` writes it together with the scene."""
+        self._materials = colours.copy(), mirrors.copy()
+
+    def prepare_orbit(self, cameras: Sequence[Camera], lighting: Lighting, scale: int, period: int = 3) -> None:
+        """Make :meth:`select_scene` replace the orbit as well, and let the board turn by itself afterwards.
+
+        Parameters
+        ----------
+        cameras
+            128 of them, for pictures of 640 x 480 pixels divided by 2**scale.
+        lighting
+            Of the pictures.
+        scale
+            0 ... 2.
+        period
+            Frames per camera.
+        """
+        if len(cameras) != CAMERAS:
+            raise ValueError(f"an orbit has {CAMERAS} cameras, not {len(cameras)}")
+        lists = [encode_list(camera_writes(camera), end=False) for camera in cameras]
+        width, height = (side >> scale for side in SCREEN)
+        control = period << 8 | scale << 4 | RUN | TURN
+        writes = register_writes("size", width=width, height=height) + lighting_writes(lighting)
+        writes += [(BOARD_REGISTERS["camera"], [0]), (BOARD_REGISTERS["control"], [control])]
+        self._orbit = np.array(lists, dtype=np.uint32).ravel(), writes
+
+    def select_scene(self, root: int, depth: int) -> None:
+        """Show the octree at word `root` from the next frame on, with the materials that were written last."""
+        writes = register_writes("depth", depth) + register_writes("root", root)
+        if self._materials is not None:
+            writes += [(MATERIALS, material_rows(*self._materials))]
+        orbit, self._orbit = self._orbit, None
+        if orbit is None:
+            self._play(writes, _SCENE_WORD)
+        else:
+            self._replace_orbit(writes + orbit[1], orbit[0])
+        if self._materials is not None:
+            self._model.write_materials(*self._materials)
+        self._model.select_scene(root, depth)
+        self._materials = None
+
+    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+        """Render a view by the model, and show it on the monitor; the model's picture is returned."""
+        started = time.perf_counter()
+        picture = self._model.frame(view, seconds)
+        control = self._board("control")
+        scale = self._choose_scale(control >> 4 & 3)
+        size = SCREEN[0] >> scale, SCREEN[1] >> scale
+        red, green, blue = view.background
+        writes = register_writes("size", width=size[0], height=size[1])
+        writes += camera_writes(refit(view.camera, view.size, size)) + lighting_writes(view.lighting)
+        writes += [(MATERIALS, [red << 16 | green << 8 | blue])]
+        writes += [(BOARD_REGISTERS["control"], [control & _PERIOD_BITS | scale << 4 | STEERED | RUN])]
+        self._play(writes, _FREE_WORDS[self._next_list])
+        self._next_list = (self._next_list + 1) % len(_FREE_WORDS)
+        status = self._core("status")
+        problems = [text for name, text in _PROBLEMS.items() if status[name]]
+        if problems:
+            self._link.write(REGISTERS["status"][0], [sum(1 << REGISTERS["status"][1][name][0] for name in _PROBLEMS)])
+            raise DeviceError(
+                f"the ray tracer reports {' and '.join(problems)}; upload the scene again, or move the camera"
+            )
+        counters = Counters(picture.counters.rays, None, None, time.perf_counter() - started)
+        return replace(picture, counters=counters)
+
+    def stop(self) -> None:
+        """End what is in progress; further frames and writes fail."""
+        self._stopped.set()
+        self._model.stop()
+
+    def close(self) -> None:
+        """Close the line; the board goes on showing the last frame."""
+        self._link.close()
+
+    def _choose_scale(self, present: int) -> int:
+        """Take pixels of twice the side when the board could not keep up with the screen since the last frame."""
+        repeated = self._board("underruns"), self._board("late")
+        behind, self._repeated = repeated != self._repeated, repeated
+        return min(present + behind, _LARGEST_SCALE)
+
+    def _replace_orbit(self, writes: Writes, cameras: NDArray[np.uint32]) -> None:
+        """Write the cameras while none of them is played, then play `writes`. A failure leaves the old cameras."""
+        place = TABLE + 4 * CAMERAS_WORD
+        control = self._board("control")
+        before = self._link.read(place, CAMERAS * CAMERA_WORDS)
+        self._write_board("control", control | STEERED)
+        try:
+            self._write_checked(place, cameras)
+            self._play(writes, _SCENE_WORD)
+        except DeviceError:
+            self._write_checked(place, before)
+            self._write_board("control", control)
+            raise
+
+    def _play(self, writes: Writes, word: int) -> None:
+        """Let the board carry out writes, as a list at a word of the table, between two frames; wait until it has."""
+        self._write_checked(TABLE + 4 * word, encode_list(writes))
+        self._write_board("play", word)
+        self._wait_until(lambda: not self._board("play") >> 31, "the board does not start a frame")
+
+    def _write_checked(self, address: int, words: ArrayLike) -> None:
+        expected = np.asarray(words, dtype=np.uint32)
+        self._link.write(address, expected)
+        if not np.array_equal(self._link.read(address, len(expected)), expected):
+            raise DeviceError(
+                f"{self._link.name}: the table at 0x{address:06X} does not keep what was written; try again, "
+                "and load the bitstream again if that repeats"
+            )
+
+    def _wait_until(self, reached: Callable[[], bool], problem: str) -> None:
+        end = time.monotonic() + _WAIT_SECONDS
+        while not reached():
+            if self._stopped.is_set():
+                raise DeviceError("the frame was stopped")
+            if time.monotonic() > end:
+                raise DeviceError(
+                    f"{self._link.name}: {problem} within {_WAIT_SECONDS:.0f} s; load the bitstream again"
+                )
+
+    def _board(self, name: str) -> int:
+        return int(self._link.read(BOARD_REGISTERS[name], 1)[0])
+
+    def _write_board(self, name: str, value: int) -> None:
+        self._link.write(BOARD_REGISTERS[name], [value])
+
+    def _core(self, name: str) -> dict[str, int]:
+        address, fields = REGISTERS[name]
+        value = int(self._link.read(address, 1)[0])
+        return {field: value >> low & ((1 << width) - 1) for field, (low, width) in fields.items()}
+
+
+def _material_rows(table: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Find what the list at the table's first word writes to the material table: uint32, shape (256,)."""
+    rows = np.zeros(256, dtype=np.uint32)
+    word = 0
+    while word < len(table) and (count := int(table[word]) >> 24):
+        first = ((int(table[word]) & 0xFFFFFF) - MATERIALS) // 4
+        data = table[word + 1 : word + 1 + count]
+        if 0 <= first < len(rows):
+            rows[first : first + count] = data[: len(rows) - first]
+        word += 1 + count
+    return rows
+
+
+def _octree_end(words: NDArray[np.uint32], depth: int) -> int:
+    """Find the end of the last block that word 0 leads to; IndexError if a pointer leads out of the memory."""
+    addresses, end = np.array([0]), 1
+    for _ in range(depth):
+        reached = words[addresses]
+        blocks = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
+        if len(blocks) == 0:
+            break
+        end = max(end, int(blocks[-1]) + 8)
+        addresses = (blocks[:, None] + np.arange(8)).ravel()
+    if end > len(words):
+        raise IndexError
+    return end

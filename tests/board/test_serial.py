@@ -1,0 +1,163 @@
+"""The serial line of the ECP5 boards: damaged bytes, unplugged cables, scenes that change on the running board."""
+
+from __future__ import annotations
+
+import contextlib
+from itertools import chain, repeat
+
+import numpy as np
+import pytest
+from fakes.ecp5_board import CLOCK, Board
+from oracles import worlds
+from oracles.cuts import memory_of
+
+from voxrt.board.designs.boot_table import CAMERAS, RUN, SCREEN, STEERED, TURN
+from voxrt.board.errors import DeviceError
+from voxrt.board.scene import Scene
+from voxrt.board.scene_memory import SceneMemory
+from voxrt.board.serial_device import SerialDevice
+from voxrt.board.serial_link import SerialLink
+from voxrt.board.simulated.model import ModelDevice
+from voxrt.board.view import CAMERA_LIGHT, View, frame_world, refit
+
+FAULTS = ("lose request", "damage request", "lose answer", "cut answer", "damage answer", "noise")
+CONTROL = 0x1008
+SCALE = 2
+SIZE = (SCREEN[0] >> SCALE, SCREEN[1] >> SCALE)
+
+
+def scene_of(seed, depth=4):
+    colours = np.random.default_rng(seed).integers(40, 256, (256, 3), dtype=np.uint8)
+    words = memory_of(worlds.boxes(depth, 4, seed))
+    return Scene(f"world {seed}", depth, words, colours, np.zeros(256, dtype=np.bool_))
+
+
+def opened(board):
+    return SerialDevice(SerialLink("test port", board), ModelDevice())
+
+
+def quiet(_stage, _done, _total):
+    pass
+
+
+def orbit_of(scene):
+    return [frame_world(scene.depth, SIZE)] * CAMERAS
+
+
+def picture_of(scene, camera, size):
+    model = ModelDevice()
+    SceneMemory(model).load(scene, quiet)
+    return model.frame(View(camera, size, scene.background)).colour
+
+
+def show(board, scene):
+    """Upload a scene as the command does."""
+    device = opened(board)
+    device.prepare_orbit(orbit_of(scene), CAMERA_LIGHT, SCALE)
+    SceneMemory(device, device.loaded()).load(scene, quiet)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_disturbed_requests_are_sent_again(fault):
+    board = Board(faults=chain.from_iterable(repeat((fault, ""), 40)))
+    link = SerialLink("test port", board)
+    words = np.arange(600, dtype=np.uint32) * 77
+    link.write(0x4000, words)
+    np.testing.assert_array_equal(link.read(0x4000, 600), words)
+
+
+def test_a_dead_line_is_told():
+    link = SerialLink("test port", Board(faults=repeat("lose request")))
+    with pytest.raises(DeviceError, match=r"^test port: the board does not answer; check the cable"):
+        link.read(0x1000, 1)
+
+
+def test_what_is_no_register_is_told():
+    with pytest.raises(DeviceError, match="address 0x003000 has no register"):
+        SerialLink("test port", Board()).read(0x3000, 1)
+
+
+def test_another_device_is_no_board():
+    board = Board()
+    board.registers[0x1000] = 0
+    with pytest.raises(DeviceError, match=r"^test port: this is no board of voxrt"):
+        opened(board)
+
+
+def test_identity():
+    identity = opened(Board()).identity
+    assert (identity.name, identity.clock, identity.size) == ("board at test port, 1 lane", CLOCK, SCREEN)
+
+
+def test_opening_changes_nothing():
+    board = Board()
+    show(board, scene_of(1))
+    before = board.screen()
+    device = opened(board)
+    np.testing.assert_array_equal(board.screen(), before)
+    device.close()
+    assert board.closed
+
+
+def test_a_scene_changes_on_the_running_board():
+    board, first, second = Board(), scene_of(1), scene_of(2, depth=5)
+    for scene in (first, second, first):
+        show(board, scene)
+        camera = frame_world(scene.depth, SIZE)
+        np.testing.assert_array_equal(board.screen(), picture_of(scene, camera, SIZE))
+        assert board.registers[CONTROL] & 0xF == RUN | TURN
+
+
+def test_the_present_scene_is_read_back():
+    board, scene = Board(), scene_of(3)
+    show(board, scene_of(1))
+    show(board, scene)
+    loaded = opened(board).loaded()
+    assert loaded.base > 0
+    assert loaded.scene.depth == scene.depth
+    np.testing.assert_array_equal(loaded.scene.words, scene.words)
+    np.testing.assert_array_equal(loaded.scene.colours, scene.colours)
+
+
+def test_the_monitor_follows_the_page():
+    board, scene = Board(), scene_of(4)
+    device = opened(board)
+    SceneMemory(device).load(scene, quiet)
+    view = View(frame_world(scene.depth, (320, 240)), (320, 240), scene.background)
+    board.registers[CONTROL] = SCALE << 4
+    frame = device.frame(view)
+    np.testing.assert_array_equal(frame.colour, picture_of(scene, view.camera, view.size))
+    assert board.registers[CONTROL] & 0xF == RUN | STEERED
+    np.testing.assert_array_equal(board.screen(), picture_of(scene, refit(view.camera, view.size, SIZE), SIZE))
+
+
+def test_page_and_monitor_show_the_same_pixels_at_the_screens_size():
+    board, scene = Board(), scene_of(5)
+    device = opened(board)
+    SceneMemory(device).load(scene, quiet)
+    frame = device.frame(View(frame_world(scene.depth, SCREEN), SCREEN, scene.background))
+    np.testing.assert_array_equal(board.screen(), frame.colour)
+
+
+def test_a_board_that_falls_behind_takes_larger_pixels():
+    board, scene = Board(), scene_of(6)
+    device = opened(board)
+    SceneMemory(device).load(scene, quiet)
+    view = View(frame_world(scene.depth, SCREEN), SCREEN, scene.background)
+    scales = []
+    for late in (0, 5, 0, 7, 9):
+        board.registers[0x101C] += late
+        device.frame(view)
+        scales.append(board.registers[CONTROL] >> 4 & 3)
+    assert scales == [0, 1, 1, 2, 2]
+
+
+@pytest.mark.parametrize("after", [0, 1, 2, 5, 9, 14, 20, 24, 26, 30, 34, 36, 38, 40])
+def test_an_unplugged_cable_leaves_the_old_scene_or_shows_the_new_one(after):
+    board, old, new = Board(), scene_of(1), scene_of(2, depth=5)
+    show(board, old)
+    board.faults = chain(repeat("", after), repeat("unplug"))
+    with contextlib.suppress(DeviceError):
+        show(board, new)
+    pictures = [picture_of(scene, frame_world(scene.depth, SIZE), SIZE) for scene in (old, new)]
+    assert any(np.array_equal(board.screen(), picture) for picture in pictures)

