@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 from voxrt.cli.arguments import Depth, Reporting, choice
 from voxrt.cli.memory_results import info_result
-from voxrt.cli.messages import summarize, tabulate
+from voxrt.cli.messages import frames_row, summarize, tabulate
 from voxrt.cli.results import print_json
 from voxrt.cli.source import read_source
 
@@ -36,7 +36,8 @@ def info(
     reporting
         How results are printed.
     """
-    told = info_result(read_source(scene, depth, dialect).rom)
+    blob = read_source(scene, depth, dialect).blob
+    told = info_result(blob)
     if reporting.json:
         print_json(told)
         return
@@ -50,6 +51,8 @@ def info(
     ]
     if told.shared_words < told.words:
         rows.append(("shared", f"{told.shared_words:,} words would do: equal blocks are stored more than once"))
+    if blob.animation is not None:
+        rows.append(("frames", frames_row(blob.animation, told.words)))
     if told.bounds:
         rows.insert(2, ("within", "{} up to {}".format(*told.bounds)))
     rows += [
@@ -69,3 +72,12 @@ def info(
         ],
         answer=True,
     )
+    if told.frames is not None:
+        tabulate(
+            ("frame", "root", "words", "time", "name"),
+            [
+                (str(row), str(one.root), f"{one.words:,}", "" if one.time is None else f"{one.time:.4g}", one.name)
+                for row, one in enumerate(told.frames)
+            ],
+            answer=True,
+        )
