@@ -123,7 +123,7 @@ def blob_bytes(blob: Blob) -> bytes:
             sections[b"FACE"] = _FACES.pack(*light.faces)
     if blob.animation:
         frames = blob.animation.frames
-        sections[b"FRMS"] = struct.pack("<I", len(frames)) + b"".join(_pack_frame(frame) for frame in frames)
+        sections[b"FRMS"] = struct.pack("<I4x", len(frames)) + b"".join(_pack_frame(frame) for frame in frames)
     told = msgspec.structs.replace(blob.provenance, seconds={})
     if told != Provenance():
         sections[b"PROV"] = msgspec.json.encode(told)
@@ -263,7 +263,7 @@ def _animation(path: Path, section: bytes) -> Animation:
     frames = []
     try:
         (count,) = struct.unpack_from("<I", section)
-        position = 4
+        position = 8
         if not 1 <= count <= len(section) // _FRAME.size:
             raise _damaged(path, "section FRMS", f"{count} frames are not what its {len(section)} bytes hold")
         for _ in range(count):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from voxrt.asset_source import as_text, asset_name
 from voxrt.from_trimesh import is_trimesh
@@ -65,14 +65,17 @@ def takes_of(
         seconds = [real(f"times[{row}]", one) for row, one in enumerate(times)]
         if not 1 <= len(seconds) <= _MOST_FRAMES:
             raise ValueError(f"times must be 1 … {_MOST_FRAMES}, not {len(seconds)}")
-        return asset_name(assets), tuple(Take(assets, replace(options, time=one)) for one in seconds)  # type: ignore[arg-type]
+        asset = cast("Asset", assets)
+        return asset_name(asset), tuple(Take(asset, replace(options, time=one)) for one in seconds)
+    several: Sequence[Asset]
     if isinstance(assets, str | os.PathLike):
-        name, assets = asset_name(assets), frame_files(assets)
+        name, several = asset_name(assets), frame_files(assets)
     elif _is_one(assets):
         raise ValueError("one asset is an animation only at several times; give times, or several assets")
     else:
-        name = _common_name([asset_name(one) for one in assets])  # type: ignore[union-attr]
-    frames = tuple(Take(one, options, _frame_name(one)) for one in assets)  # type: ignore[union-attr]
+        several = cast("Sequence[Asset]", assets)
+        name = _common_name([asset_name(one) for one in several])
+    frames = tuple(Take(one, options, _frame_name(one)) for one in several)
     if not 1 <= len(frames) <= _MOST_FRAMES:
         raise ValueError(f"an animation has 1 … {_MOST_FRAMES} frames, not {len(frames)}")
     return name, frames

@@ -43,13 +43,13 @@ def info(
         return
     side, world = 1 << told.depth, told.world
     size = f", {world.voxel_size:.4g} m each" if world else ""
-    unshared = 1 + 8 * told.unshared_blocks
+    without = f"; {1 + 8 * told.unshared_blocks:,} words without sharing"
     rows = [
         ("grid", f"{side} voxels per side (depth {told.depth}){size}"),
         ("solid", f"{told.voxels:,} voxels, {100 * told.voxels / side**3:.2f} %"),
-        ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB; {unshared:,} words without sharing"),
+        ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB" + ("" if blob.animation else without)),
     ]
-    if told.shared_words < told.words:
+    if told.shared_words < told.words and blob.animation is None:
         rows.append(("shared", f"{told.shared_words:,} words would do: equal blocks are stored more than once"))
     if blob.animation is not None:
         rows.append(("frames", frames_row(blob.animation, told.words)))
