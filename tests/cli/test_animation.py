@@ -35,13 +35,14 @@ def bounds_of(grid: voxrt.Grid) -> tuple[float, ...]:
     return (*grid.origin, *(place + grid.size * grid.voxel_size for place in grid.origin))
 
 
-@pytest.mark.parametrize("write", [write_lift_glb, write_lift_usda], ids=["glTF", "USD"])
-def test_the_pixels_of_each_frame_are_those_of_that_frame_alone(tmp_path, write):
-    path = write(tmp_path / f"lift.{'glb' if write is write_lift_glb else 'usda'}")
-    times = voxrt.frame_times(0, 2, 8)
+@pytest.mark.parametrize(("suffix", "count"), [("glb", 8), ("usda", 4)])
+def test_the_pixels_of_each_frame_are_those_of_that_frame_alone(tmp_path, suffix, count):
+    write = {"glb": write_lift_glb, "usda": write_lift_usda}[suffix]
+    path = write(tmp_path / f"lift.{suffix}")
+    times = voxrt.frame_times(0, 2, count)
     built = voxrt.build_animation(path, depth=5, times=times)
     camera = voxrt.animation_camera(built.blob, SIZE)
-    assert len(built.octree.words) < 0.6 * built.animation.words_alone
+    assert len(built.octree.words) < 0.8 * built.animation.words_alone
     seen = set()
     for time, frame in zip(times, built.animation.frames, strict=True):
         alone = voxrt.build(path, time=time, depth=5, bounds=bounds_of(built.rom.grid))
@@ -50,7 +51,7 @@ def test_the_pixels_of_each_frame_are_those_of_that_frame_alone(tmp_path, write)
         found = voxrt.render(built.rom, camera, size=SIZE, engine="model", root=frame.root).colour
         assert np.array_equal(found, expected)
         seen.add(found.tobytes())
-    assert len(seen) == 5  # it comes down as it went up
+    assert len(seen) == count // 2 + 1  # it comes down as it went up
 
 
 def test_the_hardware_shows_a_frame_by_its_root(lift):
