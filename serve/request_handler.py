@@ -140,7 +140,7 @@ class RequestHandler:
 
     async def _load(self, number: int, load: Callable[[Progress], Coroutine[Any, Any, Scene]]) -> None:
         progress = _ReportedProgress(self._client, number)
-        progress("load", 0, 1)  # before the process that reads the files has started, which may take long
+        progress("read", 0, 1)  # before the process that reads the files has started, which may take long
         repeating = asyncio.ensure_future(progress.repeat())
         try:
             scene = await load(progress)

@@ -151,7 +151,7 @@ def test_a_reader_that_is_slow_to_start_is_no_silent_server(run, monkeypatch):
                 return new
 
         def progress(stage, _done, _total):
-            if stage == "load" and next(count, None) is None:
+            if stage == "read" and next(count, None) is None:
                 heard.set()
 
         async with served(loaded=scene(), reader=SlowReader()) as server, open_client(server.url) as client:
