@@ -64,11 +64,13 @@ MINUTES ?= 15
 soak: $(VENV)/.installed
 	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
-# The registers as generated, the cocotb benches and what they cover, the formal proofs.
+# The registers as generated, the cocotb benches and what they cover, the formal proofs. BENCHES=--quick leaves out the
+# forms of the core that repeat the benches of others.
+BENCHES :=
 hardware: $(VENV)/.hardware
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
 	git diff --exit-code -- rtl/generated board/registers.py
-	$(BIN)/python rtl/benches/coverage.py
+	$(BIN)/python rtl/benches/coverage.py $(BENCHES)
 	$(BIN)/python rtl/formal/prove.py
 
 # Ten minutes and more per board. BOARDS chooses.
@@ -136,13 +138,15 @@ fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
 	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
 covered = $(CXX) -std=c++20 -O1 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
-build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h \
-		$(wildcard voxelize/src/*.cpp octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
-	@rm -rf $@.objects && mkdir -p $@.objects
-	cd $@.objects && $(covered) -fsanitize-coverage=trace-pc -c $(abspath $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
-	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter %.cpp,$(wordlist 1,2,$^)) $@.objects/*.o -pthread
+COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
+build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
+	@mkdir -p $(@D)
+	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<
 
-.SECONDARY: $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
+build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
+	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
+
+.SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
 	rm -rf $(VENV) build demo
