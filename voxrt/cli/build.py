@@ -127,7 +127,7 @@ def build(
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    told = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
+    told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
     _check_company(assets, output, preview) if frames is None else _check_frames(assets, frames, told)
     options = BuildOptions(
         depth=depth,
