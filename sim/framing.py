@@ -73,7 +73,16 @@ def frame_animation(rom: Rom, roots: Sequence[int], size: tuple[int, int]) -> Ca
 
 
 def outline_frames(octree: Octree, roots: Sequence[int]) -> NDArray[np.float64]:
-    """Return points whose convex hull holds all that is solid in any frame: float64, shape (N, 3), voxels."""
+    """Return points whose convex hull holds all that is solid in any frame: float64, shape (N, 3), voxels.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points, join_frames
+    >>> memory, roots = join_frames([from_points([[x, 2, 3]], [7], depth=2) for x in range(4)])
+    >>> points = outline_frames(memory, roots)
+    >>> points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    ([0.0, 2.0, 3.0], [4.0, 3.0, 4.0])
+    """
     low, high = _solid_boxes(frames_as_octants(octree, roots), octree.depth)
     return _corners(low & (octree.size - 1), high - low)
 
