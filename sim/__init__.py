@@ -13,6 +13,7 @@ from voxrt.octree.camera import (
     pixel_directions,
 )
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
 from voxrt.sim.framing import frame_scene, outline
 from voxrt.sim.image import write_png
@@ -26,8 +27,10 @@ from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 __all__ = [
     "FACE_NONE",
     "Background",
+    "CacheCost",
     "Camera",
     "Comparison",
+    "Dram",
     "Engine",
     "EngineCheck",
     "Frame",

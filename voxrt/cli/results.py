@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.build_result import BuildResult
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.pictures import Picture
-    from voxrt.sim import Camera
+    from voxrt.sim import Camera, RenderCost
     from voxrt.voxelize import SceneWarning
 
 
@@ -54,6 +54,20 @@ class CameraEntry(msgspec.Struct, frozen=True):
     up: tuple[int, int, int]
 
 
+class CacheEntry(msgspec.Struct, frozen=True):
+    """What a picture cost at the caches of a configuration that has them."""
+
+    l1_hits: float
+    """Part of the words that needed no line from the shared cache, 0 to 1."""
+    l2_hits: float
+    """Part of the lines asked for that the shared cache had."""
+    lines_per_pixel: float
+    """Lines of 32 bytes from the external memory."""
+    bytes_per_pixel: float
+    requests_per_word: float
+    """How often lanes asked for each word that they read."""
+
+
 class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """``voxrt render --json``, and `render` in ``voxrt build --json``."""
 
@@ -70,6 +84,8 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     camera: CameraEntry
     outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
     """Files written, by kind: `picture`. In a build they stand with the build's."""
+    cache: CacheEntry | msgspec.UnsetType = msgspec.UNSET
+    """Of a configuration with caches."""
     wrong_pixels: int | msgspec.UnsetType = msgspec.UNSET
     """With ``--check``: pixels on which the two engines differ."""
 
@@ -207,7 +223,21 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         seconds=cost.seconds,
         camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
+        cache=msgspec.UNSET if cost.cache is None else cache_entry(cost),
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
+    )
+
+
+def cache_entry(cost: RenderCost) -> CacheEntry:
+    """Return what a picture cost at the caches, for programs."""
+    cache = cost.cache
+    assert cache is not None
+    return CacheEntry(
+        l1_hits=cache.l1_hits,
+        l2_hits=cache.l2_hits,
+        lines_per_pixel=cache.lines_read / cost.rays,
+        bytes_per_pixel=cache.bytes_read / cost.rays,
+        requests_per_word=cache.word_requests / max(cost.words_read or 0, 1),
     )
 
 
