@@ -1,7 +1,7 @@
 """What a core holds when it shows a scene: the contents of its memory, and the writes that start its first frame.
 
-``voxrt convert --form core`` writes these files, for simulations, for block RAMs that are configured with their contents,
-and for programs in C. ``docs/first_frame.md`` is the reference.
+``voxrt convert --form core`` writes these files, for simulations, for block RAMs that are configured with their
+contents, and for programs in C. ``docs/first_frame.md`` is the reference.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import numpy as np
 from voxrt.board.designs.boot_table import OCTREE_MEMORY, encode_octree, scene_writes
 from voxrt.board.device import Identity
 from voxrt.board.register_writes import camera_writes, register_writes
-from voxrt.board.view import View
 from voxrt.board.view_check import check_view
 from voxrt.octree import coarsen
 from voxrt.voxelize import DoesNotFitError
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
 
     from voxrt.board.register_writes import Writes
     from voxrt.board.scene import Scene
+    from voxrt.board.view import View
     from voxrt.octree import Rom
     from voxrt.rtl.configurations import Configuration
 
@@ -31,7 +31,9 @@ FRAME_LIMIT = 4095
 """Columns and rows of a picture, at most."""
 
 BOOT, HEADER = "boot.hex", "scene.h"
+_PRIVATE, _BANKED, _CACHED = range(3)  # MemoryForm
 _BANKS = 16
+_FIRST_WORD = 7  # of an external memory: word 0 is the last of its line
 _OCTREE, _TOP, _BANK_FILES = "octree.hex", "top.hex", tuple(f"bank_{number:02d}.hex" for number in range(_BANKS))
 MEMORY_FILES = (_OCTREE, _TOP, *_BANK_FILES)
 """The contents of block RAMs, in any form of memory."""
@@ -70,8 +72,8 @@ def core_files(scene: Scene, view: View, configuration: Configuration) -> dict[s
     Returns
     -------
     dict
-        ``octree.hex``, or a file per bank and ``top.hex``: rows for ``$readmemh``. ``boot.hex``: the writes, each as
-        ADDRESS_DATA. ``scene.h``: words and writes for C.
+        What :func:`memory_files` gives. ``boot.hex``: the writes, each as ADDRESS_DATA, with word 0 of the octree.
+        ``scene.h``: words and writes for C.
 
     Raises
     ------
@@ -90,8 +92,10 @@ def core_files(scene: Scene, view: View, configuration: Configuration) -> dict[s
     )
     check_view(view, identity)
     writes = scene_writes(scene, view.lighting, view.size) + camera_writes(view.camera)
-    start = register_writes("control", start=1)
-    boot = [*writes, (OCTREE_MEMORY, [int(scene.words[0])]), *start]
+    cached = parameters["MemoryForm"] == _CACHED
+    start = register_writes("control", start=1, flush=cached)
+    first = [] if cached else [(OCTREE_MEMORY, [int(scene.words[0])])]
+    boot = [*writes, *first, *start]
     files = memory_files(scene.words, configuration)
     files[BOOT] = "".join(f"{address:08x}_{word:08x}\n" for address, word in each_write(boot)).encode()
     files[HEADER] = _header(scene, view, configuration, [*writes, *start]).encode()
@@ -110,12 +114,12 @@ def each_write(writes: Writes) -> list[tuple[int, int]]:
 
 
 def memory_files(words: NDArray[np.uint32], configuration: Configuration) -> dict[str, bytes]:
-    """Give the contents of the block RAMs of an octree memory, by file.
+    r"""Give the contents of an octree memory, by file.
 
     Parameters
     ----------
     words
-        uint32, report dialect. Word 0 is in no block RAM.
+        uint32, report dialect. Word 0 is in a register of the core, and in no block RAM.
     configuration
         Its form of memory and its size. Rows beyond the scene are empty space.
 
@@ -123,7 +127,8 @@ def memory_files(words: NDArray[np.uint32], configuration: Configuration) -> dic
     -------
     dict
         Private copies: ``octree.hex``, which every copy holds. Banks: ``bank_00.hex`` to ``bank_15.hex``, and
-        ``top.hex``, which every copy of the first blocks holds.
+        ``top.hex``, which every copy of the first blocks holds. External: ``octree.hex``, words of 32 bits that are not
+        encoded, from ``memory_base`` on.
 
     Examples
     --------
@@ -131,11 +136,15 @@ def memory_files(words: NDArray[np.uint32], configuration: Configuration) -> dic
     >>> from voxrt.rtl.configurations import read_configurations
     >>> leaves = np.array([1, *[0xFFFFFF07] * 8], np.uint32)
     >>> memory_files(leaves, read_configurations()["tiny"])["octree.hex"][:10]
-    b'1007\\n1007\\n'
+    b'1007\n1007\n'
     """
-    block_bits = configuration.parameters["BlockBits"]
+    block_bits, form = (configuration.parameters[name] for name in ("BlockBits", "MemoryForm"))
+    if form == _CACHED:
+        image = np.zeros(-(-(_FIRST_WORD + len(words)) // 8) * 8, np.uint32)
+        image[_FIRST_WORD : _FIRST_WORD + len(words)] = words
+        return {_OCTREE: "".join(f"{word:08x}\n" for word in image.tolist()).encode()}
     rows = encode_octree(words, block_bits)
-    if not configuration.parameters["Banked"]:
+    if form == _PRIVATE:
         return {_OCTREE: _rows(rows, block_bits)}
     # voxrt_banked_memory: the word in a row of a bank is {row, bank ^ lowest bits of row}.
     row, bank = np.divmod(np.arange(len(rows)), _BANKS)
@@ -153,8 +162,8 @@ def _rows(rows: NDArray[np.uint32], block_bits: int) -> bytes:
 _HEADER = """\
 /* The scene {name} for a core of voxrt, configuration {configuration}: written by `voxrt convert --form core`.
  *
- * Write voxrt_scene_words to the memory port: word a to the byte address 4 a. Then the pairs of voxrt_scene_writes to
- * the registers, in order: byte address, value. The last one starts the frame.
+ * Write voxrt_scene_words to the {memory}. Then the pairs of
+ * voxrt_scene_writes to the registers, in order: byte address, value. The last one starts the frame.
  */
 #ifndef VOXRT_SCENE_H
 #define VOXRT_SCENE_H
@@ -185,6 +194,9 @@ def _header(scene: Scene, view: View, configuration: Configuration, writes: Writ
     return _HEADER.format(
         name="".join(letter if letter.isalnum() or letter in " -_." else "_" for letter in scene.name),
         configuration=configuration.name,
+        memory="external memory: word a to the byte address memory_base + 28 + 4 a"
+        if configuration.parameters["MemoryForm"] == _CACHED
+        else "memory port: word a to the byte address 4 a",
         depth=scene.depth,
         width=view.size[0],
         height=view.size[1],

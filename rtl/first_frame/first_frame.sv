@@ -2,18 +2,21 @@
 // to frame.ppm. docs/first_frame.md explains the writes.
 //
 //   boot.hex     a write per line, ADDRESS_DATA in hex: registers are at their own addresses, word a of the octree memory
-//                is at 800000 + 4 a. `voxrt convert --form core` writes it. +boot=FILE names another file.
-//   OctreeFile   octree.hex of the same command, for private copies: then boot.hex holds word 0 alone.
+//                is at 800000 + 4 a. +boot=FILE names another file.
+//   OctreeFile   what the block RAMs hold from the beginning, with private copies; "": boot.hex writes all words.
 //   frame.ppm    the picture as text. +frame=FILE names another file.
 //
-// Read by Verilator, and by Icarus Verilog together with the core in plain Verilog: define PLAIN_VERILOG there, since
-// that core has no parameters.
+// `voxrt convert --form core` writes octree.hex and a boot.hex that belongs to it. The boot.hex beside this file needs no
+// other. Memory in block RAM alone: there is no external memory here.
+//
+// It is for Verilator with the sources, or Icarus Verilog with the core in plain Verilog, which has no parameters: there,
+// define PLAIN_VERILOG.
 module first_frame #(
   parameter int Lanes        = 1,
   parameter int MaxDepth     = 10,
   parameter int PositionBits = 17,
   parameter int BlockBits    = 12,
-  parameter int Banked       = 0,
+  parameter int MemoryForm   = 0,
   parameter int Light        = 0,
   parameter int Mirrors      = 0,
   parameter     OctreeFile   = "",
@@ -33,6 +36,7 @@ module first_frame #(
   wire [31:0] rdata;
   wire tvalid, tuser, tlast;
   wire [31:0] tdata, unused_read;
+  wire [107:0] unused_axi;
   wire [ 3:0] tkeep;
 
   voxrt_core
@@ -42,7 +46,7 @@ module first_frame #(
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
-    .Banked      (Banked[0]),
+    .MemoryForm  (MemoryForm),
     .Light       (Light[0]),
     .Mirrors     (Mirrors[0]),
     .OctreeFile  (OctreeFile)
@@ -75,6 +79,32 @@ module first_frame #(
     .bram_addr_i   (bram_addr),
     .bram_wrdata_i (wdata),
     .bram_rddata_o (unused_read),
+    .m_axi0_arvalid(unused_axi[0]),
+    .m_axi0_arready(1'b0),
+    .m_axi0_araddr (unused_axi[32:1]),
+    .m_axi0_arlen  (unused_axi[40:33]),
+    .m_axi0_arsize (unused_axi[43:41]),
+    .m_axi0_arburst(unused_axi[45:44]),
+    .m_axi0_arcache(unused_axi[49:46]),
+    .m_axi0_arprot (unused_axi[52:50]),
+    .m_axi0_rvalid (1'b0),
+    .m_axi0_rready (unused_axi[53]),
+    .m_axi0_rdata  (64'b0),
+    .m_axi0_rresp  (2'b00),
+    .m_axi0_rlast  (1'b0),
+    .m_axi1_arvalid(unused_axi[54]),
+    .m_axi1_arready(1'b0),
+    .m_axi1_araddr (unused_axi[86:55]),
+    .m_axi1_arlen  (unused_axi[94:87]),
+    .m_axi1_arsize (unused_axi[97:95]),
+    .m_axi1_arburst(unused_axi[99:98]),
+    .m_axi1_arcache(unused_axi[103:100]),
+    .m_axi1_arprot (unused_axi[106:104]),
+    .m_axi1_rvalid (1'b0),
+    .m_axi1_rready (unused_axi[107]),
+    .m_axi1_rdata  (64'b0),
+    .m_axi1_rresp  (2'b00),
+    .m_axi1_rlast  (1'b0),
     .m_axis_tvalid (tvalid),
     .m_axis_tready (1'b1),
     .m_axis_tdata  (tdata),
@@ -172,6 +202,10 @@ module first_frame #(
     wvalid     = 1'b0;
     arvalid    = 1'b0;
     bram_en    = 1'b0;
+    awaddr     = '0;
+    araddr     = '0;
+    wdata      = '0;
+    bram_addr  = '0;
     boot_name  = "boot.hex";
     frame_name = "frame.ppm";
     if ($value$plusargs("boot=%s", boot_name)) $display("first_frame: writes of %0s", boot_name);
@@ -181,8 +215,9 @@ module first_frame #(
     frame = $fopen(frame_name, "w");
     if (frame == 0) stop("the picture cannot be written");
 
+    // One clock is enough; unknown values of a simulator take some to leave the pipelines.
     rst_n = 1'b0;
-    @(negedge clk);
+    repeat (16) @(negedge clk);
     rst_n = 1'b1;
     while ($fscanf(boot, "%h\n", write) == 1) begin
       if (write[32+MemoryBit]) begin
