@@ -4,6 +4,15 @@ from pkgutil import extend_path
 
 __path__ = extend_path(__path__, __name__)
 
+from voxrt.octree.animation import (
+    Animation,
+    AnimationFrame,
+    check_frame_count,
+    check_roots,
+    frame_octree,
+    frames_as_octants,
+    join_frames,
+)
 from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
 from voxrt.octree.construct import build, from_dense, from_points
 from voxrt.octree.decoding import decode
@@ -27,6 +36,8 @@ __all__ = [
     "BOARDS",
     "DIALECTS",
     "MAX_DEPTH",
+    "Animation",
+    "AnimationFrame",
     "Census",
     "Dialect",
     "Difference",
@@ -41,6 +52,8 @@ __all__ = [
     "SurfaceChange",
     "build",
     "census",
+    "check_frame_count",
+    "check_roots",
     "coarsen",
     "count_in_box",
     "decode",
@@ -50,10 +63,13 @@ __all__ = [
     "encode",
     "fill_hidden",
     "fit",
+    "frame_octree",
+    "frames_as_octants",
     "from_dense",
     "from_points",
     "from_vdb",
     "hidden_voxels",
+    "join_frames",
     "leaves",
     "material_at",
     "octant_at",

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..board.errors import DeviceError, Refused, TooSlow
+from ..board.errors import DeviceError, FrameDropped, Refused, TooSlow
+from ..board.frame_drop import FrameDrop
 from ..board.scene import EMPTY_LEAF, Scene
 from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
@@ -48,6 +49,9 @@ EMPTY_SCENE = Scene(
 """The scene until another one is loaded: empty space, dark grey."""
 
 _REGISTERS_SECONDS = 0.05
+_OUTDATED_SECONDS = 0.5
+"""Frames that take longer are dropped when the view changes. One of two frames is never dropped, so that frames appear
+however often the view changes."""
 _LOG = logging.getLogger("voxrt.serve")
 
 
@@ -81,6 +85,7 @@ class Renderer:
         self.trouble: str | None = None
         self._memory = SceneMemory(device)
         self._thread = ThreadPoolExecutor(1, "device")
+        self._shown_frame: int | None = 0  # of the animation, that the device shows; None where that is not known
         self._loading = asyncio.Lock()
         self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
         self._changed = asyncio.Event()
@@ -88,6 +93,9 @@ class Renderer:
         self._registers: Mapping[str, int] = {}
         self._registers_time = -math.inf
         self._first_frame: tuple[View, Frame] | None = None  # of a scene that was loaded
+        self._drop: FrameDrop | None = None  # of the present frame, if it may be dropped
+        self._frame_began = -math.inf
+        self._dropped = False  # whether the last frame was
 
     def change_view(self, change: ChangeView, client: int, request: int) -> None:
         """Change the view; frames then carry the numbers `client` and `request`.
@@ -99,11 +107,17 @@ class Renderer:
         """
         view = change.applied_to(self.view)
         check_view(view, self.device.identity)
+        if view.frame >= len(self.scene.roots):
+            last = len(self.scene.roots) - 1
+            raise Refused(f"there is no frame {view.frame}; those of {self.scene.name} are 0 to {last}")
         self.view = view
         if change.nonstop is not None:
             self.nonstop = change.nonstop
         self._newest_request = (client, request)
         self._changed.set()
+        if self._drop is not None:
+            loop, drop, self._drop = asyncio.get_running_loop(), self._drop, None
+            loop.call_at(max(loop.time(), self._frame_began + _OUTDATED_SECONDS), drop.request)
 
     def check_scene(self, scene: Scene) -> None:
         """Refuse a scene that the device cannot hold or render; nothing is written."""
@@ -137,6 +151,7 @@ class Renderer:
             while not complete:
                 async with self._device_lock:
                     check()
+                    self._shown_frame = None  # the present scene may be selected anew, if this one fails
                     try:
                         complete = await self._on_device(partial(_finish_step, steps))
                     except TooSlow as error:
@@ -176,6 +191,9 @@ class Renderer:
             trouble = None
             try:
                 clients.queue_frame(await self._next_frame())
+            except FrameDropped:
+                self._changed.set()
+                continue
             except TooSlow as error:
                 trouble = f"{error}: move the camera, choose a smaller picture, or load another scene"
             except DeviceError as error:
@@ -204,16 +222,32 @@ class Renderer:
             if first is not None and first[0] == view:
                 frame = first[1]
             else:
-                frame = await self._on_device(partial(self._render, view))
+                frame = await self._render_until_outdated(view)
         self.frames += 1
         return FramePacket(self.frames, scene_number, client, request, frame)
 
-    def _render(self, view: View) -> Frame:
-        return self.device.frame(view, self.device.identity.frame_seconds(view.size))
+    async def _render_until_outdated(self, view: View) -> Frame:
+        """Render a frame; raise FrameDropped where it takes long and the view changes."""
+        drop = None if self._dropped else FrameDrop()
+        self._drop, self._frame_began, self._dropped = drop, asyncio.get_running_loop().time(), False
+        try:
+            return await self._on_device(partial(self._render, view, drop))
+        except FrameDropped:
+            self._dropped = True
+            raise
+        finally:
+            self._drop = None
+
+    def _render(self, view: View, drop: FrameDrop | None = None) -> Frame:
+        if view.frame != self._shown_frame:
+            self._memory.select_frame(view.frame)
+            self._shown_frame = view.frame
+        return self.device.frame(view, self.device.identity.frame_seconds(view.size), drop)
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)
         view = self._view_of(scene)
+        self._shown_frame = 0  # of the scene that was selected just now
         self._first_frame = view, self._render(view)
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
@@ -226,7 +260,7 @@ class Renderer:
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
         camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
-        view = replace(self.view, camera=camera, background=scene.background)
+        view = replace(self.view, camera=camera, background=scene.background, frame=0)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1

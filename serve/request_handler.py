@@ -93,7 +93,8 @@ class RequestHandler:
                 answer["registers"] = dict(await session.renderer.read_registers())
             case CastRay():
                 self._require_control()
-                cast = partial(cast_ray, session.renderer.scene, request.origin, request.direction)
+                renderer = session.renderer
+                cast = partial(cast_ray, renderer.scene, request.origin, request.direction, renderer.view.frame)
                 hit = await asyncio.get_running_loop().run_in_executor(None, cast)
                 answer["hit"] = None if hit is None else asdict(hit)
             case ReadCounters():
@@ -140,6 +141,7 @@ class RequestHandler:
 
     async def _load(self, number: int, load: Callable[[Progress], Coroutine[Any, Any, Scene]]) -> None:
         progress = _ReportedProgress(self._client, number)
+        progress("read", 0, 1)  # before the process that reads the files has started, which may take long
         repeating = asyncio.ensure_future(progress.repeat())
         try:
             scene = await load(progress)
@@ -166,7 +168,7 @@ class _ReportedProgress:
         self._number = number
         self._loop = asyncio.get_running_loop()
         self._stage, self._time = "", 0.0
-        self._message: dict[str, Any] | None = None
+        self._message: dict[str, Any] = {}
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         now = time.monotonic()
@@ -179,5 +181,4 @@ class _ReportedProgress:
         """Send the newest progress again, without end."""
         while True:
             await asyncio.sleep(_REPEAT_SECONDS)
-            if self._message is not None:
-                self._client.queue_answer(self._message)
+            self._client.queue_answer(self._message)

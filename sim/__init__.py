@@ -15,7 +15,7 @@ from voxrt.octree.camera import (
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
-from voxrt.sim.framing import frame_scene, outline
+from voxrt.sim.framing import frame_animation, frame_scene, outline, outline_frames
 from voxrt.sim.image import write_png
 from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
 from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
@@ -50,10 +50,12 @@ __all__ = [
     "comparison_sheet",
     "follow_pixel",
     "follow_ray",
+    "frame_animation",
     "frame_points",
     "frame_scene",
     "look_at",
     "outline",
+    "outline_frames",
     "peak_signal_to_noise",
     "pixel_directions",
     "render",

@@ -27,7 +27,7 @@ from ..register_writes import (
     tell_problems,
 )
 from ..registers import MATERIALS, REGISTERS
-from ..scene import Scene, check_memory, octree_end
+from ..scene import Scene, check_memory, octree_span
 from ..scene_memory import LoadedScene
 from ..view import FEATURES, refit
 from .boot_table import (
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..device import Device
+    from ..frame_drop import FrameDrop
     from ..register_writes import Writes
     from ..view import Camera, Lighting, View
     from .serial_link import SerialLink
@@ -127,7 +128,7 @@ class SerialDevice:
         pointers = words >> 31 == 0
         words = np.where(pointers, words - np.uint32(root), words)
         try:
-            words = words[: octree_end(words, 0, depth)]
+            words = words[: octree_span(words, 0, depth)[1]]
             check_memory(words, depth)
         except Refused:
             return None
@@ -197,10 +198,10 @@ class SerialDevice:
         self._model.select_scene(root, depth)
         self._materials = None
 
-    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+    def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render a view by the model, and show it on the monitor; the model's picture is returned."""
         started = time.perf_counter()
-        picture = self._model.frame(view, seconds)
+        picture = self._model.frame(view, seconds, drop)
         control = self._board("control")
         scale = self._choose_scale(control >> 4 & 3)
         size = SCREEN[0] >> scale, SCREEN[1] >> scale

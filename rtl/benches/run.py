@@ -37,18 +37,23 @@ class Build(NamedTuple):
     benches: tuple[str, ...]
     coverage: tuple[Path, ...] = ()  # Modules to bind.
     narrow: bool = False  # Multipliers of 18 x 18 bits.
+    repeats: bool = False  # Another form of a core that other builds drive with the same benches, for a minute.
 
 
 BUILDS = {
     "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
-    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True),
+    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(
         CORE,
         {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
         ("bench_core",),
+        repeats=True,
     ),
     "mirrors": Build(
-        CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_core",)
+        CORE,
+        {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1},
+        ("bench_core",),
+        repeats=True,
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),

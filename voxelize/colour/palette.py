@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
@@ -92,6 +91,8 @@ def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: i
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]
+    from PIL import Image  # noqa: PLC0415 - most scenes have fewer colours, and it is slow to import
+
     image = Image.fromarray(np.ascontiguousarray(pixels))
     reduced = image.quantize(count, Image.Quantize.MAXCOVERAGE, kmeans=_UNTIL_CHANGES, dither=Image.Dither.NONE)
     first = np.cumsum(repeats) - repeats
