@@ -1,7 +1,7 @@
 """Make what registers.rdl describes: ``python rtl/generate.py``. Needs the package peakrdl; what it makes is committed.
 
-The AXI4-Lite block and the C header are PeakRDL's own; the Python map and the manual's table are written here from
-the model that its compiler gives.
+The AXI4-Lite block, the C header and the IP-XACT are PeakRDL's own. The Python map and the manual's table are written
+here from the model that its compiler gives.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from systemrdl import RDLCompiler
-from systemrdl.node import MemNode, RegNode
+from systemrdl.node import AddrmapNode, MemNode, RegNode
 
 RTL = Path(__file__).resolve().parent
 SOURCE = RTL / "registers.rdl"
@@ -66,6 +66,37 @@ def register_decode(text: str) -> str:
     return text.replace("    logic external_pending;\n", "    logic external_pending;\n    logic decoded_req;\n", 1)
 
 
+def write_ip_xact(top: AddrmapNode) -> None:
+    """Make the IP-XACT: PeakRDL's, and the material table, which it leaves out, as a block of its own.
+
+    The version is that of the registers: major and minor of the register `version`.
+    """
+    version = ".".join(str(top.find_by_path(f"version.{name}").get_property("reset")) for name in ("major", "minor"))
+    file = GENERATED / "voxrt_registers.xml"
+    library = ("--vendor", "voxrt", "--library", "voxrt", "--version", version, "--standard", "2014")
+    peakrdl("ip-xact", SOURCE, "-o", file, *library)
+    materials = top.find_by_path("materials")
+    start, size = materials.absolute_address, materials.size
+    text, end = file.read_text(), "      </ipxact:addressBlock>\n"
+    whole = f"<ipxact:range>'h{start + size:x}</ipxact:range>"
+    last = max(node.absolute_address for node in top.children(unroll=True))
+    if text.count(end) != 1 or text.count(whole) != 1 or last != start:
+        raise ValueError("PeakRDL writes other IP-XACT, or the material table is not the last; look at write_ip_xact")
+    block = f"""\
+      <ipxact:addressBlock>
+        <ipxact:name>materials</ipxact:name>
+        <ipxact:displayName>{materials.get_property("name")}</ipxact:displayName>
+        <ipxact:description>{" ".join(materials.get_property("desc").split())}</ipxact:description>
+        <ipxact:baseAddress>'h{start:x}</ipxact:baseAddress>
+        <ipxact:range>'h{size:x}</ipxact:range>
+        <ipxact:width>32</ipxact:width>
+        <ipxact:usage>memory</ipxact:usage>
+        <ipxact:access>{"write-only" if materials.get_property("sw").name == "w" else "read-write"}</ipxact:access>
+"""
+    text = text.replace(whole, f"<ipxact:range>'h{start:x}</ipxact:range>")
+    file.write_text(text.replace(end, end + block + end))
+
+
 def main() -> None:
     """Make everything."""
     GENERATED.mkdir(exist_ok=True)
@@ -86,6 +117,7 @@ def main() -> None:
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))
     top = compiler.elaborate().top
+    write_ip_xact(top)
     python = [
         '"""Registers of the ray tracer, made of rtl/registers.rdl: name, byte address, fields as (low, width)."""',
         "",

@@ -168,7 +168,7 @@ def _configuration(lanes: int, lighting: Lighting) -> str:
     """Name the verilated configuration with so many lanes, a memory of one port per lane, and the features."""
     for each in read_configurations().values():
         built = each.parameters
-        if built["Lanes"] == lanes and not built["Banked"] and not lighting.features - set(each.features):
+        if built["Lanes"] == lanes and built["MemoryForm"] == 0 and not lighting.features - set(each.features):
             return each.name
     raise sim.SimulatorError(f"no simulated ray tracer has {lanes} lanes and {', '.join(sorted(lighting.features))}")
 

@@ -8,11 +8,12 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from voxrt.cli.arguments import Messages, UsageError
+from voxrt.cli.configuration import find_configuration
 from voxrt.cli.messages import print_answer, summarize, tabulate
 from voxrt.cli.progress import stage_bar
 from voxrt.outputs import check_folder, writing
 from voxrt.plain_verilog import STAGES, plain_verilog
-from voxrt.rtl.configurations import RTL, Configuration, read_configurations
+from voxrt.rtl.configurations import RTL, read_configurations
 
 
 def core(
@@ -72,7 +73,7 @@ def _list() -> None:
 def _write(name: str, file: Path) -> None:
     from voxrt.export.atomic import write_atomically  # noqa: PLC0415 - NumPy comes with it
 
-    configuration = _find(name)
+    configuration = find_configuration(name)
     if file.suffix.lower() != ".v":
         raise UsageError(f"{file}: plain Verilog is written to a file that ends in .v")
     check_folder(file.parent)
@@ -81,10 +82,3 @@ def _write(name: str, file: Path) -> None:
     with writing(file):
         write_atomically(file, text.encode())
     summarize(f"{name}:", [("top", "voxrt_core, without parameters"), ("wrote", str(file))])
-
-
-def _find(name: str) -> Configuration:
-    configurations = read_configurations()
-    if name not in configurations:
-        raise UsageError(f"--config {name}: there is no such configuration; name one of {', '.join(configurations)}")
-    return configurations[name]
