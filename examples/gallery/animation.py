@@ -76,5 +76,6 @@ def show(number: int) -> None:
 
 
 film = FuncAnimation(figure, show, frames=COUNT, interval=80)
+figure.canvas.draw()
 picture = np.concatenate([pictures[0], pictures[5], pictures[10]], axis=1)
 plt.show()

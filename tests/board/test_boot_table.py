@@ -105,7 +105,7 @@ def test_the_board_starts_frames_by_the_registers_of_the_core():
     # localparams of board_frames.sv
     assert REGISTERS["control"] == (
         0x00C,
-        {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1)},
+        {"start": (0, 1), "continuous": (1, 1), "hold": (2, 1), "soft_reset": (3, 1), "flush": (4, 1)},
     )
     assert REGISTERS["status"][0] == 0x010
     assert REGISTERS["status"][1]["busy"] == (0, 1)
