@@ -1,7 +1,7 @@
 // A board in simulation, steered by lines on standard input: clocks, a monitor on the DVI pins, a host on the serial
 // line. Works for the sources and for a netlist: only the pins of the top are touched.
 //
-//   frames N     run until the monitor has seen N whole frames; answer each by a line and 640 x 480 x 3 bytes
+//   frames N     run until the monitor has seen N more whole frames; answer each by a line and 640 x 480 x 3 bytes
 //   send HEX     give bytes to the host, which sends them from now on
 //   run N        run N pixel clocks
 //   received     answer the bytes that the host has received since the last time, in hexadecimal
@@ -289,6 +289,7 @@ int main(int argc, char** argv) {
         if (command == "frames") {
             int count = 0;
             std::cin >> count;
+            board.monitor.frames.clear(); // what it saw while requests were answered
             for (int64_t budget = (count + 3LL) * 900 * 600 * ticks_per_pixel; count > 0 && budget > 0;) {
                 board.run(800 * ticks_per_pixel);
                 budget -= 800 * ticks_per_pixel;
