@@ -1,4 +1,7 @@
-"""From an asset to files for the hardware, in one call: load, fit, voxelize, build, write, preview."""
+"""From an asset to files for the hardware, in one call: load, fit, voxelize, build, write, preview.
+
+What only some builds do is imported where it is done: a small build takes less time than those imports.
+"""
 
 from __future__ import annotations
 
@@ -11,27 +14,12 @@ from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
-from voxrt.baking import FLAT, bake, fit_baked
 from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
 from voxrt.build_result import BuildResult
-from voxrt.estimate import estimate_build
 from voxrt.export.atomic import write_together
-from voxrt.fitting import find_material, fit_budget, fit_interior
-from voxrt.from_arrays import mesh_scene
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
 from voxrt.outputs import writing
-from voxrt.pictures import Picture, render
-from voxrt.sim import SimulatorError
-from voxrt.sim.image import encode_png
-from voxrt.viewpoint import (
-    ViewpointError,
-    aim_camera,
-    authored_camera,
-    authored_lighting,
-    named_camera,
-    stands_inside,
-)
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 from voxrt.voxelize.arguments import instance
 
@@ -47,6 +35,7 @@ if TYPE_CHECKING:
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.pictures import Picture
     from voxrt.voxelize import Grid, Viewpoint, Voxelization
 
 
@@ -126,6 +115,8 @@ def build(
     with clock.stage("load"):
         loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
         if options.camera is not None:
+            from voxrt.viewpoint import named_camera  # noqa: PLC0415 - as above
+
             viewpoint = named_camera(asset_label(asset), loaded, options.camera)
             loaded = replace(loaded, viewpoint=viewpoint)
     _refuse_warnings(asset, loaded.warnings, options)
@@ -142,6 +133,9 @@ def build(
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
+            from voxrt.sim import SimulatorError  # noqa: PLC0415 - as above
+            from voxrt.viewpoint import ViewpointError  # noqa: PLC0415
+
             try:
                 picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
             except (SimulatorError, ViewpointError) as error:
@@ -218,6 +212,8 @@ def voxelize_mesh(
     >>> cube.coordinates.shape
     (512, 3)
     """
+    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - as above
+
     scene = mesh_scene(vertices, faces, colours=colours, face_colours=face_colours, up=up, unit=unit)
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
 
@@ -250,6 +246,8 @@ def _voxelize(
             scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
         )
     if estimated is not None:
+        from voxrt.estimate import estimate_build  # noqa: PLC0415 - as above
+
         estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
@@ -270,6 +268,11 @@ def _finished(
     loaded, scene = scenes
     light, baked, interior_fit, budget_fit = None, None, None, None
     interior, budget = options.interior, options.budget
+    if interior == "keep" and budget is None and not options.bake:
+        return rom, None, None, None
+    from voxrt.baking import bake, fit_baked  # noqa: PLC0415 - as above
+    from voxrt.fitting import find_material, fit_budget, fit_interior  # noqa: PLC0415
+
     if interior not in ("keep", "any"):
         with clock.stage("interior"):
             material = find_material(asset_label(asset), rom.materials, interior)
@@ -329,6 +332,8 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
     """Write the set of files, all of it or nothing, and return the files by kind."""
     pictures: dict[Path, bytes | None] = {}
     if files.preview is not None:
+        from voxrt.sim.image import encode_png  # noqa: PLC0415 - as above
+
         pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
     outputs: dict[str, Path] = {}
     with ExitStack() as stack:
@@ -361,6 +366,9 @@ def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> di
 
 
 def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
+    from voxrt.pictures import Picture, render  # noqa: PLC0415 - as above
+    from voxrt.viewpoint import aim_camera, authored_camera  # noqa: PLC0415
+
     if viewpoint is not None and rom.grid is not None:
         camera = authored_camera(viewpoint, rom.grid, options.size)
     else:
@@ -386,6 +394,17 @@ def _authored(
 
     A memory with baked light is shown flat, and its author's light is not used.
     """
+    mirrors = any(material.mirror for material in scene.materials)
+    if scene.viewpoint is None and scene.light is None and not mirrors and not options.bake:
+        return None, None, ()
+    from voxrt.baking import FLAT  # noqa: PLC0415 - as above
+    from voxrt.viewpoint import (  # noqa: PLC0415
+        ViewpointError,
+        authored_camera,
+        authored_lighting,
+        stands_inside,
+    )
+
     view, lighting, unseen = None, None, []
     grid = rom.grid
     assert grid is not None

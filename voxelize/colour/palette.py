@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
@@ -89,6 +88,8 @@ def _unpacked(packed: NDArray[np.uint32]) -> NDArray[np.uint8]:
 
 def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     """Return the group of each of the `distinct` colours: at most `count` groups, numbered from 0 without gaps."""
+    from PIL import Image  # noqa: PLC0415 - slow to import, and few assets have so many colours
+
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]

@@ -8,7 +8,6 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from voxrt.voxelize.errors import AssetError
 
@@ -43,6 +42,8 @@ def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:
     AssetError
         The image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`.
     """
+    from PIL import Image  # noqa: PLC0415 - slow to import, and most assets have no images
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the limit below replaces Pillow's

@@ -32,7 +32,6 @@ from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.progress import build_bar
-from voxrt.cli.results import build_report, print_json
 
 _NAMED = 32  # so many materials still read as a list
 
@@ -155,12 +154,16 @@ def build(
         if result.budget is not None and (loss := _loss(result.budget)):
             warn((voxrt.SceneWarning("budget", loss),))
         if reporting.json:
+            from voxrt.cli.results import build_report  # noqa: PLC0415 - most builds print a summary
+
             reports.append(build_report(result))
         else:
             summarize(f"{asset.name}:", _rows(result))
         if profile:
             _print_profile(result)
     if reporting.json:
+        from voxrt.cli.results import print_json  # noqa: PLC0415 - as above
+
         print_json(reports[0] if len(reports) == 1 else reports)
 
 
