@@ -28,7 +28,10 @@ from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source
@@ -38,7 +41,12 @@ if TYPE_CHECKING:
 
 
 _READERS = {".mem": read_mem, ".coe": read_coe, ".mif": read_mif, ".bin": read_raw}
-_WRITERS = {".mem": mem_pieces, ".coe": coe_bytes, ".mif": mif_bytes, ".bin": raw_bytes}
+_WRITERS: dict[str, Callable[[NDArray[np.uint32]], bytes | Iterable[bytes]]] = {
+    ".mem": mem_pieces,
+    ".coe": coe_bytes,
+    ".mif": mif_bytes,
+    ".bin": raw_bytes,
+}
 
 WORD_SUFFIXES = tuple(_WRITERS)
 """The files of words that are read and written."""
@@ -135,13 +143,11 @@ def write_rom(
     files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):
         _refuse_foreign(files.manifest)
-        write_together(
-            {
-                files.mem: _WRITERS[suffix.lower()](words),
-                files.manifest: manifest_bytes(manifest),
-                **(beside or {}),
-            }
-        )
+        contents: dict[Path, bytes | Iterable[bytes] | None] = {
+            files.mem: _WRITERS[suffix.lower()](words),
+            files.manifest: manifest_bytes(manifest),
+        }
+        write_together(contents | dict(beside or {}))
     return files
 
 

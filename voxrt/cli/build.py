@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from time import perf_counter
 from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -31,6 +32,7 @@ from voxrt.cli.arguments import (
 from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
+from voxrt.cli.process_age import process_age
 from voxrt.cli.progress import build_bar
 
 _NAMED = 32  # so many materials still read as a list
@@ -147,7 +149,9 @@ def build(
         strict=strict,
     )
     reports = []
+    waited = process_age()
     for asset in assets:
+        begun = perf_counter()
         with build_bar() as bar:
             result = voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
         warn(result.warnings)
@@ -156,7 +160,8 @@ def build(
         if reporting.json:
             from voxrt.cli.results import build_report  # noqa: PLC0415 - most builds print a summary
 
-            reports.append(build_report(result))
+            reports.append(build_report(result, waited, perf_counter() - begun))
+            waited = 0.0
         else:
             summarize(f"{asset.name}:", _rows(result))
         if profile:

@@ -6,6 +6,7 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -136,7 +137,7 @@ class BuildReport(msgspec.Struct, frozen=True):
     materials: list[MaterialEntry]
     warnings: list[WarningEntry]
     seconds: dict[str, float]
-    """Wall seconds per stage, in order."""
+    """Wall seconds per stage, in order. `start`: from the start of the process; `rest`: between the stages."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
     budget: BudgetEntry | None = None
@@ -147,21 +148,24 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when no light was baked."""
 
 
-def build_report(result: BuildResult) -> BuildReport:
-    """Return what a build made, for programs."""
+def build_report(result: BuildResult, start: float, wall: float) -> BuildReport:
+    """Return what a build made, for programs: `start` seconds after the process began, in `wall` seconds."""
     rom = result.rom
+    counted = time.perf_counter()
+    voxels = result.solid_voxels
+    rest = wall - sum(result.seconds.values()) + time.perf_counter() - counted
     return BuildReport(
         outputs={kind: name_file(path) for kind, path in result.outputs.items()},
         depth=rom.octree.depth,
         words=len(rom.octree.words),
         blocks=rom.octree.blocks,
-        voxels=result.solid_voxels,
+        voxels=voxels,
         materials=[
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
         ],
         warnings=warning_entries(result.warnings),
-        seconds=result.seconds,
+        seconds={"start": start, **result.seconds, "rest": max(0.0, rest)},
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
