@@ -5,9 +5,9 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip --quiet --disable-pip-version-check
 # What the installed package is made of: touching any of it makes `make demo` and `make test` build it again.
 PACKAGE := $(shell find CMakeLists.txt pyproject.toml LICENSE README.md voxrt voxelize octree export rtl sim view board serve -type f -not -name '*.pyc' -not -path '*/.*' 2>/dev/null)
-CXX_FILES = $(shell find voxelize octree sim examples tests -name '*.cpp' -o -name '*.h')
+CXX_FILES = $(shell find voxelize octree sim web examples tests -name '*.cpp' -o -name '*.h')
 
-.PHONY: help demo test slow lint lint-workflows hardware boards docs bench soak sanitize fuzz clean
+.PHONY: help demo test slow lint lint-workflows hardware boards docs site web bench soak sanitize fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -18,6 +18,8 @@ help:
 	@echo "make hardware  check the registers, run the cocotb benches and the formal proofs"
 	@echo "make boards  build the designs of the boards anew, place and route them, simulate what was placed"
 	@echo "make docs    build the manual into build/docs"
+	@echo "make site    build the static page into build/site: WebAssembly, for any web server"
+	@echo "make web     build the static page, test it in Node and in a browser"
 	@echo "make bench   run the benchmarks"
 	@echo "make soak MINUTES=15  load and attack the frame server, write bench/results/soak.md"
 	@echo "make sanitize  run the native voxelizer and octree under the address, undefined and thread sanitizers"
@@ -62,11 +64,13 @@ MINUTES ?= 15
 soak: $(VENV)/.installed
 	$(BIN)/python bench/soak.py --minutes $(MINUTES) --write
 
-# The registers as generated, the cocotb benches and what they cover, the formal proofs.
+# The registers as generated, the cocotb benches and what they cover, the formal proofs. BENCHES=--quick leaves out the
+# forms of the core that repeat the benches of others.
+BENCHES :=
 hardware: $(VENV)/.hardware
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python rtl/generate.py
 	git diff --exit-code -- rtl/generated board/registers.py
-	$(BIN)/python rtl/benches/coverage.py
+	$(BIN)/python rtl/benches/coverage.py $(BENCHES)
 	$(BIN)/python rtl/formal/prove.py
 
 # Ten minutes and more per board. BOARDS chooses.
@@ -78,6 +82,13 @@ boards: $(VENV)/.installed $(VENV)/.tools $(VENV)/.estimate
 
 docs: $(VENV)/.installed $(VENV)/.docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning -b html docs build/docs
+
+# It needs npm, which fetches the loaders of three.js.
+site: $(VENV)/.installed $(VENV)/.web
+	$(BIN)/python web/make_site.py
+
+web: site $(VENV)/.tools
+	VOXRT_EXPECT_INSTALLED=1 $(BIN)/pytest tests/web
 
 # Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
@@ -127,13 +138,15 @@ fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
 	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
 covered = $(CXX) -std=c++20 -O1 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
-build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h \
-		$(wildcard voxelize/src/*.cpp octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
-	@rm -rf $@.objects && mkdir -p $@.objects
-	cd $@.objects && $(covered) -fsanitize-coverage=trace-pc -c $(abspath $(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
-	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter %.cpp,$(wordlist 1,2,$^)) $@.objects/*.o -pthread
+COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
+build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
+	@mkdir -p $(@D)
+	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<
 
-.SECONDARY: $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
+build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
+	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
+
+.SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
 	rm -rf $(VENV) build demo
@@ -157,7 +170,7 @@ $(VENV)/.actionlint: $(VENV)/.ready Makefile
 	  echo "actionlint cannot be built by the Go that is here"; fi
 	@touch $@
 
-$(VENV)/.hardware $(VENV)/.estimate $(VENV)/.docs: $(VENV)/.%: $(VENV)/.ready pyproject.toml
+$(VENV)/.hardware $(VENV)/.estimate $(VENV)/.docs $(VENV)/.web: $(VENV)/.%: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group $*
 	@touch $@
 

@@ -2,9 +2,9 @@
 
 Visibility comes from Open3D's RaycastingScene (Embree): the first triangle on a ray, the shadow rays to the sun and the
 rays to the sky. Colours come from the source: textures and vertex colours at the point hit, not from voxels. The shade
-is Lambert's; a triangle is smooth where the normals of its corners are within 45 degrees of its own. Sides that face
-away are shaded as if they faced the viewer. There is no light from surface to surface. Open3D's own renderer (Filament)
-needs a Vulkan driver, which many machines lack.
+is Lambert's, by the source's own normals where it has them; else a triangle is smooth where the mean normals at its
+corners are within 45 degrees of its own. Sides that face away are shaded as if they faced the viewer. There is no light
+from surface to surface. Open3D's own renderer (Filament) needs a Vulkan driver, which many machines lack.
 """
 
 from __future__ import annotations
@@ -69,6 +69,20 @@ class Reference:
         smooth = _unit(normals)[places.reshape(-1, 3)]
         is_smooth = (np.einsum("tkc,tc->tk", smooth, self._faces) > _SMOOTH).all(axis=1)
         self._normals = np.where(is_smooth[:, None, None], smooth, self._faces[:, None])
+        self._take_authored_normals()
+
+    def _take_authored_normals(self) -> None:
+        shown = [item for item in self._scene.objects if len(item.mesh.triangles)]
+        for item, part, mirrored in zip(shown, self._parts, self._mirrored, strict=True):
+            if item.mesh.normals is None:
+                continue
+            linear = item.transform[:3, :3]
+            found = _unit(item.mesh.normals.of_corners() @ np.linalg.pinv(linear))
+            found = found[:, ::-1] if mirrored else found
+            here = slice(part.first, part.first + len(found))
+            behind = np.einsum("tkc,tc->t", found, self._faces[here]) < 0
+            found[behind] = -found[behind]
+            self._normals[here] = np.where(found.any(axis=2)[:, :, None], found, self._normals[here])
 
     def shade(
         self, origins: np.ndarray, directions: np.ndarray, daylight: Daylight, background: np.ndarray, rays: int

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .frame_drop import FrameDrop
     from .view import View
 
 
@@ -109,13 +110,15 @@ class Device(Protocol):
     def select_scene(self, root: int, depth: int) -> None:
         """Show the octree of `depth` levels whose root is word `root` from the next frame on. Holds the device."""
 
-    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+    def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render one frame of `view`, and return it when it is complete.
 
         Raises
         ------
         TooSlow
             The frame took longer than `seconds`.
+        FrameDropped
+            `drop` was requested before the frame was complete.
         """
 
     def stop(self) -> None:

@@ -11,3 +11,7 @@ class DeviceError(Exception):
 
 class TooSlow(DeviceError):  # noqa: N818 - what happened to a frame, and no failure
     """A frame took longer than it may."""
+
+
+class FrameDropped(Exception):  # noqa: N818 - nobody waits for the frame any more
+    """A frame ended before its last pixel, since that was requested."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from .device import Counters, Frame, Identity
-from .errors import DeviceError, TooSlow
+from .errors import DeviceError, FrameDropped, TooSlow
 from .register_writes import (
     PROBLEMS,
     camera_writes,
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from .frame_drop import FrameDrop
     from .register_writes import Writes
     from .view import View
 
@@ -193,7 +194,7 @@ class RegisterDevice:
         self._write("depth", depth)
         self._write("root", root)
 
-    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+    def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Start a frame, wait for the frame-done bit, and return the frame."""
         started = time.perf_counter()
         columns, rows = view.size
@@ -204,7 +205,7 @@ class RegisterDevice:
         self._write("status", self._bits("status", "frame_done", *PROBLEMS))  # writing 1 clears
         self._video.expect(view.size)
         self._write("control", self._bits("control", "start"))
-        self._wait("frame_done", 1, "the frame does not end", seconds)
+        self._wait("frame_done", 1, "the frame does not end", seconds, drop)
         problem = tell_problems(self._fields("status"))
         if problem:
             raise DeviceError(problem)
@@ -227,7 +228,9 @@ class RegisterDevice:
         self.hold()
         self._video.close()
 
-    def _wait(self, field: str, value: int, problem: str, seconds: float = math.inf) -> None:
+    def _wait(
+        self, field: str, value: int, problem: str, seconds: float = math.inf, drop: FrameDrop | None = None
+    ) -> None:
         pixels, end, last = -1, 0.0, time.monotonic() + seconds
         while self._fields("status")[field] != value:
             before, pixels = pixels, self._read("rays")
@@ -235,6 +238,9 @@ class RegisterDevice:
             if self._stopped.is_set():
                 self._drop_frame()
                 raise DeviceError("the frame was stopped")
+            if drop is not None and drop.requested:
+                self._drop_frame()
+                raise FrameDropped
             if now > last:
                 self._drop_frame()
                 raise TooSlow(f"the frame took more than {seconds:.1f} s")

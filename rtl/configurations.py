@@ -13,7 +13,17 @@ from typing import Any
 
 RTL = Path(__file__).resolve().parent
 TOP = "voxrt_core"
-PARAMETERS = ("Lanes", "MaxDepth", "PositionBits", "BlockBits", "Banked", "Light", "Mirrors")
+PARAMETERS = (
+    "Lanes",
+    "MaxDepth",
+    "PositionBits",
+    "BlockBits",
+    "MemoryForm",
+    "L1SetBits",
+    "L2SetBits",
+    "Light",
+    "Mirrors",
+)
 _SIMULATION = "SimulationBlockBits"
 
 

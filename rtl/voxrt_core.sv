@@ -4,7 +4,7 @@
 // Registers: registers.rdl. Stream: voxrt_pixel_packer.
 //
 // Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). A word
-// read comes memory_clocks(Banked) clocks after its address: set the controller's read latency so. Write a scene while
+// read comes memory_clocks(MemoryForm) clocks after its address: set the controller's read latency so. Write a scene while
 // control.hold is set and status.busy clear. Writing at other times shows in the frame, and slows it down: the port
 // never waits, and lanes keep at least half of their share of the memory.
 module voxrt_core
@@ -18,8 +18,12 @@ module voxrt_core
   parameter int unsigned PositionBits = 17,
   // The octree memory holds 2**BlockBits blocks of eight words, and the root: 5 .. 24 bits.
   parameter int unsigned BlockBits    = 12,
-  // The form of the octree memory: 0 = private copies, one per two lanes; 1 = one memory in banks, for all lanes.
-  parameter bit          Banked       = 1'b0,
+  // The form of the octree memory: 0 = private copies, one per two lanes; 1 = one memory in banks, for all lanes;
+  // 2 = an external memory behind caches.
+  parameter int unsigned MemoryForm   = 0,
+  // Cached: sets of four lines of 32 bytes in each lane's cache (1 or more), and in the cache that lanes share, 2**bits.
+  parameter int unsigned L1SetBits    = 5,
+  parameter int unsigned L2SetBits    = 9,
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
@@ -54,6 +58,33 @@ module voxrt_core
   input  logic [31:0] bram_addr_i,
   input  logic [31:0] bram_wrdata_i,
   output logic [31:0] bram_rddata_o,
+  // External memory: two AXI4 read ports of 64 bits, of a core whose memory is cached.
+  output logic        m_axi0_arvalid,
+  input  logic        m_axi0_arready,
+  output logic [31:0] m_axi0_araddr,
+  output logic [ 7:0] m_axi0_arlen,
+  output logic [ 2:0] m_axi0_arsize,
+  output logic [ 1:0] m_axi0_arburst,
+  output logic [ 3:0] m_axi0_arcache,
+  output logic [ 2:0] m_axi0_arprot,
+  input  logic        m_axi0_rvalid,
+  output logic        m_axi0_rready,
+  input  logic [63:0] m_axi0_rdata,
+  input  logic [ 1:0] m_axi0_rresp,
+  input  logic        m_axi0_rlast,
+  output logic        m_axi1_arvalid,
+  input  logic        m_axi1_arready,
+  output logic [31:0] m_axi1_araddr,
+  output logic [ 7:0] m_axi1_arlen,
+  output logic [ 2:0] m_axi1_arsize,
+  output logic [ 1:0] m_axi1_arburst,
+  output logic [ 3:0] m_axi1_arcache,
+  output logic [ 2:0] m_axi1_arprot,
+  input  logic        m_axi1_rvalid,
+  output logic        m_axi1_rready,
+  input  logic [63:0] m_axi1_rdata,
+  input  logic [ 1:0] m_axi1_rresp,
+  input  logic        m_axi1_rlast,
   // Video.
   output logic        m_axis_tvalid,
   input  logic        m_axis_tready,
@@ -73,6 +104,13 @@ module voxrt_core
   end
   if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
     $error("voxrt_core: BlockBits must be 5 to 24 bits");
+  end
+  if (MemoryForm > CachedForm) begin : gen_bad_form
+    $error("voxrt_core: MemoryForm must be 0, 1 or 2");
+  end
+  if (MemoryForm == CachedForm &&
+      (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits)) begin : gen_bad_sets
+    $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");
   end
 
   voxrt_registers_pkg::voxrt_registers__in_t  status;
@@ -126,6 +164,7 @@ module voxrt_core
     assign frame.light[a]    = control.light[a].value.value;
   end
 
+  assign frame.memory_base     = {control.memory_base.address.value, 5'd0};
   assign frame.width           = control.size.width.value;
   assign frame.height          = control.size.height.value;
   assign frame.depth           = control.depth.depth.value;
@@ -151,12 +190,33 @@ module voxrt_core
   shaded_pixel_t pixel;
   counters_t     counters;
 
+  axi_read_request_t  axi_request [BusPorts];
+  axi_read_response_t axi_response[BusPorts];
+
+  assign m_axi0_arvalid  = axi_request[0].arvalid;
+  assign m_axi0_araddr   = axi_request[0].araddr;
+  assign m_axi0_rready   = axi_request[0].rready;
+  assign m_axi1_arvalid  = axi_request[1].arvalid;
+  assign m_axi1_araddr   = axi_request[1].araddr;
+  assign m_axi1_rready   = axi_request[1].rready;
+  // 4 beats of 8 bytes, at rising addresses; bufferable and modifiable; data, secure, unprivileged.
+  assign {m_axi0_arlen, m_axi0_arsize, m_axi0_arburst, m_axi0_arcache, m_axi0_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};
+  assign {m_axi1_arlen, m_axi1_arsize, m_axi1_arburst, m_axi1_arcache, m_axi1_arprot} = {8'd3, 3'd3, 2'd1, 4'd3, 3'd0};
+  assign axi_response[0] = '{arready: m_axi0_arready, rvalid: m_axi0_rvalid, rdata: m_axi0_rdata, rresp: m_axi0_rresp};
+  assign axi_response[1] = '{arready: m_axi1_arready, rvalid: m_axi1_rvalid, rdata: m_axi1_rdata, rresp: m_axi1_rresp};
+
+  // Beats are counted.
+  logic unused_last;
+  assign unused_last = m_axi0_rlast && m_axi1_rlast;
+
   voxrt_rtu #(
     .Lanes       (Lanes),
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
-    .Banked      (Banked),
+    .MemoryForm  (MemoryForm),
+    .L1SetBits   (L1SetBits),
+    .L2SetBits   (L2SetBits),
     .Light       (Light),
     .Mirrors     (Mirrors),
     .OctreeFile  (OctreeFile)
@@ -172,6 +232,10 @@ module voxrt_core
     .access_word_i   (bram_wrdata_i),
     .access_valid_o  (unused_access_valid),
     .access_word_o   (bram_rddata_o),
+    .bus_rst_ni      (rst_ni),
+    .flush_i         (control.control.flush.value),
+    .axi_o           (axi_request),
+    .axi_i           (axi_response),
     .material_write_i(material_write),
     .pixel_valid_o   (pixel_valid),
     .pixel_ready_i   (pixel_ready),
@@ -200,7 +264,8 @@ module voxrt_core
   assign status.configuration.max_depth.next     = 5'(MaxDepth);
   assign status.configuration.position_bits.next = 6'(PositionBits);
   assign status.configuration.block_bits.next    = 5'(BlockBits);
-  assign status.configuration.banked.next        = Banked;
+  assign status.configuration.banked.next        = MemoryForm == BankedForm;
+  assign status.configuration.cached.next        = MemoryForm == CachedForm;
   assign status.features.light.next              = Light;
   assign status.features.mirrors.next            = Mirrors;
   assign status.status.busy.next                 = busy;
@@ -208,6 +273,11 @@ module voxrt_core
   assign status.status.direction_overflow.hwset  = busy && error.direction_overflow;
   assign status.status.bad_pointer.hwset         = busy && error.bad_pointer;
   assign status.status.step_limit.hwset          = busy && error.step_limit;
+  assign status.status.bus_error.hwset           = busy && error.bus_error;
+  assign status.status.bus_timeout.hwset         = busy && error.bus_timeout;
+  assign status.word_requests.value.next         = counters.word_requests;
+  assign status.line_requests.value.next         = counters.line_requests;
+  assign status.lines_read.value.next            = counters.lines_read;
   assign status.cycles.value.next                = counters.cycles;
   assign status.rays.value.next                  = counters.rays;
   assign status.words_read.value.next            = counters.words_read;

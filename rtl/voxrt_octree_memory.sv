@@ -1,19 +1,23 @@
-// The octree memory: word 0 in a register, all other words in one of two forms, an access port that writes and reads
-// it, and a read port per lane.
+// The octree memory, with a read port per lane, in one of three forms: private copies (voxrt_private_memory), one per two
+// lanes; one memory in banks (voxrt_banked_memory), for scenes that would not fit twice; or an external memory behind
+// caches (voxrt_cached_memory), for scenes that do not fit at all.
 //
-// Forms: private copies (voxrt_private_memory), one per two lanes; or one memory in banks (voxrt_banked_memory), for
-// scenes that would not fit twice.
+// Private and banked: word 0 is in a register. The access port writes and reads all words. It is served at every clock
+// and never waits; lanes keep at least half of their share of the memory. A reset drops the requests of lanes, and no
+// access.
 //
-// The access port is served at every clock and never waits; lanes keep at least half of their share of the memory. A
-// reset drops the requests of lanes, and no access.
+// Cached: a frame's root may be read from ready_o on. The access port drops what is written and reads 0: any master of
+// the external memory writes it.
 module voxrt_octree_memory
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Lanes     = 1,
-  parameter int unsigned BlockBits = 12,
-  parameter bit          Banked    = 1'b0,
+  parameter int unsigned Lanes      = 1,
+  parameter int unsigned BlockBits  = 12,
+  parameter int unsigned MemoryForm = PrivateForm,
+  parameter int unsigned L1SetBits  = 5,
+  parameter int unsigned L2SetBits  = 9,
   // What private copies hold from the beginning, for $readmemh: row a has word 1 + a, as voxrt_word_encoder encodes it.
-  parameter string       File      = ""
+  parameter string       File       = ""
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -24,97 +28,94 @@ module voxrt_octree_memory
   input  logic [31:0]                      access_word_i,
   output logic                             access_valid_o,            // access_word_o is what was read.
   output logic [31:0]                      access_word_o,
-  output logic [payload_bits(BlockBits):0] first_word_o,              // Word 0.
-  // Lanes: a word comes memory_clocks(Banked) clocks after its address, {block, octant}, with ack_o or not.
+  output logic [payload_bits(BlockBits):0] first_word_o,              // Word 0, if not cached.
+  // Lanes: a word comes memory_clocks(MemoryForm) clocks after its address, {block, octant}, with ack_o or not. In the
+  // cached form, word 0 is in block -1.
   input  logic [Lanes-1:0]                 read_i,
-  input  logic [BlockBits+2:0]             address_i         [Lanes],
+  input  logic [BlockBits+3:0]             address_i         [Lanes],
   output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits):0] word_o            [Lanes]
+  output logic [payload_bits(BlockBits):0] word_o            [Lanes],
+  // Cached: see voxrt_cached_memory.
+  input  logic                             bus_rst_ni,
+  input  logic                             start_i,
+  output logic                             ready_o,
+  input  logic                             flush_i,
+  input  logic [31:0]                      base_i,
+  output axi_read_request_t                axi_o             [BusPorts],
+  input  axi_read_response_t               axi_i             [BusPorts],
+  output memory_events_t                   events_o
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned AddressBits = BlockBits + 3;
-  localparam int unsigned Clocks = memory_clocks(Banked);
 
-  if (Banked && File != "") begin : gen_bad_file
+  if (MemoryForm != PrivateForm && File != "") begin : gen_bad_file
     $error("voxrt_octree_memory: only private copies can hold words from the beginning");
   end
 
-  logic [PayloadBits:0] encoded, read_back;
-  logic [         31:0] offset;
-  logic                 is_first, in_memory;
+  if (MemoryForm == CachedForm) begin : gen_cached
+    logic unused_access;
 
-  voxrt_word_encoder #(
-    .BlockBits(BlockBits)
-  ) u_encoder (
-    .word_i(access_word_i),
-    .word_o(encoded)
-  );
+    assign unused_access  = &{access_address_i, access_word_i, access_write_i};
+    assign access_word_o  = '0;
+    assign first_word_o   = '0;
+    always_ff @(posedge clk_i) access_valid_o <= rst_ni && access_i && !access_write_i;
 
-  assign offset    = access_address_i - 32'd1;
-  assign is_first  = access_address_i == '0;
-  assign in_memory = offset[31:AddressBits] == '0;
-
-  // Public, so that a simulation can set it.
-  logic [PayloadBits:0] root_q  /* verilator public_flat_rw */;
-
-  always_ff @(posedge clk_i) if (access_i && access_write_i && is_first) root_q <= encoded;
-
-  assign first_word_o = root_q;
-
-  if (Banked) begin : gen_banked
-    voxrt_banked_memory #(
+    voxrt_cached_memory #(
       .Lanes    (Lanes),
-      .BlockBits(BlockBits)
+      .BlockBits(BlockBits),
+      .L1SetBits(L1SetBits),
+      .L2SetBits(L2SetBits)
     ) u_memory (
       .clk_i,
       .rst_ni,
-      .access_i        (access_i && in_memory),
-      .access_write_i,
-      .access_address_i(offset[AddressBits-1:0]),
-      .access_word_i   (encoded),
-      .access_word_o   (read_back),
+      .bus_rst_ni,
+      .start_i,
+      .ready_o,
+      .flush_i,
+      .base_i,
       .read_i,
       .address_i,
       .ack_o,
-      .word_o
+      .word_o,
+      .axi_o,
+      .axi_i,
+      .events_o
     );
-  end else begin : gen_private
-    voxrt_private_memory #(
-      .Lanes      (Lanes),
-      .AddressBits(AddressBits),
-      .PayloadBits(PayloadBits),
-      .File       (File)
+  end else begin : gen_on_chip
+    logic [AddressBits-1:0] address[Lanes];
+    logic                   unused_external;
+
+    always_comb begin
+      unused_external = &{bus_rst_ni, flush_i, base_i};
+      for (int unsigned p = 0; p < BusPorts; p++) unused_external &= ^axi_i[p];
+      for (int unsigned i = 0; i < Lanes; i++) begin
+        address[i]       = address_i[i][AddressBits-1:0];
+        unused_external &= address_i[i][AddressBits];
+      end
+    end
+
+    assign ready_o  = start_i;
+    assign axi_o    = '{default: '0};
+    assign events_o = '0;
+
+    voxrt_on_chip_memory #(
+      .Lanes    (Lanes),
+      .BlockBits(BlockBits),
+      .Banked   (MemoryForm == BankedForm),
+      .File     (File)
     ) u_memory (
       .clk_i,
       .rst_ni,
-      .access_i        (access_i && in_memory),
+      .access_i,
       .access_write_i,
-      .access_address_i(offset[AddressBits-1:0]),
-      .access_word_i   (encoded),
-      .access_word_o   (read_back),
+      .access_address_i,
+      .access_word_i,
+      .access_valid_o,
+      .access_word_o,
+      .first_word_o,
       .read_i,
-      .address_i,
+      .address_i(address),
       .ack_o,
       .word_o
     );
   end
-
-  // Reading.
-  logic [Clocks-1:0] reads_q, first_reads_q;
-  logic [      31:0] decoded;
-
-  always_ff @(posedge clk_i) begin
-    reads_q       <= rst_ni ? {reads_q[Clocks-2:0], access_i && !access_write_i} : '0;
-    first_reads_q <= {first_reads_q[Clocks-2:0], is_first};
-  end
-
-  voxrt_word_decoder #(
-    .BlockBits(BlockBits)
-  ) u_decoder (
-    .word_i(first_reads_q[Clocks-1] ? root_q : read_back),
-    .word_o(decoded)
-  );
-
-  assign access_valid_o = reads_q[Clocks-1];
-  assign access_word_o  = decoded;
 endmodule

@@ -1,11 +1,13 @@
-// From the lanes' pixels to colours in pixel order: merge, brightness where a feature needs it, shader.
+// From the lanes' pixels to colours in pixel order: merge, strip buffer where rays are issued in strips, brightness where
+// a feature needs it, shader.
 module voxrt_pixels
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes    = 1,
   parameter int unsigned MaxDepth = 10,
   parameter bit          Light    = 1'b0,
-  parameter bit          Mirrors  = 1'b0
+  parameter bit          Mirrors  = 1'b0,
+  parameter bit          Strips   = 1'b0
 ) (
   input  logic                                            clk_i,
   input  logic                                            rst_ni,
@@ -30,8 +32,8 @@ module voxrt_pixels
   localparam int unsigned MergeBits = Width + (Light ? 1 : 0);
 
   logic    [MergeBits-1:0] lane_pixel[Lanes];
-  logic    [MergeBits-1:0] merged, registered;
-  logic                    merged_valid, merged_ready, registered_valid, registered_ready, bright_valid, bright_ready;
+  logic    [MergeBits-1:0] merged, ordered, registered;
+  logic                    merged_valid, merged_ready, ordered_valid, ordered_ready, registered_valid, registered_ready, bright_valid, bright_ready;
   pixel_t                  bright_pixel;
   brightness_t             brightness;
 
@@ -52,14 +54,37 @@ module voxrt_pixels
     .pixel_o(merged)
   );
 
+  if (Strips) begin : gen_strips
+    voxrt_strip_buffer #(
+      .Lanes(Lanes),
+      .Width(MergeBits)
+    ) u_strips (
+      .clk_i,
+      .rst_ni,
+      .start_i (raster_i.start),
+      .width_i (raster_i.width),
+      .height_i(raster_i.height),
+      .valid_i (merged_valid),
+      .ready_o (merged_ready),
+      .pixel_i (merged),
+      .valid_o (ordered_valid),
+      .ready_i (ordered_ready),
+      .pixel_o (ordered)
+    );
+  end else begin : gen_lines
+    assign ordered_valid = merged_valid;
+    assign merged_ready  = ordered_ready;
+    assign ordered       = merged;
+  end
+
   voxrt_stream_register #(
     .Width(MergeBits)
   ) u_merged (
     .clk_i,
     .rst_ni,
-    .valid_i(merged_valid),
-    .ready_o(merged_ready),
-    .data_i (merged),
+    .valid_i(ordered_valid),
+    .ready_o(ordered_ready),
+    .data_i (ordered),
     .valid_o(registered_valid),
     .ready_i(registered_ready),
     .data_o (registered)

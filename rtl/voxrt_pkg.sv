@@ -79,9 +79,14 @@ package voxrt_pkg;
     return larger(block_bits, 9);
   endfunction
 
+  // Forms of the octree memory: the parameter MemoryForm.
+  localparam int unsigned PrivateForm = 0;  // A copy per two lanes.
+  localparam int unsigned BankedForm = 1;   // One memory in banks.
+  localparam int unsigned CachedForm = 2;   // An external memory behind caches.
+
   // From an address of the octree memory to its word.
-  function automatic int memory_clocks(bit banked);
-    return banked ? 5 : 2;
+  function automatic int memory_clocks(int form);
+    return form == int'(PrivateForm) ? 2 : 5;
   endfunction
 
   // Rays in the ring of a lane.
@@ -152,6 +157,7 @@ package voxrt_pkg;
 
   // A frame, as the registers describe it. Camera and light: grid frame, signed, 1/16 voxel; look, right, up: signed.
   typedef struct packed {
+    logic [31:0]                memory_base;  // Of the external memory; voxrt_line_reader.
     logic [2:0][31:0]           position;
     logic [2:0][CameraBits-1:0] look;
     logic [2:0][CameraBits-1:0] right;
@@ -328,6 +334,9 @@ package voxrt_pkg;
 
   // Why a pixel may be wrong.
   typedef struct packed {
+    // The bus to the external memory has not answered, or with an error: rays that needed it ended without a hit.
+    logic bus_timeout;
+    logic bus_error;
     // A direction component of 2**20 or more: the ray was not traced.
     logic direction_overflow;
     // A pointer that leads out of the memory or into the middle of a block.
@@ -339,6 +348,9 @@ package voxrt_pkg;
 
   // What a frame has cost.
   typedef struct packed {
+    logic [31:0] word_requests;  // Lanes have asked for a word, which they did not always get.
+    logic [31:0] line_requests;  // Caches of lanes have asked for a line.
+    logic [31:0] lines_read;     // Lines of 32 bytes, from the external memory.
     logic [31:0] cycles;      // From the start to the last pixel accepted.
     logic [31:0] rays;        // Pixels accepted.
     logic [31:0] words_read;
@@ -356,5 +368,51 @@ package voxrt_pkg;
   function automatic int pixel_bits(int max_depth, bit light, bit mirrors);
     return (light || mirrors ? detail_bits(max_depth, light, mirrors) : 0) + $bits(pixel_t);
   endfunction
+
+  // External memory: AXI4 read ports, bursts of 4 beats of 64 bits.
+  localparam int unsigned BusPorts = 2;
+  typedef struct packed {
+    logic        arvalid;
+    logic [31:0] araddr;
+    logic        rready;
+  } axi_read_request_t;
+  typedef struct packed {
+    logic        arready;
+    logic        rvalid;
+    logic [63:0] rdata;
+    logic [1:0]  rresp;
+  } axi_read_response_t;
+
+  // What the octree memory meets at a clock.
+  typedef struct packed {
+    logic       bus_error;
+    logic       bus_timeout;
+    logic [7:0] word_requests;  // How many, as counters_t has them.
+    logic [7:0] line_requests;
+    logic       lines_read;
+  } memory_events_t;
+
+  // Strips of lines, in which rays of a core with caches are issued: 16 lines, or 8 for up to 8 lanes, so that a lane's
+  // rays are side by side. Pictures wider than 1024 or 2048 pixels have strips of a half or a quarter of that: so a strip
+  // has 2**strip_bits(lanes) pixels at most.
+  localparam int unsigned StripLineLimit = 4;
+  localparam int unsigned StripLimit = 10 + StripLineLimit;
+
+  function automatic int strip_bits(int lanes);
+    return lanes > 8 ? 14 : 13;
+  endfunction
+
+  function automatic logic [2:0] strip_line_bits(int lanes, logic [SizeBits-1:0] width);
+    return 3'(strip_bits(lanes) - (width <= SizeBits'(1024) ? 10 : width <= SizeBits'(2048) ? 11 : 12));
+  endfunction
+
+  // A pixel's place in a strip.
+  typedef struct packed {
+    logic                  last_line;     // Of the strip.
+    logic                  first_column;
+    logic                  last_column;
+    logic                  last_strip;    // Of the frame.
+    logic [StripLimit-1:0] address;
+  } strip_place_t;
 
 endpackage

@@ -6,7 +6,8 @@ module voxrt_rays
   parameter int unsigned Lanes        = 1,
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
-  parameter bit          Light        = 1'b0
+  parameter bit          Light        = 1'b0,
+  parameter bit          Strips       = 1'b0   // Rays in strips, not line by line.
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -32,7 +33,6 @@ module voxrt_rays
   logic                       direction_valid, issues;
   logic signed [ScanBits-1:0] direction[3], ray_direction[3];
   logic        [   Lanes-1:0] next_lane_q;  // One-hot.
-  logic                       unused_first, unused_line_end, unused_last;
 
   assign issues  = direction_valid && (credit_i & next_lane_q) != '0 && !shadow_valid_i;
   assign issue_o = issues ? next_lane_q : '0;
@@ -48,17 +48,32 @@ module voxrt_rays
     if (!rst_ni || raster_i.start) next_lane_q <= Lanes'(1);
   end
 
-  voxrt_ray_generator u_ray_generator (
-    .clk_i,
-    .rst_ni,
-    .raster_i,
-    .valid_o    (direction_valid),
-    .ready_i    (issues),
-    .direction_o(direction),
-    .first_o    (unused_first),
-    .line_end_o (unused_line_end),
-    .last_o     (unused_last)
-  );
+  if (Strips) begin : gen_strips
+    voxrt_strip_generator #(
+      .Lanes(Lanes)
+    ) u_ray_generator (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .valid_o    (direction_valid),
+      .ready_i    (issues),
+      .direction_o(direction)
+    );
+  end else begin : gen_lines
+    logic unused_first, unused_line_end, unused_last;
+
+    voxrt_ray_generator u_ray_generator (
+      .clk_i,
+      .rst_ni,
+      .raster_i,
+      .valid_o    (direction_valid),
+      .ready_i    (issues),
+      .direction_o(direction),
+      .first_o    (unused_first),
+      .line_end_o (unused_line_end),
+      .last_o     (unused_last)
+    );
+  end
 
   voxrt_ray_setup #(
     .MaxDepth    (MaxDepth),

@@ -1,4 +1,4 @@
-// The root word of a frame: from word 0, which is in a register, or from anywhere else in the memory, by the read port
+// The root word of a frame: from word 0, where that is in a register, or from anywhere else in the memory, by the read port
 // of lane 0, which is idle before the frame.
 //
 // start_i takes the address; valid_o is high for one clock, with root_o from then on. An address beyond the memory
@@ -7,7 +7,8 @@ module voxrt_root
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2
+  parameter int unsigned MemoryClocks = 2,
+  parameter bit          ReadsFirst   = 1'b0  // Word 0 is read like all others, from block -1.
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -18,7 +19,7 @@ module voxrt_root
   output logic [payload_bits(BlockBits):0] root_o,
   // Lane 0's port, as voxrt_octree_memory has it. Words that come before valid_o are not lane 0's.
   output logic                             read_o,
-  output logic [BlockBits+2:0]             read_address_o,
+  output logic [BlockBits+3:0]             read_address_o,
   input  logic                             ack_i,
   input  logic [payload_bits(BlockBits):0] word_i
 );
@@ -28,11 +29,12 @@ module voxrt_root
   logic                    read_q, valid_q, beyond;
   logic [MemoryClocks-1:0] pending_q;
   logic [            31:0] offset;
-  logic [ AddressBits-1:0] address_q;
+  logic [   AddressBits:0] address_q;
   logic [   PayloadBits:0] root_q;
 
   assign offset = address_i - 32'd1;
-  assign beyond = offset[31:AddressBits] != '0;  // True of word 0 too.
+  // True of word 0 too, if it is not read.
+  assign beyond = offset[31:AddressBits] != '0 && !(ReadsFirst && address_i == '0);
 
   always_ff @(posedge clk_i) begin
     valid_q   <= 1'b0;
@@ -44,7 +46,7 @@ module voxrt_root
       root_q  <= word_i;
     end
     if (start_i) begin
-      address_q <= offset[AddressBits-1:0];
+      address_q <= offset[AddressBits:0];
       read_q    <= !beyond;
       valid_q   <= beyond;
       root_q    <= address_i == '0 ? first_word_i : {1'b1, PayloadBits'(9'h100)};

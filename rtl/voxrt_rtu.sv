@@ -19,7 +19,9 @@ module voxrt_rtu
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter bit          Banked       = 1'b0,
+  parameter int unsigned MemoryForm   = PrivateForm,
+  parameter int unsigned L1SetBits    = 5,
+  parameter int unsigned L2SetBits    = 9,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter string       OctreeFile   = ""
@@ -37,6 +39,11 @@ module voxrt_rtu
   input  logic [31:0]     access_word_i,
   output logic            access_valid_o,
   output logic [31:0]     access_word_o,
+  // External memory, see voxrt_cached_memory.
+  input  logic               bus_rst_ni,
+  input  logic               flush_i,
+  output axi_read_request_t  axi_o [BusPorts],
+  input  axi_read_response_t axi_i [BusPorts],
   // Material table, see voxrt_shader and voxrt_reflect.
   input  material_write_t material_write_i,
   // Pixels.
@@ -50,6 +57,8 @@ module voxrt_rtu
   localparam int unsigned PayloadBits = payload_bits(BlockBits);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
+  // Rays that are neighbours find lines in the caches. A pixel's detail is too wide for a buffer of strips.
+  localparam bit Strips = MemoryForm == CachedForm && !Light && !Mirrors;
   localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
 
   // Frame.
@@ -82,13 +91,16 @@ module voxrt_rtu
 
   // Octree memory. Lane 0's read port finds the root before the frame's rays start.
   logic [      Lanes-1:0] lane_read, memory_read, word_valid;
-  logic [AddressBits-1:0] lane_address[Lanes], memory_address[Lanes], root_address;
+  logic [AddressBits-1:0] lane_address[Lanes];
+  logic [  AddressBits:0] memory_address[Lanes], root_address;
+  logic                   memory_ready;
+  memory_events_t         memory_events;
   logic [  PayloadBits:0] word[Lanes], first_word, root;
   logic                   root_read;
 
   always_comb begin
     memory_read    = lane_read;
-    memory_address = lane_address;
+    for (int unsigned i = 0; i < Lanes; i++) memory_address[i] = {1'b0, lane_address[i]};
     if (root_read) begin
       memory_read[0]    = 1'b1;
       memory_address[0] = root_address;
@@ -96,10 +108,12 @@ module voxrt_rtu
   end
 
   voxrt_octree_memory #(
-    .Lanes    (Lanes),
-    .BlockBits(BlockBits),
-    .Banked   (Banked),
-    .File     (OctreeFile)
+    .Lanes     (Lanes),
+    .BlockBits (BlockBits),
+    .MemoryForm(MemoryForm),
+    .L1SetBits (L1SetBits),
+    .L2SetBits (L2SetBits),
+    .File      (OctreeFile)
   ) u_memory (
     .clk_i,
     .rst_ni,
@@ -113,17 +127,26 @@ module voxrt_rtu
     .read_i      (memory_read),
     .address_i   (memory_address),
     .ack_o       (word_valid),
-    .word_o      (word)
+    .word_o      (word),
+    .bus_rst_ni,
+    .start_i     (start),
+    .ready_o     (memory_ready),
+    .flush_i,
+    .base_i      (frame.memory_base),
+    .axi_o,
+    .axi_i,
+    .events_o    (memory_events)
   );
 
   voxrt_root #(
     .BlockBits   (BlockBits),
-    .MemoryClocks(memory_clocks(Banked))
+    .MemoryClocks(memory_clocks(MemoryForm)),
+    .ReadsFirst  (MemoryForm == CachedForm)
   ) u_root (
     .clk_i,
     .rst_ni,
-    .start_i       (start),
-    .address_i     (frame_i.root),
+    .start_i       (memory_ready),
+    .address_i     (MemoryForm == CachedForm ? frame.root : frame_i.root),
     .first_word_i  (first_word),
     .valid_o       (root_valid),
     .root_o        (root),
@@ -173,7 +196,8 @@ module voxrt_rtu
     .Lanes       (Lanes),
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
-    .Light       (Light)
+    .Light       (Light),
+    .Strips      (Strips)
   ) u_rays (
     .clk_i,
     .rst_ni,
@@ -253,7 +277,7 @@ module voxrt_rtu
       .MaxDepth    (MaxDepth),
       .PositionBits(PositionBits),
       .BlockBits   (BlockBits),
-      .MemoryClocks(memory_clocks(Banked)),
+      .MemoryClocks(memory_clocks(MemoryForm)),
       .RayDepth    (RayDepth),
       .CreditClocks(CreditClocks),
       .Light       (Light),
@@ -326,7 +350,8 @@ module voxrt_rtu
     .Lanes   (Lanes),
     .MaxDepth(MaxDepth),
     .Light   (Light),
-    .Mirrors (Mirrors)
+    .Mirrors (Mirrors),
+    .Strips  (Strips)
   ) u_pixels (
     .clk_i,
     .rst_ni,
@@ -358,6 +383,7 @@ module voxrt_rtu
     .direction_overflow_i(ray_valid && overflow),
     .bad_pointer_i       (bad_pointer != '0 || (root_valid && root[PayloadBits] && root[8])),
     .step_limit_i        (step_limit != '0),
+    .memory_events_i     (memory_events),
     .error_o,
     .counters_o
   );

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..board.errors import DeviceError, Refused, TooSlow
+from ..board.errors import DeviceError, FrameDropped, Refused, TooSlow
+from ..board.frame_drop import FrameDrop
 from ..board.scene import EMPTY_LEAF, Scene
 from ..board.scene_memory import SceneMemory
 from ..board.view import View, frame_world, refit
@@ -48,6 +49,9 @@ EMPTY_SCENE = Scene(
 """The scene until another one is loaded: empty space, dark grey."""
 
 _REGISTERS_SECONDS = 0.05
+_OUTDATED_SECONDS = 0.5
+"""Frames that take longer are dropped when the view changes. One of two frames is never dropped, so that frames appear
+however often the view changes."""
 _LOG = logging.getLogger("voxrt.serve")
 
 
@@ -88,6 +92,9 @@ class Renderer:
         self._registers: Mapping[str, int] = {}
         self._registers_time = -math.inf
         self._first_frame: tuple[View, Frame] | None = None  # of a scene that was loaded
+        self._drop: FrameDrop | None = None  # of the present frame, if it may be dropped
+        self._frame_began = -math.inf
+        self._dropped = False  # whether the last frame was
 
     def change_view(self, change: ChangeView, client: int, request: int) -> None:
         """Change the view; frames then carry the numbers `client` and `request`.
@@ -104,6 +111,9 @@ class Renderer:
             self.nonstop = change.nonstop
         self._newest_request = (client, request)
         self._changed.set()
+        if self._drop is not None:
+            loop, drop, self._drop = asyncio.get_running_loop(), self._drop, None
+            loop.call_at(max(loop.time(), self._frame_began + _OUTDATED_SECONDS), drop.request)
 
     def check_scene(self, scene: Scene) -> None:
         """Refuse a scene that the device cannot hold or render; nothing is written."""
@@ -176,6 +186,9 @@ class Renderer:
             trouble = None
             try:
                 clients.queue_frame(await self._next_frame())
+            except FrameDropped:
+                self._changed.set()
+                continue
             except TooSlow as error:
                 trouble = f"{error}: move the camera, choose a smaller picture, or load another scene"
             except DeviceError as error:
@@ -204,12 +217,24 @@ class Renderer:
             if first is not None and first[0] == view:
                 frame = first[1]
             else:
-                frame = await self._on_device(partial(self._render, view))
+                frame = await self._render_until_outdated(view)
         self.frames += 1
         return FramePacket(self.frames, scene_number, client, request, frame)
 
-    def _render(self, view: View) -> Frame:
-        return self.device.frame(view, self.device.identity.frame_seconds(view.size))
+    async def _render_until_outdated(self, view: View) -> Frame:
+        """Render a frame; raise FrameDropped where it takes long and the view changes."""
+        drop = None if self._dropped else FrameDrop()
+        self._drop, self._frame_began, self._dropped = drop, asyncio.get_running_loop().time(), False
+        try:
+            return await self._on_device(partial(self._render, view, drop))
+        except FrameDropped:
+            self._dropped = True
+            raise
+        finally:
+            self._drop = None
+
+    def _render(self, view: View, drop: FrameDrop | None = None) -> Frame:
+        return self.device.frame(view, self.device.identity.frame_seconds(view.size), drop)
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)

@@ -140,6 +140,7 @@ class RequestHandler:
 
     async def _load(self, number: int, load: Callable[[Progress], Coroutine[Any, Any, Scene]]) -> None:
         progress = _ReportedProgress(self._client, number)
+        progress("read", 0, 1)  # before the process that reads the files has started, which may take long
         repeating = asyncio.ensure_future(progress.repeat())
         try:
             scene = await load(progress)
@@ -166,7 +167,7 @@ class _ReportedProgress:
         self._number = number
         self._loop = asyncio.get_running_loop()
         self._stage, self._time = "", 0.0
-        self._message: dict[str, Any] | None = None
+        self._message: dict[str, Any] = {}
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         now = time.monotonic()
@@ -179,5 +180,4 @@ class _ReportedProgress:
         """Send the newest progress again, without end."""
         while True:
             await asyncio.sleep(_REPEAT_SECONDS)
-            if self._message is not None:
-                self._client.queue_answer(self._message)
+            self._client.queue_answer(self._message)

@@ -53,9 +53,15 @@ def scene_names(paths: Sequence[Path]) -> dict[str, Path]:
     >>> from pathlib import Path
     >>> sorted(scene_names([Path("a/dog.mem"), Path("b/cat.mem"), Path("b/cat.glb")]))
     ['cat.glb', 'cat.mem', 'dog']
+    >>> sorted(scene_names([Path("a/dog.mem"), Path("b/dog.mem"), Path("dog.mem.glb")]))
+    ['a/dog.mem', 'b/dog.mem', 'dog.mem']
     """
-    stems, names = [path.stem for path in paths], [path.name for path in paths]
-    return {
-        stem if stems.count(stem) == 1 else name if names.count(name) == 1 else str(path): path
-        for path, stem, name in zip(paths, stems, names, strict=True)
-    }
+    kept = list(dict.fromkeys(paths))
+    ways = [(path.stem, path.name, str(path)) for path in kept]
+    chosen = [0] * len(kept)
+    while True:
+        names = [way[number] for way, number in zip(ways, chosen, strict=True)]
+        longer = [names.count(name) > 1 and number < 2 for name, number in zip(names, chosen, strict=True)]
+        if not any(longer):
+            return dict(zip(names, kept, strict=True))
+        chosen = [number + more for number, more in zip(chosen, longer, strict=True)]

@@ -9,8 +9,10 @@ __path__ = extend_path(__path__, __name__)
 __all__ = [
     "FACE_NONE",
     "Background",
+    "CacheCost",
     "Camera",
     "Comparison",
+    "Dram",
     "Engine",
     "EngineCheck",
     "Frame",
@@ -53,6 +55,7 @@ _HOMES = {
         "pixel_directions",
     ),
     "voxrt.sim.errors": ("NoSuchConfigurationError", "SimulatorError"),
+    "voxrt.sim.external_memory": ("CacheCost", "Dram"),
     "voxrt.sim.frame": ("FACE_NONE", "Frame", "RenderCost"),
     "voxrt.sim.framing": ("frame_scene", "outline"),
     "voxrt.sim.image": ("write_png",),
@@ -75,6 +78,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
         pixel_directions,
     )
     from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+    from voxrt.sim.external_memory import CacheCost, Dram
     from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
     from voxrt.sim.framing import frame_scene, outline
     from voxrt.sim.image import write_png

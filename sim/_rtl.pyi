@@ -14,12 +14,17 @@ class RenderResult(TypedDict):
     face: NDArray[np.uint8]
     cycles: int
     words_read: int
+    word_requests: int
+    line_requests: int
+    lines_read: int
     errors: list[str]
 
 class Tracer:
     def __init__(self, config: str) -> None: ...
     @property
     def memory_words(self) -> int: ...
+    @property
+    def cached(self) -> bool: ...
     @property
     def max_depth(self) -> int: ...
     @property
@@ -44,6 +49,10 @@ class Tracer:
         mirrors: NDArray[np.uint8] | None = None,
         root: int = 0,
         stall_seed: int = 0,
+        latency: int = 50,
+        interval: int = 3,
+        jitter: int = 0,
+        dram_seed: int = 0,
     ) -> RenderResult: ...
 
 class Core:

@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from voxrt.sim.external_memory import CacheCost
+
 FACE_NONE = 3
 """The face of a pixel whose ray crossed none: a miss, or a camera inside a solid."""
 
@@ -27,12 +29,15 @@ class RenderCost:
         Clock cycles from the start of the frame to its last pixel; None for the model, which has no clock.
     seconds
         Wall seconds.
+    cache
+        What it cost at the caches; None without caches.
     """
 
     rays: int
     words_read: int | None
     cycles: int | None
     seconds: float
+    cache: CacheCost | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

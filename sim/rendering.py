@@ -19,6 +19,7 @@ from voxrt.octree.camera import (
 )
 from voxrt.sim import _model
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import Frame, RenderCost
 from voxrt.sim.samples import join_samples, put_background
 from voxrt.sim.verilated import import_verilated
@@ -35,6 +36,7 @@ Engine: TypeAlias = Literal["rtl", "model"]
 _FACES = 6
 _FRAME_LIMIT = 1 << 14
 _RTL_FRAME_LIMIT = (1 << 12) - 1
+_CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -70,6 +72,7 @@ def render(
     background: Background | None = None,
     threads: int = 0,
     config: str = "tiny",
+    dram: Dram | None = None,
 ) -> Frame:
     """Render a frame.
 
@@ -95,6 +98,8 @@ def render(
         Threads of the model; 0 takes one per core. The frame does not depend on it.
     config
         The configuration of the ray tracer for ``"rtl"``.
+    dram
+        The external memory of a configuration that has caches; None takes ``Dram()``.
 
     Returns
     -------
@@ -123,9 +128,14 @@ def render(
     ((32, 32, 3), 1024, True)
     """
     choice("engine", engine, get_args(Engine))
+    if engine == "model" and dram is not None:
+        raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     return join_samples(
-        [_render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config) for one in cameras],
+        [
+            _render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram)
+            for one in cameras
+        ],
         background,
     )
 
@@ -140,12 +150,13 @@ def check(
     background: Background | None = None,
     threads: int = 0,
     config: str = "tiny",
+    dram: Dram | None = None,
 ) -> EngineCheck:
     """Render with both engines and compare every sample of every pixel.
 
     Parameters
     ----------
-    rom, camera, size, lighting, samples, background, threads, config
+    rom, camera, size, lighting, samples, background, threads, config, dram
         As for :func:`render`.
 
     Returns
@@ -168,8 +179,14 @@ def check(
     0
     """
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
-    rtl = [_render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config) for one in cameras]
-    model = [_render_one(rom, one, size, lighting, engine="model", threads=threads, config=config) for one in cameras]
+    rtl = [
+        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram)
+        for one in cameras
+    ]
+    model = [
+        _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None)
+        for one in cameras
+    ]
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
     return EngineCheck(rtl=join_samples(rtl, background), model=join_samples(model, background), wrong=wrong)
 
@@ -198,11 +215,19 @@ def _checked(
 
 
 def _render_one(
-    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, engine: Engine, threads: int, config: str
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    lighting: Lighting,
+    *,
+    engine: Engine,
+    threads: int,
+    config: str,
+    dram: Dram | None,
 ) -> Frame:
     if engine == "model":
         return _render_model(rom, camera, size, lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, size, lighting, text("config", config))
+    return _render_rtl(rom, camera, size, lighting, config=text("config", config), dram=dram)
 
 
 def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
@@ -264,7 +289,9 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
     return _rtl
 
 
-def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> Frame:
+def _render_rtl(
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, config: str, dram: Dram | None
+) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
     tracer = _rtl.Tracer(config)
@@ -291,9 +318,24 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Light
             raise SimulatorError(
                 f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
             )
+    if dram is not None and not tracer.cached:
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} has its memory on the chip, without latency or interval; "
+            "take one with caches, such as 'cached4'"
+        )
+    memory = Dram() if dram is None else dram
     tracer.load(rom.octree.words)
     pixels = tracer.render(
-        _registers(camera), size[0], size[1], rom.octree.depth, palette_of(rom), **_shading_of(rom, lighting)
+        _registers(camera),
+        size[0],
+        size[1],
+        rom.octree.depth,
+        palette_of(rom),
+        **_shading_of(rom, lighting),
+        latency=memory.latency,
+        interval=memory.interval,
+        jitter=memory.jitter,
+        dram_seed=memory.seed,
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(
@@ -306,7 +348,13 @@ def _render_rtl(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Light
         colour=pixels["colour"],
         material=pixels["material"],
         face=pixels["face"],
-        cost=RenderCost(size[0] * size[1], pixels["words_read"], pixels["cycles"], time.perf_counter() - started),
+        cost=RenderCost(
+            size[0] * size[1],
+            pixels["words_read"],
+            pixels["cycles"],
+            time.perf_counter() - started,
+            CacheCost(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
+        ),
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
+from operator import add
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -42,11 +44,13 @@ def join_samples(frames: list[Frame], background: Background | None) -> Frame:
     else:
         colour = average_samples([one.colour for one in frames])
     costs = [one.cost for one in frames]
+    caches = [one.cache for one in costs if one.cache is not None]
     cost = RenderCost(
         sum(one.rays for one in costs),
         _total([one.words_read for one in costs]),
         _total([one.cycles for one in costs]),
         sum(one.seconds for one in costs),
+        reduce(add, caches) if caches else None,
     )
     return replace(frames[0], colour=colour, cost=cost)
 

@@ -14,6 +14,7 @@ __path__ = extend_path(__path__, __name__)
 from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture
+from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
 from voxrt.voxelize.grid import Grid
 from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
@@ -29,6 +30,7 @@ __all__ = [
     "AssetError",
     "BoxCollider",
     "Collider",
+    "CornerNormals",
     "DoesNotFitError",
     "Grid",
     "HullCollider",

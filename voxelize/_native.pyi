@@ -1,12 +1,22 @@
-# The manual of these functions is their docstrings, in src/module.cpp.
-from typing import NamedTuple
+# The manual of these functions is their docstrings, in src/module.cpp and src/scene_bindings.cpp.
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 OBJECT_MODES: tuple[str, ...]
 
+Corner: TypeAlias = tuple[float, float, float]
+Cloud: TypeAlias = tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.float64]]
+
 class OutOfRangeError(ValueError): ...
+class UnfitSceneError(ValueError): ...
+class TooManyMaterialsError(ValueError): ...
+
+class MaterialTable:
+    def __init__(self, name: str, colour: tuple[int, int, int]) -> None: ...
+    def add(self, name: str, colour: tuple[int, int, int], mirror: bool, authored: bool) -> tuple[int, str]: ...
 
 class MeshArrays(NamedTuple):
     positions: NDArray[np.float64]
@@ -44,3 +54,15 @@ def voxelize(
     threads: int,
 ) -> Voxelized: ...
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...
+def scene_bounds(clouds: Sequence[Cloud], hidden: int) -> tuple[Corner, Corner]: ...
+def fit_grid(low: Corner, high: Corner, depth: int) -> tuple[Corner, float]: ...
+def longest_side(low: Corner, high: Corner) -> float: ...
+def placed_vertices(positions: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]: ...
+def object_warnings(
+    voxels: NDArray[np.int64],
+    modes: NDArray[np.uint8],
+    flipped: NDArray[np.int64],
+    mostly_filled: NDArray[np.uint8],
+    names: Sequence[str],
+    reported: Sequence[bool],
+) -> list[tuple[str, str, int]]: ...

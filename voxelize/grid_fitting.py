@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize import arguments
+from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.box_rounding import POW2_CHOICES, UNITS_PER_VOXEL, box_in_voxels, keeps_axes, round_box
 from voxrt.voxelize.collider_shapes import BoxCollider, bounding_points
 from voxrt.voxelize.errors import AssetError, DoesNotFitError
@@ -16,12 +16,14 @@ from voxrt.voxelize.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from typing import TypeAlias
 
     from numpy.typing import NDArray
 
     from voxrt.voxelize.box_rounding import Pow2
-    from voxrt.voxelize.mesh import Mesh
     from voxrt.voxelize.object_proxies import Geometry
+
+    Corner: TypeAlias = tuple[float, float, float]
 
 
 def fit_grid(
@@ -82,13 +84,14 @@ def fit_grid(
     if voxel_size is not None:
         voxel_size = arguments.real("voxel_size", voxel_size, above=0)
     low, high = scene_bounds(scene, geometry) if bounds is None else _checked_bounds(bounds)
-    longest = float((high - low).max())
-    if not np.isfinite(longest):
-        raise AssetError(scene.name, "the scene's size overflows float64", fix="scale it down")
-    origin = (float(low[0]), float(low[1]), float(low[2]))
-    if depth is not None:
-        fitted = longest / 2**depth
-        return Grid(depth, origin, fitted if fitted > 0 else 1.0)
+    try:
+        longest = _native.longest_side(low, high)
+        if depth is not None:
+            origin, fitted = _native.fit_grid(low, high, depth)
+            return Grid(depth, origin, fitted)
+    except _native.UnfitSceneError as error:
+        problem, fix = error.args
+        raise AssetError(scene.name, problem, fix=fix) from None
     assert voxel_size is not None
     voxels = longest / voxel_size
     if voxels < 2**DEPTH_LIMIT + 1:
@@ -99,73 +102,64 @@ def fit_grid(
             f"use a voxel size of {longest / 2**DEPTH_LIMIT:.6g} m or more"
         )
     fitted_depth = max(1, int(np.ceil(np.log2(voxels)))) if voxels > 1 else 1
-    grid = Grid(fitted_depth, origin, voxel_size)
+    grid = Grid(fitted_depth, low, voxel_size)
     if bounds is None and pow2 == "box" and grid.depth < DEPTH_LIMIT and _rounding_overflows(scene, grid, geometry):
-        return Grid(fitted_depth + 1, origin, voxel_size)
+        return Grid(fitted_depth + 1, low, voxel_size)
     return grid
 
 
-def _checked_bounds(bounds: object) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _checked_bounds(bounds: object) -> tuple[Corner, Corner]:
     corners = arguments.real_array("bounds", bounds, (2, 3)).astype(np.float64, copy=False)
     if not (corners[0] < corners[1]).all():
         raise ValueError(f"bounds must be a lowest and a highest corner, not {corners[0]} and {corners[1]}")
-    return corners[0], corners[1]
+    low, high = (tuple(corner) for corner in corners.tolist())
+    return low, high
 
 
-def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the lowest and the highest corner of what will be voxelized: float64, shape (3,), scene frame.
+def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[Corner, Corner]:
+    """Return the lowest and the highest corner of what will be voxelized, metres, scene frame.
 
     Raises
     ------
     AssetError
         Nothing to voxelize, or a coordinate that is not finite.
     """
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for points, transforms in _instances(scene, geometry):
-        step = max(1, 1_000_000 // len(points))
-        for first in range(0, len(transforms), step):
-            stack = np.stack(transforms[first : first + step])
-            with np.errstate(over="ignore", invalid="ignore"):
-                for axis in range(3):
-                    row = stack[:, axis, :, None]
-                    reach = row[:, 0] * points[:, 0] + row[:, 1] * points[:, 1] + row[:, 2] * points[:, 2] + row[:, 3]
-                    low[axis] = np.minimum(low[axis], reach.min())
-                    high[axis] = np.maximum(high[axis], reach.max())
-    if np.isnan(low).any() or np.isnan(high).any():
-        raise AssetError(scene.name, "a coordinate is not a number", fix="repair the mesh or its transform")
-    if not (low <= high).all():
-        hidden = sum(item.hidden for item in scene.objects)
-        fix = f"{hidden} objects are hidden: use geometry collider for their colliders" if hidden else ""
-        raise AssetError(scene.name, "nothing to voxelize: no triangles and no colliders", fix=fix)
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise AssetError(scene.name, "a coordinate is infinite", fix="repair the mesh or its transform")
-    return low, high
+    try:
+        return _native.scene_bounds(_clouds(scene, geometry), sum(item.hidden for item in scene.objects))
+    except _native.UnfitSceneError as error:
+        problem, fix = error.args
+        raise AssetError(scene.name, problem, fix=fix) from None
 
 
-def _instances(scene: Scene, geometry: Geometry) -> list[tuple[NDArray[np.floating], list[NDArray[np.float64]]]]:
-    """Return the point clouds of a scene (shape (V, 3), V > 0), each with the transforms that place it."""
-    clouds: dict[int, tuple[object, NDArray[np.floating], list[NDArray[np.float64]]]] = {}
+_NO_TRIANGLES = np.empty((0, 3), np.int32)
 
-    def place(key: object, points: Callable[[], NDArray[np.floating]], transform: NDArray[np.float64]) -> None:
+
+def _clouds(scene: Scene, geometry: Geometry) -> list[_native.Cloud]:
+    """Return the points of a scene, the triangles whose vertices count, and the transforms that place them."""
+    clouds: dict[int, tuple[object, NDArray[np.floating], NDArray[np.int32], list[NDArray[np.float64]]]] = {}
+
+    def place(
+        key: object,
+        points: Callable[[], tuple[NDArray[np.floating], NDArray[np.int32]]],
+        transform: NDArray[np.float64],
+    ) -> None:
         if id(key) not in clouds:
-            clouds[id(key)] = (key, points(), [])  # an id is unique only while its object lives
-        clouds[id(key)][2].append(transform)
+            clouds[id(key)] = (key, *points(), [])  # an id is unique only while its object lives
+        clouds[id(key)][3].append(transform[:3])
 
     for item in scene.objects:
         colliders = proxies(item, geometry)
-        if colliders is None:
-            mesh = item.mesh
-            place(mesh, lambda mesh=mesh: _used(mesh), item.transform)  # type: ignore[misc]
+        mesh = item.mesh
+        if colliders is None and len(mesh.triangles):
+            place(mesh, lambda mesh=mesh: (mesh.positions, mesh.triangles), item.transform)  # type: ignore[misc]
         for collider in colliders or ():
-            place(collider, lambda collider=collider: bounding_points(collider), item.transform)  # type: ignore[misc]
-    return [(points, transforms) for _, points, transforms in clouds.values() if len(points) > 0]
-
-
-def _used(mesh: Mesh) -> NDArray[np.floating]:
-    """Return the vertices that triangles use."""
-    used = np.zeros(len(mesh.positions), np.bool_)
-    used[mesh.triangles.reshape(-1).astype(np.intp)] = True  # twice as fast as indices of 32 bits
-    return mesh.positions if used.all() else mesh.positions[used]
+            bare = lambda one=collider: (bounding_points(one), _NO_TRIANGLES)  # noqa: E731 - its type is known
+            place(collider, bare, item.transform)
+    return [
+        (np.ascontiguousarray(points), np.ascontiguousarray(triangles, np.int32), np.stack(transforms))
+        for _, points, triangles, transforms in clouds.values()
+        if len(points) > 0
+    ]
 
 
 def _rounding_overflows(scene: Scene, grid: Grid, geometry: Geometry) -> bool:

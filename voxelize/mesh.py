@@ -9,6 +9,7 @@ import numpy as np
 
 from voxrt.voxelize import arguments
 from voxrt.voxelize.colour.appearance import SurfaceAppearance
+from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.materials import MATERIAL_LIMIT
 
 if TYPE_CHECKING:
@@ -88,6 +89,8 @@ class Mesh:
     material_map
         Materials that vary over triangles, which the voxelizer prefers to `materials`; None before
         :func:`voxrt.voxelize.assign_colours`.
+    normals
+        The normals that the author gave; None for none. Baked light uses them.
 
     Raises
     ------
@@ -109,6 +112,7 @@ class Mesh:
     materials: NDArray[np.uint8]
     appearance: SurfaceAppearance | None = None
     material_map: MaterialMap | None = None
+    normals: CornerNormals | None = None
 
     def __post_init__(self) -> None:
         positions, triangles = checked_surface("Mesh", self.positions, self.triangles)
@@ -126,11 +130,15 @@ class Mesh:
         if self.material_map is not None:
             material_map = arguments.instance("Mesh.material_map", self.material_map, MaterialMap)
             _same_length("Mesh.material_map", len(material_map.sizes), count)
+        if self.normals is not None:
+            normals = arguments.instance("Mesh.normals", self.normals, CornerNormals)
+            _same_length("Mesh.normals", len(normals.rows), count)
 
     def __repr__(self) -> str:
         parts = [f"vertices={len(self.positions)}", f"triangles={len(self.triangles)}"]
         parts += [f"appearance={self.appearance!r}"] * (self.appearance is not None)
         parts += [f"material_map={self.material_map!r}"] * (self.material_map is not None)
+        parts += [f"normals={self.normals!r}"] * (self.normals is not None)
         return f"Mesh({', '.join(parts)})"
 
 

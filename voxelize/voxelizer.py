@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 _MESH, _BOX, _BALL, _ELLIPSOID = range(4)
 _MOST_THREADS = 1024
-_MOST_NAMES = 20
 _ZERO = (0.0, 0.0, 0.0)
 _ONE_MATERIAL = np.empty(0, np.uint8)  # no material per triangle: the part has one
 _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32), np.empty(0, np.uint8))
@@ -112,33 +111,15 @@ def voxelize(
         )
         if geometry == "collider" or not item.hidden
     )
-    if without := [report.name for report in objects if not report.voxels]:
-        parts.warn("no-voxels", f"objects got no voxel: {_names(without)}", len(without))
-    standing_open = sum(report.mode is ObjectMode.OPEN for report in objects)
-    if standing_open:
-        parts.warn(
-            "open-surface",
-            "open objects, like a room without a front, were not filled: close them or give them colliders",
-            standing_open,
-        )
-    mostly_filled = [
-        item.name for item, mostly in zip(scene.objects, result.object_mostly_filled, strict=True) if mostly
-    ]
-    if mostly_filled:
-        first, *others = mostly_filled
-        more = f" and {len(others)} more" if others else ""
-        parts.warn(
-            "mostly-filled",
-            f"open objects were filled, and are more inside than shell ({first}{more}): build thin sheets, such as "
-            "cloth, with fill auto or surface",
-            len(mostly_filled),
-        )
-    if pieces := int(result.object_flipped.sum()):
-        parts.warn(
-            "turned-pieces",
-            "closed pieces that face inwards, unlike others of their object, were turned: recalculate their normals",
-            pieces,
-        )
+    for kind, message, count in _native.object_warnings(
+        result.object_voxels,
+        result.object_modes,
+        result.object_flipped,
+        result.object_mostly_filled,
+        [item.name for item in scene.objects],
+        [geometry == "collider" or not item.hidden for item in scene.objects],
+    ):
+        parts.warn(kind, message, count)
     voxels = Voxels(
         depth=grid.depth,
         brick_codes=result.brick_codes,
@@ -151,12 +132,6 @@ def voxelize(
         octant_materials=result.octant_materials,
     )
     return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
-
-
-def _names(names: list[str]) -> str:
-    """Return names as a message lists them; the reports of the objects list all."""
-    shown = ", ".join(names[:_MOST_NAMES])
-    return shown + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
 
 
 class _Parts:
@@ -242,11 +217,7 @@ def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> 
     exact = np.ascontiguousarray(positions, dtype=np.float64)
     if triangles.min() < 0 or triangles.max() >= len(exact):
         return exact  # which the native voxelizer refuses
-    unused = np.ones(len(exact), np.bool_)
-    unused[triangles.reshape(-1).astype(np.intp)] = False  # twice as fast as indices of 32 bits
-    if unused.any():
-        exact = np.where(unused[:, None], exact[triangles[0, 0]], exact)
-    return exact
+    return _native.placed_vertices(exact, np.ascontiguousarray(triangles, np.int32))
 
 
 _Report = tuple[str, tuple[float, float, float], tuple[float, float, float]]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.sim import Background, Engine, Frame
+    from voxrt.sim import Background, Dram, Engine, Frame
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -65,6 +65,7 @@ def render(
     samples: int = 1,
     background: Background | str | None = None,
     threads: int = 0,
+    dram: Dram | None = None,
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -90,6 +91,8 @@ def render(
         ``"light"``, ``"dark"``, ``"transparent"``, ``"#rrggbb"``, or sRGB, 0 … 255 each. None takes the memory's.
     threads
         Threads of the model; 0 takes one per core.
+    dram
+        The external memory of a configuration that has caches. None takes the default of :class:`voxrt.sim.Dram`.
 
     Returns
     -------
@@ -123,6 +126,7 @@ def render(
         background=None if background is None else read_background("background", background),
         config=config,
         threads=threads,
+        dram=dram,
     )
 
 

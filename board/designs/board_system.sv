@@ -6,7 +6,7 @@ module board_system
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter bit          Banked       = 1'b0,
+  parameter int unsigned MemoryForm       = 0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter int unsigned ClockHz      = 75_000_000,
@@ -29,7 +29,7 @@ module board_system
   input  logic             pixel_rst_ni,
   output logic [2:0][9:0]  words_o        // DVI: blue, green, red.
 );
-  localparam int unsigned MemoryClocks = voxrt_pkg::memory_clocks(Banked);
+  localparam int unsigned MemoryClocks = voxrt_pkg::memory_clocks(MemoryForm);
 
   // Master 0 is the player, and between lists the frames; master 1 the serial line.
   logic    [ 1:0] bus_valid, bus_done;
@@ -61,7 +61,7 @@ module board_system
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
-    .Banked      (Banked),
+    .MemoryForm  (MemoryForm),
     .Light       (Light),
     .Mirrors     (Mirrors),
     .OctreeFile  (OctreeFile)
@@ -92,6 +92,33 @@ module board_system
     .bram_addr_i   (memory_address),
     .bram_wrdata_i (memory_data),
     .bram_rddata_o (memory_read),
+    // No external memory.
+    .m_axi0_arvalid(),
+    .m_axi0_araddr(),
+    .m_axi0_arlen(),
+    .m_axi0_arsize(),
+    .m_axi0_arburst(),
+    .m_axi0_arcache(),
+    .m_axi0_arprot(),
+    .m_axi0_rready(),
+    .m_axi0_arready(1'b0),
+    .m_axi0_rvalid(1'b0),
+    .m_axi0_rdata(64'b0),
+    .m_axi0_rresp(2'b0),
+    .m_axi0_rlast(1'b0),
+    .m_axi1_arvalid(),
+    .m_axi1_araddr(),
+    .m_axi1_arlen(),
+    .m_axi1_arsize(),
+    .m_axi1_arburst(),
+    .m_axi1_arcache(),
+    .m_axi1_arprot(),
+    .m_axi1_rready(),
+    .m_axi1_arready(1'b0),
+    .m_axi1_rvalid(1'b0),
+    .m_axi1_rdata(64'b0),
+    .m_axi1_rresp(2'b0),
+    .m_axi1_rlast(1'b0),
     .m_axis_tvalid (stream_valid),
     .m_axis_tready (stream_ready),
     .m_axis_tdata  (stream_data),

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ..device import Device
+    from ..frame_drop import FrameDrop
     from ..register_writes import Writes
     from ..view import Camera, Lighting, View
     from .serial_link import SerialLink
@@ -197,10 +198,10 @@ class SerialDevice:
         self._model.select_scene(root, depth)
         self._materials = None
 
-    def frame(self, view: View, seconds: float = math.inf) -> Frame:
+    def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render a view by the model, and show it on the monitor; the model's picture is returned."""
         started = time.perf_counter()
-        picture = self._model.frame(view, seconds)
+        picture = self._model.frame(view, seconds, drop)
         control = self._board("control")
         scale = self._choose_scale(control >> 4 & 3)
         size = SCREEN[0] >> scale, SCREEN[1] >> scale

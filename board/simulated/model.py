@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
-from voxrt.board.errors import DeviceError, TooSlow
+from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
 from voxrt.board.scene import EMPTY_LEAF, octree_end
 from voxrt.board.view import FEATURES
 from voxrt.sim import _model
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
+    from voxrt.board.frame_drop import FrameDrop
     from voxrt.board.view import View
 
 MODEL_CAPACITY = 1 << 25
@@ -84,7 +85,8 @@ class ModelDevice:
         self._memory = _Memory(capacity)
         self._view: View | None = None
         self._threads = threads
-        self._stop = _model.Stop()
+        self._stopped = False
+        self._stop = _model.Stop()  # of the present frame
         self._model = _model.Memory(self._memory.octree(), self._memory.depth)
 
     @property
@@ -127,9 +129,14 @@ class ModelDevice:
         except ValueError as error:
             raise DeviceError(f"the model refuses the memory: {error}") from error
 
-    def frame(self, view: View, seconds: float = math.inf) -> Frame:
-        """Render one frame of `view`, within `seconds`."""
+    def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
+        """Render one frame of `view`, within `seconds`, unless it is dropped."""
         started = time.perf_counter()
+        stop = self._stop = _model.Stop()
+        if self._stopped:  # read after the new object is in place: `stop` may come from another thread at any time
+            stop.set()
+        if drop is not None:
+            drop.call_when_requested(stop.set)
         camera = np.array([view.camera.position, view.camera.look, view.camera.right, view.camera.up], dtype=np.int32)
         try:
             pixels = self._model.render(
@@ -144,11 +151,13 @@ class ModelDevice:
                 bounces=view.lighting.bounces,
                 mirrors=self._memory.mirrors,
                 seconds=seconds,
-                stop=self._stop,
+                stop=stop,
             )
         except TimeoutError as error:
             raise TooSlow(f"the frame took more than {seconds:.1f} s") from error
         except InterruptedError as error:
+            if drop is not None and drop.requested and not self._stopped:
+                raise FrameDropped from error
             raise DeviceError("the frame was stopped") from error
         except ValueError as error:
             raise DeviceError(f"the model refuses the frame: {error}") from error
@@ -158,6 +167,7 @@ class ModelDevice:
 
     def stop(self) -> None:
         """End the frame in progress, and all further ones."""
+        self._stopped = True
         self._stop.set()
 
     def close(self) -> None:

@@ -37,18 +37,23 @@ class Build(NamedTuple):
     benches: tuple[str, ...]
     coverage: tuple[Path, ...] = ()  # Modules to bind.
     narrow: bool = False  # Multipliers of 18 x 18 bits.
+    repeats: bool = False  # Another form of a core that other builds drive with the same benches, for a minute.
 
 
 BUILDS = {
     "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
-    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True),
+    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(
         CORE,
-        {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Banked": 1, "Light": 1},
+        {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
         ("bench_core",),
+        repeats=True,
     ),
     "mirrors": Build(
-        CORE, {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1}, ("bench_core",)
+        CORE,
+        {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Mirrors": 1},
+        ("bench_core",),
+        repeats=True,
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
@@ -82,8 +87,31 @@ BUILDS = {
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
     "lane-mirrors": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Mirrors": 1}, ("bench_lane",)),
-    "private_memory": Build("voxrt_octree_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_octree_memory",)),
-    "banked_memory": Build("voxrt_octree_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_octree_memory",)),
+    "private_memory": Build(
+        "voxrt_on_chip_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_on_chip_memory",)
+    ),
+    "banked_memory": Build(
+        "voxrt_on_chip_memory", {"Lanes": 5, "BlockBits": 6, "Banked": 1}, ("bench_on_chip_memory",)
+    ),
+    "cached_memory": Build(
+        "voxrt_cached_memory",
+        {"Lanes": 3, "BlockBits": 6, "L1SetBits": 1, "L2SetBits": 2, "TimeoutBits": 9},
+        ("bench_cached_memory",),
+    ),
+    "cached": Build(
+        CORE,
+        {
+            "Lanes": 3,
+            "MaxDepth": 6,
+            "PositionBits": 13,
+            "BlockBits": 8,
+            "MemoryForm": 2,
+            "L1SetBits": 1,
+            "L2SetBits": 1,
+        },
+        ("bench_cached_core",),
+    ),
+    "strip_buffer": Build("voxrt_strip_buffer", {"Lanes": 16, "Width": 24}, ("bench_strip_buffer",)),
     "traversal": Build(
         CORE,
         {"Lanes": 1, "MaxDepth": 10, "PositionBits": 17, "BlockBits": 12},

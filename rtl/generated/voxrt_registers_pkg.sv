@@ -25,6 +25,10 @@ package voxrt_registers_pkg;
 
     typedef struct {
         logic next;
+    } voxrt_registers__configuration__cached__in_t;
+
+    typedef struct {
+        logic next;
     } voxrt_registers__configuration__banked__in_t;
 
     typedef struct {
@@ -32,6 +36,7 @@ package voxrt_registers_pkg;
         voxrt_registers__configuration__max_depth__in_t max_depth;
         voxrt_registers__configuration__position_bits__in_t position_bits;
         voxrt_registers__configuration__block_bits__in_t block_bits;
+        voxrt_registers__configuration__cached__in_t cached;
         voxrt_registers__configuration__banked__in_t banked;
     } voxrt_registers__configuration__in_t;
 
@@ -56,11 +61,21 @@ package voxrt_registers_pkg;
     } voxrt_registers__status__step_limit__in_t;
 
     typedef struct {
+        logic hwset;
+    } voxrt_registers__status__bus_error__in_t;
+
+    typedef struct {
+        logic hwset;
+    } voxrt_registers__status__bus_timeout__in_t;
+
+    typedef struct {
         voxrt_registers__status__busy__in_t busy;
         voxrt_registers__status__frame_done__in_t frame_done;
         voxrt_registers__status__direction_overflow__in_t direction_overflow;
         voxrt_registers__status__bad_pointer__in_t bad_pointer;
         voxrt_registers__status__step_limit__in_t step_limit;
+        voxrt_registers__status__bus_error__in_t bus_error;
+        voxrt_registers__status__bus_timeout__in_t bus_timeout;
     } voxrt_registers__status__in_t;
 
     typedef struct {
@@ -99,6 +114,9 @@ package voxrt_registers_pkg;
         voxrt_registers__counter_reg__in_t words_read;
         voxrt_registers__counter_reg__in_t hits;
         voxrt_registers__counter_reg__in_t stalls;
+        voxrt_registers__counter_reg__in_t word_requests;
+        voxrt_registers__counter_reg__in_t line_requests;
+        voxrt_registers__counter_reg__in_t lines_read;
         voxrt_registers__materials__external__in_t materials;
     } voxrt_registers__in_t;
 
@@ -119,10 +137,15 @@ package voxrt_registers_pkg;
     } voxrt_registers__control__soft_reset__out_t;
 
     typedef struct {
+        logic value;
+    } voxrt_registers__control__flush__out_t;
+
+    typedef struct {
         voxrt_registers__control__start__out_t start;
         voxrt_registers__control__continuous__out_t continuous;
         voxrt_registers__control__hold__out_t hold;
         voxrt_registers__control__soft_reset__out_t soft_reset;
+        voxrt_registers__control__flush__out_t flush;
     } voxrt_registers__control__out_t;
 
     typedef struct {
@@ -142,10 +165,20 @@ package voxrt_registers_pkg;
     } voxrt_registers__status__step_limit__out_t;
 
     typedef struct {
+        logic value;
+    } voxrt_registers__status__bus_error__out_t;
+
+    typedef struct {
+        logic value;
+    } voxrt_registers__status__bus_timeout__out_t;
+
+    typedef struct {
         voxrt_registers__status__frame_done__out_t frame_done;
         voxrt_registers__status__direction_overflow__out_t direction_overflow;
         voxrt_registers__status__bad_pointer__out_t bad_pointer;
         voxrt_registers__status__step_limit__out_t step_limit;
+        voxrt_registers__status__bus_error__out_t bus_error;
+        voxrt_registers__status__bus_timeout__out_t bus_timeout;
     } voxrt_registers__status__out_t;
 
     typedef struct {
@@ -258,6 +291,14 @@ package voxrt_registers_pkg;
     } voxrt_registers__upper_faces__out_t;
 
     typedef struct {
+        logic [26:0] value;
+    } voxrt_registers__memory_base__address__out_t;
+
+    typedef struct {
+        voxrt_registers__memory_base__address__out_t address;
+    } voxrt_registers__memory_base__out_t;
+
+    typedef struct {
         logic req;
         logic [9:0] addr;
         logic req_is_wr;
@@ -279,6 +320,7 @@ package voxrt_registers_pkg;
         voxrt_registers__position_reg__out_t light[3];
         voxrt_registers__lower_faces__out_t lower_faces;
         voxrt_registers__upper_faces__out_t upper_faces;
+        voxrt_registers__memory_base__out_t memory_base;
         voxrt_registers__materials__external__out_t materials;
     } voxrt_registers__out_t;
 endpackage

@@ -50,7 +50,7 @@ module voxrt_pynq_z1 (
     .MaxDepth    (10),
     .PositionBits(17),
     .BlockBits   (12),
-    .Banked      (0)
+    .MemoryForm  (0)
   ) u_core (
     .clk_i         (clk_i),
     .rst_ni        (rst_ni),
@@ -78,6 +78,16 @@ module voxrt_pynq_z1 (
     .bram_addr_i   (bram_addr_i),
     .bram_wrdata_i (bram_wrdata_i),
     .bram_rddata_o (bram_rddata_o),
+    .m_axi0_arready(1'b0),
+    .m_axi0_rvalid (1'b0),
+    .m_axi0_rdata  (64'd0),
+    .m_axi0_rresp  (2'd0),
+    .m_axi0_rlast  (1'b0),
+    .m_axi1_arready(1'b0),
+    .m_axi1_rvalid (1'b0),
+    .m_axi1_rdata  (64'd0),
+    .m_axi1_rresp  (2'd0),
+    .m_axi1_rlast  (1'b0),
     .m_axis_tvalid (m_axis_tvalid),
     .m_axis_tready (m_axis_tready),
     .m_axis_tdata  (m_axis_tdata),

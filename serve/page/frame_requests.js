@@ -5,7 +5,7 @@ import { toRegisters } from "./camera.js";
 import { Resolution } from "./resolution.js";
 
 const REST = 180; // milliseconds without a change, until finer frames are asked for
-const LONG_REST = 1200; // before frames that are announced: no change can be shown while they are rendered
+const LONG_REST = 1200; // before frames that are announced
 const SLOW = 0.3; // seconds
 const SAID = 1; // seconds: longer frames are announced
 
@@ -52,9 +52,11 @@ export class FrameRequests {
   // newest view is shown.
   step(view, busy) {
     const waiting = this.connection.sent.size;
-    const slow = this.resolution.seconds(this.shown.size) > SLOW;
+    const seconds = this.resolution.seconds(this.shown.size);
     if (this.changed) {
-      if (waiting < (slow ? 1 : 2)) this.send(view, this.resolution.moving(this.stage, this.device));
+      // A frame that is announced is dropped when the server learns that the view has changed.
+      const most = seconds > SLOW && seconds <= SAID ? 1 : 2;
+      if (waiting < most) this.send(view, this.resolution.moving(this.stage, this.device));
     } else if (waiting === 0 && performance.now() - this.changedAt > REST) {
       const next = this.resolution.next(this.stage, this.device, this.shown.size);
       const long = this.resolution.seconds(next.size) > SAID;

@@ -2,18 +2,17 @@
 // sends it to the server. While another viewer has control, the page follows the view of the server.
 
 import { Advanced } from "./advanced.js";
-import { fromRegisters, measure, pixelDirection, toRegisters } from "./camera.js";
+import { fromRegisters, pixelDirection, toRegisters } from "./camera.js";
 import { Connection } from "./connection.js";
 import { $, isPressed, makeToolbar, pressed } from "./elements.js";
 import { Figures } from "./figures.js";
-import { Flight } from "./flight.js";
 import { FrameRequests } from "./frame_requests.js";
-import { Gestures } from "./gestures.js";
 import { Glide } from "./glide.js";
 import { Light } from "./light.js";
-import { dolly, fly, focus, frame, look, orbit, pan } from "./navigation.js";
+import { focus, frame } from "./navigation.js";
 import { dismiss, hideAway, notice, showAway } from "./notices.js";
 import { Picture } from "./picture.js";
+import { makePilot } from "./pilot.js";
 import { Scenes } from "./scenes.js";
 import { add, scale } from "./vectors.js";
 import { Views } from "./views.js";
@@ -151,37 +150,14 @@ connection.addEventListener("frame", ({ detail }) => {
 // The voxel under a place of the page becomes the target.
 async function focusAt(x, y) {
   if (!view || !hasControl()) return;
-  const box = canvas.getBoundingClientRect();
   const size = [canvas.width, canvas.height];
-  const part = Math.min(box.width / size[0], box.height / size[1]); // the canvas keeps the shape of the frame
-  const column = Math.floor((x - box.left - box.width / 2) / part + size[0] / 2);
-  const row = Math.floor((y - box.top - box.height / 2) / part + size[1] / 2);
+  const [column, row] = picture.pixelAt(x, y);
   const registers = toRegisters(view, size);
   try {
     const { hit } = await connection.request("ray", { origin: registers.position, direction: pixelDirection(registers, size, column, row) });
     if (hit) app.glide((now) => focus(now, hit.point, app.limit()));
   } catch (error) { notice("error", "There is no point to focus", error.message); }
 }
-
-const flies = () => isPressed($("fly"));
-const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
-const mirrored = (of) => [of.flipX ? -1 : 1, of.flipY ? -1 : 1];
-function turn(right, down) { // pixels of the page: the scene follows the pointer
-  app.change((now) => {
-    const [x, y] = mirrored(now);
-    const angle = flies() ? (now.fov * Math.PI) / 180 / across() : (2 * Math.PI) / canvas.clientHeight;
-    return flies() ? look(now, -right * angle * x, down * angle * y) : orbit(now, right * angle * x, down * angle * y);
-  });
-}
-const gestures = new Gestures(canvas, {
-  turn,
-  pan: (right, down) => app.change((now) => {
-    const [x, y] = mirrored(now);
-    return pan(now, (right * x) / across(), (down * y) / across(), app.limit());
-  }),
-  dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
-  focus: focusAt,
-});
 
 const commands = {
   KeyF: () => app.glide((now) => frame(now, app.bounds(), app.size(), app.limit())),
@@ -192,24 +168,8 @@ const commands = {
   KeyH: () => $("keys").showModal(),
 };
 for (let i = 0; i < 7; i++) commands[`Digit${i + 1}`] = () => panels.views.choose(i);
-const flight = new Flight($("pad"), {
-  commands,
-  fly: (...parts) => app.change((now) => {
-    const [x, y] = mirrored(now);
-    return fly(now, scale([parts[0] * x, parts[1] * y, parts[2]], app.side()), app.limit());
-  }),
-  rotate: (right, up) => app.change((now) => (flies() ? look(now, right * mirrored(now)[0], up * mirrored(now)[1])
-    : orbit(now, -right * mirrored(now)[0], -up * mirrored(now)[1]))),
-  dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
-});
+const { gestures, flight } = makePilot(app, canvas, commands, focusAt);
 
-function setFlying(on) {
-  pressed($("fly"), on);
-  pressed($("orbit"), !on);
-  $("pad").hidden = !on || !matchMedia("(pointer: coarse)").matches;
-}
-$("fly").onclick = () => setFlying(true);
-$("orbit").onclick = () => setFlying(false);
 $("frame").onclick = commands.KeyF;
 $("reset").onclick = commands.KeyR;
 $("help").onclick = commands.KeyH;

@@ -33,6 +33,14 @@ export class Picture {
     this.canvas.classList.toggle("pixels", sharp && this.canvas.clientWidth > 1.9 * columns);
   }
 
+  // The column and row of the frame at a place of the page; the canvas keeps the shape of the frame.
+  pixelAt(x, y) {
+    const box = this.canvas.getBoundingClientRect();
+    const { width, height } = this.canvas;
+    const part = Math.min(box.width / width, box.height / height);
+    return [Math.floor((x - box.left - box.width / 2) / part + width / 2), Math.floor((y - box.top - box.height / 2) / part + height / 2)];
+  }
+
   save(name) {
     this.canvas.toBlob((blob) => {
       const link = document.createElement("a");

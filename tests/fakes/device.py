@@ -8,7 +8,7 @@ import threading
 import numpy as np
 
 from voxrt.board.device import Counters, Frame, Identity
-from voxrt.board.errors import DeviceError, TooSlow
+from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
 from voxrt.board.scene import Scene
 
 CAPACITY = 4096
@@ -48,6 +48,7 @@ class FakeDevice:
         self.forget_write_at: int | None = None  # the write that leaves a wrong word
         self.fail_frames: Exception | None = None
         self.stopped = False
+        self.dropped = 0
         self.may_finish = threading.Event()
         self.may_finish.set()
         self.busy = threading.Lock()
@@ -96,14 +97,19 @@ class FakeDevice:
                 paths += [((*path, i), word + i) for i in range(8)]
         return found
 
-    def frame(self, view, seconds=math.inf):
+    def frame(self, view, seconds=math.inf, drop=None):
         assert self.busy.acquire(blocking=False), "two calls at a time"
         try:
+            if drop is not None:
+                drop.call_when_requested(self.may_finish.set)
             if not self.may_finish.wait(min(seconds, 10)):
                 assert seconds < 10
                 raise TooSlow(f"the frame took more than {seconds:.1f} s")
             if self.stopped:
                 raise DeviceError("the frame was stopped")
+            if drop is not None and drop.requested:
+                self.dropped += 1
+                raise FrameDropped
             if self.fail_frames:
                 raise self.fail_frames
             self.frames += 1

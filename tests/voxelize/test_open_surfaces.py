@@ -165,6 +165,23 @@ def test_a_thin_hull_has_no_gaps():
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals between threads")
+@pytest.mark.parametrize("exponent", [-60, 30, 48, 52, 60, 100, 300])
+@pytest.mark.parametrize("chamber", [room()[0], without(icosphere(2, (8, 8, 8), 5), [0, 1, 2])])
+def test_a_shared_mesh_has_coordinates_of_any_size_in_its_own_frame(chamber, exponent):
+    """Whether it encloses anything is decided there, by exact signs of solid angles: they once overflowed."""
+    scale = 2.0**exponent  # so that the vertices in voxels are the same numbers
+    large = Mesh(chamber.positions * scale, chamber.triangles, chamber.materials)
+
+    def twice(mesh, factor):
+        first, second = np.diag([factor, factor, factor, 1.0]), np.diag([factor, factor, factor, 1.0])
+        second[:3, 3] = (0.5, 0.25, 0.125)
+        return scene_of(SceneObject("a", mesh, first), SceneObject("b", mesh, second))
+
+    expected = dense(voxelize(twice(chamber, 1.0), GRID).voxels)
+    np.testing.assert_array_equal(dense(voxelize(twice(large, 1 / scale), GRID).voxels), expected)
+    assert 0 < (expected != 0).mean() < 1
+
+
 def test_ctrl_c_ends_a_long_run():
     mesh = icosphere(6, radius=1.0)
     grid = Grid(13, (-1.0, -1.0, -1.0), 2 / 2**13)  # takes seconds

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.authoring.declared_materials import AuthoringError
-from voxrt.voxelize.mesh import Mesh
 
 if TYPE_CHECKING:
     from voxrt.voxelize.authoring.declared_materials import DeclaredMaterials
+    from voxrt.voxelize.mesh import Mesh
     from voxrt.voxelize.scene import Scene
 
 
@@ -75,7 +75,7 @@ class AssetMaterials:
             appearance = replace(appearance, rows=rows) if (rows >= 0).any() else None
         for old in np.unique(mesh.materials[materials == 0]).tolist():
             materials[(mesh.materials == old) & (materials == 0)] = self.id_of(old)
-        return Mesh(mesh.positions, mesh.triangles, materials, appearance)
+        return replace(mesh, materials=materials, appearance=appearance)
 
     def _target(self, name: str) -> str | None:
         """Return the declared material that replaces one of the asset's; None where it keeps its own."""

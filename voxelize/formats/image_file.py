@@ -42,7 +42,7 @@ def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:
     AssetError
         The image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`.
     """
-    from PIL import Image  # noqa: PLC0415 - slow to import, and most assets have no images
+    from PIL import Image  # noqa: PLC0415 - many files have no images, and it is slow to import
 
     try:
         with warnings.catch_warnings():

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from voxrt.voxelize import _native
 from voxrt.voxelize.errors import DoesNotFitError
-from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, MATERIAL_LIMIT, Material
+from voxrt.voxelize.materials import DEFAULT_COLOUR, EMPTY, Material
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -19,9 +20,9 @@ class MaterialTable:
     """The materials of a scene under construction; entry 0 is empty space."""
 
     def __init__(self) -> None:
+        self._table = _native.MaterialTable(EMPTY.name, EMPTY.colour)
         self._entries = [EMPTY]
         self._ids: dict[Hashable, int] = {}
-        self._names = {EMPTY.name}
 
     def id_of(
         self,
@@ -54,13 +55,10 @@ class MaterialTable:
         """
         if key in self._ids:
             return self._ids[key]
-        if len(self._entries) > MATERIAL_LIMIT:
-            raise DoesNotFitError(f"uses more than {MATERIAL_LIMIT} materials; merge some in the asset")
-        unique, number = name, 2
-        while unique in self._names:
-            unique, number = f"{name} ({number})", number + 1
-        self._names.add(unique)
-        self._ids[key] = len(self._entries)
+        try:
+            self._ids[key], unique = self._table.add(name, colour, mirror, authored)
+        except _native.TooManyMaterialsError as error:
+            raise DoesNotFitError(str(error)) from None
         self._entries.append(Material(unique, colour, mirror, authored))
         return self._ids[key]
 

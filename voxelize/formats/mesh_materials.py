@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.colour.appearance import Appearance
+    from voxrt.voxelize.corner_normals import CornerNormals
     from voxrt.voxelize.formats.material_table import MaterialTable
     from voxrt.voxelize.warning_log import WarningLog
 
@@ -42,12 +43,15 @@ class LoadedMesh:
         uint8, shape (T,): material ids; 0 for triangles that are fully transparent or have an appearance.
     appearance
         Textures and vertex colours; None where the file gives none.
+    normals
+        The normals of its corners; None where the file gives none.
     """
 
     positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
     materials: NDArray[np.uint8]
     appearance: SurfaceAppearance | None = None
+    normals: CornerNormals | None = None
 
 
 @dataclass(eq=False, slots=True)
@@ -183,7 +187,7 @@ def _finished_mesh(one: LoadedMesh, materials: NDArray[np.uint8], rows: NDArray[
         surface = replace(one.appearance, rows=rows)
     solid = materials != 0
     if solid.all():
-        return Mesh(one.positions, one.triangles, materials, surface)
+        return Mesh(one.positions, one.triangles, materials, surface, normals=one.normals)
     if surface is not None:
         surface = SurfaceAppearance(
             surface.entries,
@@ -195,7 +199,8 @@ def _finished_mesh(one: LoadedMesh, materials: NDArray[np.uint8], rows: NDArray[
     used = np.zeros(len(one.positions), dtype=np.bool_)  # an unused vertex must not stretch the scene's bounds
     used[triangles] = True
     moved = np.cumsum(used, dtype=np.int32) - np.int32(1)
-    return Mesh(one.positions[used], moved[triangles], materials[solid], surface)
+    normals = None if one.normals is None else one.normals.of_triangles(solid)
+    return Mesh(one.positions[used], moved[triangles], materials[solid], surface, normals=normals)
 
 
 def _areas(one: LoadedMesh, faces: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ import numpy as np
 from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, MeshCollider, SphereCollider
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture, Wrap
+from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import SceneWarning
 from voxrt.voxelize.materials import Material
 from voxrt.voxelize.mesh import Mesh
@@ -62,6 +63,13 @@ class SurfaceAppearanceMessage(msgspec.Struct, frozen=True):
     colours: ArrayMessage
 
 
+class NormalsMessage(msgspec.Struct, frozen=True):
+    """:class:`CornerNormals`."""
+
+    vectors: ArrayMessage
+    rows: ArrayMessage
+
+
 class MeshMessage(msgspec.Struct, frozen=True):
     """A :class:`Mesh`."""
 
@@ -69,6 +77,7 @@ class MeshMessage(msgspec.Struct, frozen=True):
     triangles: ArrayMessage
     materials: ArrayMessage
     appearance: SurfaceAppearanceMessage | None
+    normals: NormalsMessage | None
 
 
 class ColliderMessage(msgspec.Struct, frozen=True):
@@ -190,6 +199,9 @@ def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
                 arrays.add(one.appearance.uv),
                 arrays.add(one.appearance.colours),
             ),
+            None
+            if one.normals is None
+            else NormalsMessage(arrays.add(one.normals.vectors), arrays.add(one.normals.rows)),
         )
         for one in meshes
     ]
@@ -277,6 +289,7 @@ def _scene(message: SceneMessage, arrays: NDArray[np.uint8]) -> Scene:
                 array(one.appearance.uv),  # type: ignore[arg-type]
                 array(one.appearance.colours),  # type: ignore[arg-type]
             ),
+            normals=None if one.normals is None else CornerNormals(array(one.normals.vectors), array(one.normals.rows)),  # type: ignore[arg-type]
         )
         for one in message.meshes
     ]

@@ -1,6 +1,7 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
 #include "convex_hull.h"
 #include "python.h"
+#include "scene_bindings.h"
 #include "voxelizer.h"
 
 #include <nanobind/nanobind.h>
@@ -252,5 +253,6 @@ NB_MODULE(_native, m) {
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
           nb::arg("threads"), kVoxelizeManual);
+    bind_scene(m);
     m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);
 }

@@ -4,22 +4,42 @@
 // The calling thread works too, and runs its interrupt check (interrupt.h): as its jobs count their work, and every
 // 20 ms while it waits for the others. The first exception that a job or the check throws stops all threads, in the
 // middle of their jobs where these count their work, and is thrown again by run().
+//
+// WebAssembly has no threads here: the caller does all jobs.
 #pragma once
 
 #include "interrupt.h"
 
+#include <cstddef>
+#if !defined(__wasm__)
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
+#endif
 
 namespace voxrt::voxelize {
+
+#if defined(__wasm__)
+
+class Workers {
+public:
+    explicit Workers(int) {}
+
+    int threads() const { return 1; }
+
+    template <class Job> void run(std::size_t count, Job&& job) const {
+        for (std::size_t index = 0; index < count; ++index)
+            job(index, 0);
+    }
+};
+
+#else
 
 class Workers {
 public:
@@ -108,5 +128,7 @@ private:
 
     int threads_;
 };
+
+#endif
 
 } // namespace voxrt::voxelize

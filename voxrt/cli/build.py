@@ -154,18 +154,20 @@ def build(
         begun = perf_counter()
         with build_bar() as bar:
             result = voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+        seconds = {"start": waited, **result.seconds}
+        seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
+        waited = 0.0
         warn(result.warnings)
         if result.budget is not None and (loss := _loss(result.budget)):
             warn((voxrt.SceneWarning("budget", loss),))
         if reporting.json:
             from voxrt.cli.results import build_report  # noqa: PLC0415 - most builds print a summary
 
-            reports.append(build_report(result, waited, perf_counter() - begun))
-            waited = 0.0
+            reports.append(build_report(result, seconds))
         else:
             summarize(f"{asset.name}:", _rows(result))
         if profile:
-            _print_profile(result)
+            _print_profile(seconds, result.parts)
     if reporting.json:
         from voxrt.cli.results import print_json  # noqa: PLC0415 - as above
 
@@ -195,12 +197,12 @@ def _check_company(assets: tuple[Path, ...], output: Path, preview: str | None) 
         names[name.casefold()] = asset
 
 
-def _print_profile(result: voxrt.BuildResult) -> None:
-    total = sum(result.seconds.values())
+def _print_profile(seconds: dict[str, float], parts: dict[str, dict[str, float]]) -> None:
+    total = sum(seconds.values())
     rows = [
         row
-        for stage, took in result.seconds.items()
-        for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
+        for stage, took in seconds.items()
+        for row in [(stage, took), *((f"  {part}", took) for part, took in parts.get(stage, {}).items())]
     ]
     percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
     tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])

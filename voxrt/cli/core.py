@@ -60,7 +60,7 @@ def _list() -> None:
                 str(each.parameters["Lanes"]),
                 str(each.parameters["MaxDepth"]),
                 f"{each.words:,}",
-                "banked" if each.parameters["Banked"] else "private",
+                ("private", "banked", "cached")[each.parameters["MemoryForm"]],
                 " ".join(each.features),
             )
             for each in read_configurations().values()

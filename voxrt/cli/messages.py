@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.cli.arguments import Messages
-    from voxrt.sim import Frame
+    from voxrt.sim import CacheCost, Frame
     from voxrt.voxelize import SceneWarning
 
 _SHOWN_OF_A_KIND = 20
@@ -99,6 +99,14 @@ def picture_cost(frame: Frame, engine: str) -> str:
     cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles per pixel, "
     words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words per ray, "
     return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
+
+
+def cache_cost(cost: CacheCost, pixels: int) -> str:
+    """Return what a picture cost at the caches, in one line."""
+    return (
+        f"L1 hits {100 * cost.l1_hits:.1f} %, L2 hits {100 * cost.l2_hits:.1f} %, "
+        f"{cost.lines_read / pixels:.3f} lines and {cost.bytes_read / pixels:.1f} bytes per pixel"
+    )
 
 
 def discard_output() -> None:

@@ -10,14 +10,15 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import Dialect, Engine  # noqa: TC001 - cyclopts reads the signature
-from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, choice, place, png, whole
-from voxrt.cli.messages import picture_cost, summarize, warn
+from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, UsageError, choice, place, png, whole
+from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import read_source
 
 if TYPE_CHECKING:
     from voxrt import Lighting
     from voxrt.octree.camera import Shading
+    from voxrt.sim import Dram
 
 Triple = tuple[int, int, int]
 
@@ -41,6 +42,9 @@ def render(
     shading: Annotated[Literal["faces", "report", "flat"] | None, Parameter(converter=choice)] = None,
     samples: Literal[1, 2, 4] = 1,
     background: Backdrop = None,
+    latency: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
+    interval: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
+    jitter: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -84,6 +88,13 @@ def render(
     background
         light, dark, transparent, or a colour such as #204060. The default is the background of the memory. A
         transparent picture suits pages of any colour.
+    latency
+        Of the external memory of a configuration with caches, such as cached16: clocks from an address to the first
+        word. [default: 50]
+    interval
+        Of the external memory: clocks from one line of 32 bytes to the next. [default: 3]
+    jitter
+        Of the external memory: up to so many clocks more for each line, at random. [default: 0]
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
@@ -103,10 +114,11 @@ def render(
                 (voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),)
             )
             lighting = replace(lighting, on=False, bounces=0)
+    dram = _dram(latency, interval, jitter)
     wrong_pixels = None
     if check:
         checked = voxrt.check(
-            memory, camera, size, lighting=lighting, samples=samples, background=background, config=config
+            memory, camera, size, lighting=lighting, samples=samples, background=background, config=config, dram=dram
         )
         frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
     else:
@@ -119,12 +131,16 @@ def render(
             lighting=lighting,
             samples=samples,
             background=background,
+            dram=dram,
         )
     voxrt.save_picture(frame.colour, file)
     if reporting.json:
         print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
     else:
-        rows = [("picture", picture_cost(frame, engine)), ("wrote", str(file))]
+        rows = [("picture", picture_cost(frame, engine))]
+        if frame.cost.cache is not None:
+            rows.append(("caches", cache_cost(frame.cost.cache, frame.cost.rays)))
+        rows.append(("wrote", str(file)))
         if check:
             rows.append(("check", f"{wrong_pixels} pixels differ between the hardware and its model"))
         summarize(f"{scene.name}:", rows)
@@ -132,6 +148,16 @@ def render(
         raise voxrt.SimulatorError(
             f"{scene}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+def _dram(latency: int | None, interval: int | None, jitter: int | None) -> Dram | None:
+    """Give the external memory that the command line describes; None where it says nothing of one."""
+    said = {"latency": latency, "interval": interval, "jitter": jitter}
+    known = {name: value for name, value in said.items() if value is not None}
+    try:
+        return voxrt.sim.Dram(**known, seed=1 if jitter else 0) if known else None
+    except ValueError as error:
+        raise UsageError(f"--{error}") from error
 
 
 def _lighting(

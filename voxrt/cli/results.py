@@ -6,7 +6,6 @@ Programs rely on the names of the fields: new ones may come, none changes.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from voxrt.build_result import BuildResult
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.pictures import Picture
-    from voxrt.sim import Camera
+    from voxrt.sim import Camera, RenderCost
     from voxrt.voxelize import SceneWarning
 
 
@@ -55,6 +54,20 @@ class CameraEntry(msgspec.Struct, frozen=True):
     up: tuple[int, int, int]
 
 
+class CacheEntry(msgspec.Struct, frozen=True):
+    """What a picture cost at the caches of a configuration that has them."""
+
+    l1_hits: float
+    """Part of the words that needed no line from the shared cache, 0 to 1."""
+    l2_hits: float
+    """Part of the lines asked for that the shared cache had."""
+    lines_per_pixel: float
+    """Lines of 32 bytes from the external memory."""
+    bytes_per_pixel: float
+    requests_per_word: float
+    """How often lanes asked for each word that they read."""
+
+
 class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     """``voxrt render --json``, and `render` in ``voxrt build --json``."""
 
@@ -71,6 +84,8 @@ class RenderResult(msgspec.Struct, frozen=True, omit_defaults=True):
     camera: CameraEntry
     outputs: dict[str, str] | msgspec.UnsetType = msgspec.UNSET
     """Files written, by kind: `picture`. In a build they stand with the build's."""
+    cache: CacheEntry | msgspec.UnsetType = msgspec.UNSET
+    """Of a configuration with caches."""
     wrong_pixels: int | msgspec.UnsetType = msgspec.UNSET
     """With ``--check``: pixels on which the two engines differ."""
 
@@ -148,24 +163,21 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when no light was baked."""
 
 
-def build_report(result: BuildResult, start: float, wall: float) -> BuildReport:
-    """Return what a build made, for programs: `start` seconds after the process began, in `wall` seconds."""
+def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
+    """Return what a build made, for programs. `seconds`: its stages, with what came before and between them."""
     rom = result.rom
-    counted = time.perf_counter()
-    voxels = result.solid_voxels
-    rest = wall - sum(result.seconds.values()) + time.perf_counter() - counted
     return BuildReport(
         outputs={kind: name_file(path) for kind, path in result.outputs.items()},
         depth=rom.octree.depth,
         words=len(rom.octree.words),
         blocks=rom.octree.blocks,
-        voxels=voxels,
+        voxels=result.solid_voxels,
         materials=[
             MaterialEntry(number, material.name, material.colour, material.authored)
             for number, material in enumerate(rom.materials)
         ],
         warnings=warning_entries(result.warnings),
-        seconds={"start": start, **result.seconds, "rest": max(0.0, rest)},
+        seconds=seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
@@ -211,7 +223,21 @@ def render_result(picture: Picture, file: Path | None = None, wrong_pixels: int 
         seconds=cost.seconds,
         camera=camera_entry(camera),
         outputs=msgspec.UNSET if file is None else {"picture": name_file(file)},
+        cache=msgspec.UNSET if cost.cache is None else cache_entry(cost),
         wrong_pixels=msgspec.UNSET if wrong_pixels is None else wrong_pixels,
+    )
+
+
+def cache_entry(cost: RenderCost) -> CacheEntry:
+    """Return what a picture cost at the caches, for programs."""
+    cache = cost.cache
+    assert cache is not None
+    return CacheEntry(
+        l1_hits=cache.l1_hits,
+        l2_hits=cache.l2_hits,
+        lines_per_pixel=cache.lines_read / cost.rays,
+        bytes_per_pixel=cache.bytes_read / cost.rays,
+        requests_per_word=cache.word_requests / max(cost.words_read or 0, 1),
     )
 
 

@@ -201,25 +201,37 @@ class _Writer:
         for name, setting in cell["parameters"].items():
             if name.startswith("REG_") and name.endswith("_CLK") and setting.strip() != "NONE":
                 raise UnknownCellError("a multiplier with registers is not known")
-        for pin in ("SIGNEDA", "SIGNEDB", "SOURCEA", "SOURCEB"):
-            if not self._is_zero(cell, pin):
+        for pin in ("SOURCEA", "SOURCEB"):
+            if self._constant(cell, pin) != 0:
                 raise UnknownCellError(f"a multiplier whose pin {pin} is used is not known")
-        a, b = ("{" + ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18))) + "}" for side in "AB")
+        factors = []
+        for side in "AB":
+            bits = [self.value(cell, f"{side}{i}") for i in reversed(range(18))]
+            signed = self._constant(cell, f"SIGNED{side}")
+            if signed is None:
+                raise UnknownCellError(f"a multiplier whose pin SIGNED{side} is not constant is not known")
+            # Of 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
+            sign = bits[0] if signed else "1'b0"
+            factors.append(f"{{{{18{{{sign}}}}}, {', '.join(bits)}}}")
         self._declarations.append(f"  wire [35:0] p{number};")
-        self._lines.append(f"  assign p{number} = {a} * {b};")
+        self._lines.append(f"  assign p{number} = {factors[0]} * {factors[1]};")
         for i in range(36):
             self.drive(cell, f"P{i}", f"p{number}[{i}]")
 
-    def _is_zero(self, cell: Mapping[str, Any], pin: str) -> bool:
+    def _constant(self, cell: Mapping[str, Any], pin: str) -> int | None:
+        """Give what a pin always is; None if that changes."""
         bit = self.net(cell, pin)
-        if bit == "0" or cell["parameters"].get(f"{pin}MUX", "").strip() == "0":
-            return True
+        chosen = cell["parameters"].get(f"{pin}MUX", "").strip()
+        for given in (chosen, bit):
+            if given in {"0", "1"}:
+                return int(given)
         drivers = [
             other
             for other in self._module["cells"].values()
             if other["type"] == "TRELLIS_COMB" and bit in other["connections"].get("F", [])
         ]
-        return len(drivers) == 1 and "1" not in drivers[0]["parameters"]["INITVAL"].strip()
+        values = set(drivers[0]["parameters"]["INITVAL"].strip()[-16:]) if len(drivers) == 1 else set()
+        return int(values.pop()) if len(values) == 1 else None
 
     def pad(self, _number: int, cell: Mapping[str, Any]) -> None:
         place = self._pads[cell["connections"]["B"][0]]

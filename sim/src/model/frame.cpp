@@ -60,18 +60,20 @@ void check_directions(const Camera& camera, int32_t width, int32_t height) {
             }
 }
 
+int32_t tile_rows(int32_t height) { return (height + kTileSide - 1) / kTileSide; }
+
 uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
-                const FrameView& frame, int threads, RenderTile render_tile) {
+                const FrameView& frame, TileRows rows, int threads, RenderTile render_tile) {
     const int32_t no_direction[3] = {0, 0, 0};
     const uint8_t at_camera = trace_pixel(memory, shading, camera.position, no_direction).material;
     const FrameJob job{memory, shading, camera, frame, at_camera};
     const int32_t across = (frame.width + kTileSide - 1) / kTileSide;
-    const int32_t down = (frame.height + kTileSide - 1) / kTileSide;
+    const int32_t down = rows.end - rows.first;
     std::atomic<uint64_t> words_read{0};
     voxelize::Workers(threads).run(static_cast<size_t>(across) * down, [&](size_t tile, int) {
         voxelize::count_work(kTileWork);
         const int32_t left = static_cast<int32_t>(tile % across) * kTileSide;
-        const int32_t top = static_cast<int32_t>(tile / across) * kTileSide;
+        const int32_t top = (rows.first + static_cast<int32_t>(tile / across)) * kTileSide;
         const bool fits = tile_fits(job, left, top);
         uint64_t words = fits ? render_tile(job, left, top) : 0;
         if (!fits || shading.light || shading.bounces != 0)

@@ -44,10 +44,26 @@ using RenderTile = uint64_t (*)(const FrameJob& job, int32_t left, int32_t top);
 // Throws std::invalid_argument where a pixel's direction reaches kDirectionLimit on an axis.
 void check_directions(const Camera& camera, int32_t width, int32_t height);
 
-// Renders a frame. `threads`: 0 takes as many as the machine has; the frame does not depend on it. `render_tile` is one
-// of tile_engines() (frame_tile.h). Returns how many octree words were read.
+// Some of a frame's rows of tiles, which are kTileSide (frame_tile.h) pixels high: from `first` up to and without
+// `end`.
+struct TileRows {
+    int32_t first;
+    int32_t end;
+};
+
+// How many rows of tiles a frame has.
+int32_t tile_rows(int32_t height);
+
+// Renders those rows of a frame. `threads`: 0 takes as many as the machine has; the frame does not depend on it.
+// `render_tile` is one of tile_engines() (frame_tile.h). Returns how many octree words were read.
 uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
-                const FrameView& frame, int threads, RenderTile render_tile);
+                const FrameView& frame, TileRows rows, int threads, RenderTile render_tile);
+
+// Renders all of a frame.
+inline uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
+                       const FrameView& frame, int threads, RenderTile render_tile) {
+    return render(memory, shading, camera, frame, {0, tile_rows(frame.height)}, threads, render_tile);
+}
 
 // Traces a list of rays, whose directions are below kDirectionLimit. Returns how many octree words were read.
 uint64_t trace_all(const octree::VerifiedMemory& memory, const RaysView& rays, int threads);

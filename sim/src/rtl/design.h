@@ -1,6 +1,8 @@
 // A configuration of the ray tracer, whatever class Verilator made of it.
 #pragma once
 
+#include "dram.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,10 +12,13 @@
 
 namespace voxrt::rtl {
 
+// voxrt_pkg: the parameter MemoryForm.
+enum class MemoryForm { copies, banked, cached };
+
 // The parameters of the design that callers must respect: Design checks none of them.
 struct Limits {
     unsigned lanes;
-    bool banked;
+    MemoryForm form;
     unsigned max_depth;     // depth is 1 .. max_depth
     unsigned position_bits; // signed
     unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
@@ -42,6 +47,7 @@ struct FrameRequest {
     int32_t light_position[3]; // 1/16 voxel
     uint8_t ambient;           // 1/256
     uint8_t bounces;           // 0 .. bounce_limit
+    DramTiming dram;           // of a cached memory
     uint32_t stall_seed;       // 0: the output is always ready; else it stalls in a pattern of this seed's
 };
 
@@ -55,14 +61,16 @@ struct FrameImage {
 struct FrameCost {
     uint64_t cycles; // from the start to the last pixel accepted
     uint64_t words_read;
-    bool direction_overflow, bad_pointer, step_limit;
+    uint64_t word_requests, line_requests, lines_read; // of a cached memory, else 0
+    bool direction_overflow, bad_pointer, step_limit, bus_error, bus_timeout;
 };
 
 class Design {
 public:
     virtual ~Design() = default;
     virtual const Limits& limits() const = 0;
-    // At most memory_words(), report dialect. Through the access port, a word a clock, or straight into the memory.
+    // At most memory_words(), report dialect. Through the access port, a word a clock, or straight into the memory. A
+    // cached memory is the caller's words, which must stay until others are loaded; it has no access port.
     virtual void load(std::span<const uint32_t> words, bool through_port) = 0;
     // What the access port reads from address 0 on.
     virtual std::vector<uint32_t> read_back(std::size_t count) = 0;

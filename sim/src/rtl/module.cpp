@@ -4,24 +4,29 @@
 //   FEATURES: dict[str, list[str]]  which of "light" and "mirrors" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
+//     .cached                 whether its memory is external, behind caches
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
 //     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, through_port=False)
 //                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
-//                             straight into the simulated memory: the outcome is the same
+//                             straight into the simulated memory: the outcome is the same. A cached memory is these
+//                             words themselves, not a copy
 //     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, flat=False, brightness=None, light=None, ambient=0,
-//             bounces=0, mirrors=None, root=0, stall_seed=0) -> dict
+//             bounces=0, mirrors=None, root=0, stall_seed=0, latency=50, interval=3, jitter=0, dram_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
 //                             materials uint8 (256, 3), sRGB, row 0 is the background; brightness None, by the
 //                             angle, or uint8 (6,), 1/255, of the faces along -x, +x, -y, +y, -z, +z; light int32 (3,),
 //                             1/16 voxel; ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the
 //                             word address of the octree's root. With a stall_seed, the picture's consumer stalls in a
-//                             pattern that depends on it. Gives colour uint8 (H, W, 3), material and face uint8 (H, W),
-//                             cycles (from the start to the last pixel accepted), words_read, and the frame's errors:
-//                             "direction overflow", "bad pointer", "step limit". Releases the GIL; Ctrl-C ends it.
+//                             pattern that depends on it. latency, interval, jitter, dram_seed: of a cached memory, in
+//                             clocks; see dram.h. Its caches are empty at the start. Gives colour uint8 (H, W, 3),
+//                             material and face uint8 (H, W), cycles (from the start to the last pixel accepted),
+//                             words_read, and the frame's errors: "direction overflow", "bad pointer", "step limit",
+//                             "bus error", "bus timeout"; of a cached memory also word_requests, line_requests and
+//                             lines_read (voxrt_pkg.sv: counters_t), else 0. Releases the GIL; Ctrl-C ends it.
 //
 //   CORES, Core     the whole core: core_module.cpp
 //
@@ -111,6 +116,7 @@ public:
     }
 
     std::size_t memory_words() const { return design_->limits().memory_words(); }
+    bool cached() const { return design_->limits().form == MemoryForm::cached; }
     unsigned max_depth() const { return design_->limits().max_depth; }
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
     int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
@@ -119,12 +125,16 @@ public:
         if (words.size() < 1 || words.size() > memory_words())
             throw std::invalid_argument(std::to_string(words.size()) + " words do not fit this memory of " +
                                         range(1, static_cast<long>(memory_words())));
+        if (through_port)
+            check_port();
         OneCall call(busy_);
+        loaded_ = cached() ? words : Words();
         nb::gil_scoped_release released;
         design_->load({words.data(), words.size()}, through_port);
     }
 
     nb::object read_back(std::size_t count) {
+        check_port();
         if (count > memory_words())
             throw std::invalid_argument("the memory has " + std::to_string(memory_words()) + " words, not " +
                                         std::to_string(count));
@@ -140,7 +150,8 @@ public:
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     bool flat, const std::optional<Faces>& brightness, const std::optional<Place>& light, long ambient,
-                    long bounces, const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed) {
+                    long bounces, const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed, long latency,
+                    long interval, long jitter, uint32_t dram_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -176,6 +187,15 @@ public:
         }
         request.root = root;
         request.stall_seed = stall_seed;
+        check("latency", latency, 0, clock_limit);
+        check("interval", interval, 1, clock_limit);
+        check("jitter", jitter, 0, clock_limit);
+        request.dram = {.latency = static_cast<unsigned>(latency),
+                        .interval = static_cast<unsigned>(interval),
+                        .jitter = static_cast<unsigned>(jitter),
+                        .seed = dram_seed};
+        if (cached() && !loaded_.is_valid())
+            throw std::invalid_argument("this configuration's memory is external: load words first");
 
         FrameImage image{};
         const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);
@@ -196,6 +216,9 @@ public:
         }
         result["cycles"] = cost.cycles;
         result["words_read"] = cost.words_read;
+        result["word_requests"] = cost.word_requests;
+        result["line_requests"] = cost.line_requests;
+        result["lines_read"] = cost.lines_read;
         nb::list errors;
         if (cost.direction_overflow)
             errors.append("direction overflow");
@@ -203,12 +226,24 @@ public:
             errors.append("bad pointer");
         if (cost.step_limit)
             errors.append("step limit");
+        if (cost.bus_error)
+            errors.append("bus error");
+        if (cost.bus_timeout)
+            errors.append("bus timeout");
         result["errors"] = errors;
         return result;
     }
 
 private:
+    void check_port() const {
+        if (cached())
+            throw std::invalid_argument("the memory of this configuration is external: it has no access port");
+    }
+
+    static constexpr long clock_limit = 1'000'000;
+
     std::unique_ptr<Design> design_;
+    Words loaded_; // a cached memory is the caller's
     bool busy_ = false;
 };
 
@@ -228,6 +263,7 @@ NB_MODULE(_rtl, m) {
     nb::class_<Tracer>(m, "Tracer")
         .def(nb::init<const std::string&>(), "config"_a)
         .def_prop_ro("memory_words", &Tracer::memory_words)
+        .def_prop_ro("cached", &Tracer::cached)
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def_prop_ro("light_limit", &Tracer::light_limit)
@@ -235,6 +271,7 @@ NB_MODULE(_rtl, m) {
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
-             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0);
+             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0, "latency"_a = 50,
+             "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
     voxrt::rtl::bind_core(m);
 }

@@ -22,7 +22,9 @@ public:
         enter();
         model_ = std::make_unique<Model>(&context_, "TOP");
         model_->rst_ni = 0;
-        model_->eval();
+        model_->bus_rst_ni = 0;
+        clock();
+        model_->bus_rst_ni = 1;
     }
 
     ~VerilatedDesign() override {
@@ -35,6 +37,8 @@ public:
 
     void load(std::span<const uint32_t> words, bool through_port) override {
         enter();
+        if (limits_.form == MemoryForm::cached)
+            return dram_.map(words);
         if (through_port) {
             model_->access_i = 1;
             model_->access_write_i = 1;
@@ -47,9 +51,9 @@ public:
             model_->access_write_i = 0;
             return;
         }
-        const std::string memory = "TOP.voxrt_rtu.u_memory";
+        const std::string memory = "TOP.voxrt_rtu.u_memory.gen_on_chip.u_memory";
         *variable(memory, "root_q") = memory_word(words[0]);
-        if (limits_.banked) {
+        if (limits_.form == MemoryForm::banked) {
             uint32_t* banks[16];
             for (unsigned bank = 0; bank < 16; ++bank)
                 banks[bank] =
@@ -88,6 +92,7 @@ public:
     FrameCost render(const FrameRequest& request, const FrameImage& image, const std::function<void()>& poll) override {
         enter();
         reset();
+        dram_.set_timing(request.dram);
         set_frame(request);
         model_->start_i = 1;
         clock();
@@ -122,9 +127,14 @@ public:
         // voxrt_pkg::counters_t, the last field lowest.
         return {.cycles = model_->counters_o[4],
                 .words_read = model_->counters_o[2],
+                .word_requests = model_->counters_o[7],
+                .line_requests = model_->counters_o[6],
+                .lines_read = model_->counters_o[5],
                 .direction_overflow = (errors & 4) != 0,
                 .bad_pointer = (errors & 2) != 0,
-                .step_limit = (errors & 1) != 0};
+                .step_limit = (errors & 1) != 0,
+                .bus_error = (errors & 8) != 0,
+                .bus_timeout = (errors & 16) != 0};
     }
 
 private:
@@ -134,10 +144,31 @@ private:
     static constexpr uint64_t poll_interval = 1 << 16;
 
     void clock() {
+        const bool cached = limits_.form == MemoryForm::cached;
+        if (cached)
+            for (unsigned port = 0; port < Dram::ports; ++port)
+                drive_bus(port);
         model_->clk_i = 0;
         model_->eval();
+        if (cached) {
+            for (unsigned port = 0; port < Dram::ports; ++port) {
+                // voxrt_pkg::axi_read_request_t.
+                const uint64_t request = model_->axi_o[port];
+                dram_.accept(port, request >> 33 & 1, static_cast<uint32_t>(request >> 1), request & 1);
+            }
+            dram_.tick();
+        }
         model_->clk_i = 1;
         model_->eval();
+    }
+
+    void drive_bus(unsigned port) {
+        // voxrt_pkg::axi_read_response_t.
+        const Dram::Response& response = dram_.drive(port);
+        model_->axi_i[port][0] = static_cast<uint32_t>(response.rdata << 2) | response.rresp;
+        model_->axi_i[port][1] = static_cast<uint32_t>(response.rdata >> 30);
+        model_->axi_i[port][2] = static_cast<uint32_t>(response.rdata >> 62) | uint32_t{response.rvalid} << 2 |
+                                 uint32_t{response.arready} << 3;
     }
 
     // The pixel buffers clear themselves after reset, a place a clock; no ray starts until they have.
@@ -182,6 +213,7 @@ private:
                 frame.put(static_cast<uint16_t>(direction[axis]), 16);
         for (const int32_t place : request.position)
             frame.put(static_cast<uint32_t>(place), 32);
+        frame.put(Dram::base, 32);
     }
 
     // What voxrt_octree_memory keeps for a word of the report dialect.
@@ -215,6 +247,7 @@ private:
     Limits limits_;
     VerilatedContext context_;
     std::unique_ptr<Model> model_;
+    Dram dram_;
 };
 
 } // namespace voxrt::rtl

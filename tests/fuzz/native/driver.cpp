@@ -112,7 +112,7 @@ void mutate(std::vector<uint8_t>& data, const std::vector<std::vector<uint8_t>>&
 
 } // namespace
 
-extern "C" const char* __asan_default_options() { return "abort_on_error=1:handle_abort=0"; }
+extern "C" const char* __asan_default_options() { return "abort_on_error=1:handle_abort=0:quarantine_size_mb=16"; }
 extern "C" const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
 
 /// The compiler calls it at every branch of the code under test.

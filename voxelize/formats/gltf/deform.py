@@ -36,6 +36,12 @@ class Pose:
     joints: NDArray[np.float64] | None = None
 
 
+def is_deformed(primitive: Primitive, pose: Pose) -> bool:
+    """Tell whether a pose moves the vertices of a primitive against one another."""
+    moved = zip(pose.weights, primitive.targets, strict=False)
+    return pose.joints is not None or any(weight != 0.0 and "POSITION" in target for weight, target in moved)
+
+
 def morphed(
     document: Document, primitive: Primitive, positions: NDArray[np.floating], pose: Pose, place: str
 ) -> NDArray[np.floating]:

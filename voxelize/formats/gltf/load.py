@@ -104,7 +104,7 @@ def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialK
     materials = np.zeros(len(surface.triangles), np.uint8)
     for start, stop, key in own.runs:
         materials[start:stop] = ids[key]
-    return LoadedMesh(surface.positions, surface.triangles, materials, own.appearance)
+    return LoadedMesh(surface.positions, surface.triangles, materials, own.appearance, surface.normals)
 
 
 def _objects(

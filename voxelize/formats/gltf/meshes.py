@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.corner_normals import CornerNormals
+from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.gltf.attributes import Attributes
-from voxrt.voxelize.formats.gltf.deform import morphed, skinned
+from voxrt.voxelize.formats.gltf.deform import is_deformed, morphed, skinned
 from voxrt.voxelize.formats.gltf.primitives import has_area, read_triangles
 
 if TYPE_CHECKING:
@@ -53,16 +55,20 @@ class Surface:
         int32, shape (T, 3), counter-clockwise seen from outside.
     spans
         The primitives that they come from.
+    normals
+        The normals of vertices that no pose moves; None where the file gives none.
     """
 
     positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
     spans: tuple[Span, ...]
+    normals: CornerNormals | None = None
 
 
 def read_surface(document: Document, index: int, pose: Pose) -> Surface:
     """Read mesh `index` in `pose`."""
     positions: list[NDArray[np.floating]] = []
+    normals: list[NDArray[np.floating] | None] = []
     triangles: list[NDArray[np.int32]] = []
     spans: list[Span] = []
     shared: dict[object, tuple[int, int]] = {}
@@ -83,6 +89,7 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
             shared[same] = vertices, len(bent)
             vertices += len(bent)
             positions.append(bent)
+            normals.append(None if is_deformed(primitive, pose) else _normals(document, attributes, len(bent)))
         first, count = shared[same]
         corners = read_triangles(document, attributes, primitive.mode, count, place)
         triangles.append(corners + np.int32(first) if first else corners)
@@ -91,14 +98,37 @@ def read_surface(document: Document, index: int, pose: Pose) -> Surface:
     if not start:
         return Surface(np.empty((0, 3)), np.empty((0, 3), np.int32), ())
     every = positions[0] if len(positions) == 1 else np.concatenate(positions)
-    return Surface(*compact(every, triangles[0] if len(triangles) == 1 else np.concatenate(triangles)), tuple(spans))
+    vectors = _vectors(normals, positions)
+    corners = triangles[0] if len(triangles) == 1 else np.concatenate(triangles)
+    if len(every) > corners.size:  # a mesh may share the vertices of the whole file: drop those that it does not use
+        rows, places = np.unique(corners, return_inverse=True)
+        every, corners = every[rows], places.reshape(-1, 3).astype(np.int32)
+        vectors = None if vectors is None else vectors[rows]
+    given = None if vectors is None else CornerNormals(vectors, corners)
+    return Surface(every, corners, tuple(spans), given)
 
 
-def compact(
-    positions: NDArray[np.floating], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
-    """Drop unused vertices where there must be many: a mesh may share the vertices of the whole file."""
-    if len(positions) <= triangles.size:
-        return positions, triangles
-    rows, corners = np.unique(triangles, return_inverse=True)
-    return positions[rows], corners.reshape(-1, 3).astype(np.int32)
+def _normals(document: Document, attributes: Attributes, vertices: int) -> NDArray[np.floating] | None:
+    """Return the normals of the vertices; None for none, with a warning where they cannot be read."""
+    if "NORMAL" not in attributes:
+        return None
+    try:
+        found = attributes.reals("NORMAL", {"VEC3"})
+    except AssetError:
+        found = None
+    if found is None or len(found) != vertices:
+        document.log.add("normals", "normals that cannot be read were ignored")
+        return None
+    return found
+
+
+def _vectors(
+    normals: list[NDArray[np.floating] | None], positions: list[NDArray[np.floating]]
+) -> NDArray[np.floating] | None:
+    """Join the normals of primitives, with zeros for those that have none; None where none has any."""
+    if all(one is None for one in normals):
+        return None
+    if len(normals) == 1:
+        return normals[0]
+    rows = zip(normals, positions, strict=True)
+    return np.concatenate([np.zeros((len(own), 3), np.float32) if one is None else one for one, own in rows])

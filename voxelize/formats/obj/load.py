@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
 from voxrt.voxelize.formats.external_files import ExternalFiles
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.obj.appearance import appearance_of_faces, surface_appearance
+from voxrt.voxelize.formats.obj.normals import read_normals
 from voxrt.voxelize.formats.obj.objects import compact, split_objects
 from voxrt.voxelize.formats.obj.statements import Statements, read_statements, texture_coordinates
 from voxrt.voxelize.formats.obj.text import Text, read_text
@@ -83,12 +85,14 @@ def load_obj(
     if not len(faces):
         raise AssetError(path, "has no visible faces", fix="make its materials opaque or export its polygons")
     triangles = statements.corners[corners].astype(np.int32)
+    normals = read_normals(text, statements, log)
     parts = list(split_objects(path.stem, statements, triangles, faces))
     loaded = [
         LoadedMesh(
             *compact(statements.positions, triangles[chosen]),
             appearance.materials[faces[chosen]],
             surface_appearance(statements, appearance, uv, corners[chosen], faces[chosen]),
+            None if normals is None else CornerNormals(normals[0], normals[1][corners[chosen]]),
         )
         for _, chosen in parts
     ]

@@ -161,14 +161,14 @@ def real_rows(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArr
 def index_rows(
     text: Text, lines: NDArray[np.int64], keyword: int, field: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Read one field of the corners of many faces at once: ``12/7/3`` is 12 in field 0 and 7 in field 1.
+    """Read one field of the corners of many faces at once: ``12/7/3`` is 12 in field 0, 7 in field 1 and 3 in field 2.
 
     Parameters
     ----------
     text, lines, keyword
         As in :func:`real_rows`.
     field
-        0 or 1. A corner without field 1 gives 0, which is no index in OBJ files.
+        0, 1 or 2. A corner without field 1 or 2 gives 0, which is no index in OBJ files.
 
     Returns
     -------
@@ -201,16 +201,14 @@ def _keep_field(characters: NDArray[np.uint8], slashes: NDArray[np.int64], field
     ends = np.flatnonzero(~solid[1:] & solid[:-1]) + 1
     before = np.searchsorted(slashes, begins)
     padded = np.append(slashes, [len(characters), len(characters)])
-    first = np.minimum(padded[before], ends)
+    stops = np.minimum(padded[np.minimum(before + field, len(padded) - 1)], ends)
     # +1 where a stretch to blank begins and -1 where it ends; their running sum says what lies within.
     steps = np.zeros(len(characters) + 1, dtype=np.int8)
-    if field == 0:
-        np.add.at(steps, first, np.int8(1))
-    else:
-        second = np.where(first < ends, np.minimum(padded[before + 1], ends), ends)
+    np.add.at(steps, stops, np.int8(1))
+    if field:
+        starts = np.minimum(padded[np.minimum(before + field - 1, len(padded) - 1)] + 1, ends)
         np.add.at(steps, begins, np.int8(1))
-        np.subtract.at(steps, np.minimum(first + 1, ends), np.int8(1))
-        np.add.at(steps, second, np.int8(1))
+        np.subtract.at(steps, starts, np.int8(1))
     np.subtract.at(steps, ends, np.int8(1))
     characters[np.cumsum(steps[:-1], dtype=np.int8) > 0] = ord(" ")
 

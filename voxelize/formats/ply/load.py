@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
+from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
 from voxrt.voxelize.formats.asset_bytes import read_asset
 from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
@@ -65,11 +66,20 @@ def load_ply(
     bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
     if bare.any():
         materials[bare] = table.default(log, len(np.unique(faces[bare])))
-    (mesh,) = assign_materials([LoadedMesh(positions, triangles, materials, appearance)], table, log)
+    loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(tables["vertex"], triangles))
+    (mesh,) = assign_materials([loaded], table, log)
     if not len(mesh.triangles):
         raise AssetError(path, "has no visible faces", fix="give its colours an opacity of 0.5 or more")
     one = SceneObject(path.stem, mesh, scene_transform(up, unit))
     return Scene(path.stem, (one,), table.materials(), log.warnings())
+
+
+def _normals(vertices: Table, triangles: NDArray[np.int32]) -> CornerNormals | None:
+    """Return the normals of the vertices; None for none."""
+    axes = [vertices.get(axis) for axis in ("nx", "ny", "nz")]
+    if any(axis is None or isinstance(axis, ListColumn) for axis in axes):
+        return None
+    return CornerNormals(np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1), triangles)
 
 
 def _colours_of_corners(

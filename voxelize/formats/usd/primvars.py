@@ -39,8 +39,14 @@ def at_corners(
     values = _flattened(prim, name, time)
     if values is None:
         return None
+    return interpolated(name, values, _find(prim, name).GetInterpolation(), surface, log)
+
+
+def interpolated(
+    name: str, values: NDArray[np.float64], interpolation: str, surface: Surface, log: WarningLog
+) -> NDArray[np.float64] | None:
+    """Return values, float64, shape (N, K), at the corners of a surface's triangles, as :func:`at_corners` does."""
     values = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    interpolation = _find(prim, name).GetInterpolation()
     if len(values) == 1 or interpolation == UsdGeom.Tokens.constant:
         return np.broadcast_to(values[0], (len(surface.triangles), 3, values.shape[1]))
     wanted, rows = {

@@ -15,6 +15,7 @@ from voxrt.voxelize.formats.usd.geometry import Surface, solid_key, surface_of
 from voxrt.voxelize.formats.usd.images import Images
 from voxrt.voxelize.formats.usd.instancer import placed_copies
 from voxrt.voxelize.formats.usd.materials import Materials
+from voxrt.voxelize.formats.usd.normals import authored_normals
 from voxrt.voxelize.formats.usd.physics import colliders_of
 from voxrt.voxelize.formats.usd.skin import PREDICATE, Deformed, deformed_meshes
 from voxrt.voxelize.mesh import NO_TRIANGLES
@@ -221,7 +222,8 @@ class StageTraversal:
         if shared not in self._rows:
             materials, appearance = self.materials.assign(prim, surface, shadings, rows)
             self._rows[shared] = len(self._meshes)
-            self._meshes.append(LoadedMesh(surface.positions, surface.triangles, materials, appearance))
+            normals = None if deformed else authored_normals(source, surface, self.time, self.log)
+            self._meshes.append(LoadedMesh(surface.positions, surface.triangles, materials, appearance, normals))
         self._charge(1)
         colliders = colliders_of(source, surface, self.time, self.log)
         transform = self._to_stage(deformed.frame if deformed else prim)

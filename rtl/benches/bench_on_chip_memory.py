@@ -1,4 +1,4 @@
-"""voxrt_octree_memory: what the processor writes is what it and all lanes read, however many want the same bank."""
+"""voxrt_on_chip_memory: what the processor writes is what it and all lanes read, however many want the same bank."""
 
 import random
 

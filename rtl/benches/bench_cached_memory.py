@@ -1,0 +1,218 @@
+"""voxrt_cached_memory, with caches of a few lines: at any pace of the external memory, lanes get the words there.
+
+Lanes ask as rays do: for a word until it comes, in a ring of slots.
+"""
+
+import random
+
+import cocotb
+from axi_memory import DECERR, SLVERR, AxiMemory, StructPort
+from bench_on_chip_memory import encoded, kept, some_word
+from cocotb.triggers import ReadOnly, RisingEdge
+from streams import drive, start
+
+BLOCK_BITS, CLOCKS, SLOTS, BASE = 6, 5, 15, 0x2000_0040
+BLOCKS = 1 << BLOCK_BITS
+ERROR = encoded(0x7FFFFFFF)
+
+
+class Memory:
+    """The memory, the external one behind it, and lanes before it."""
+
+    def __init__(self, dut):
+        self.dut = dut
+        self.lanes = len(dut.read_i)
+        ports = [StructPort(dut.axi_o[p], dut.axi_i[p]) for p in range(2)]
+        self.bus = AxiMemory(ports, random.Random(random.randrange(1 << 30)), BASE)
+        self.fill()
+        self.asked = [[None] * SLOTS for _ in range(self.lanes)]  # By slot: the address that a ray waits for.
+        self.clock_number = 0
+        self.got = 0
+        self.answers = []
+
+    def fill(self):
+        """Write the external memory: word 0 and all blocks."""
+        self.bus.words = [some_word() for _ in range(1 + 8 * BLOCKS)]
+
+    async def begin(self):
+        """Start the clock and reset all."""
+        await start(self.dut, read_i=0, start_i=0, flush_i=0, base_i=BASE, bus_rst_ni=0)
+        self.dut.bus_rst_ni.value = 1
+        self.dut.rst_ni.value = 1
+
+    async def clock(self):
+        """Let a clock pass; the bus and the answers are seen at its edge."""
+        self.bus.drive()
+        await ReadOnly()
+        self.bus.edge()
+        self.ready = int(self.dut.ready_o.value)
+        self.acks = self.dut.ack_o.value.to_unsigned()
+        self.words = [self.dut.word_o[i].value.to_unsigned() for i in range(self.lanes)]
+        self.faults = self.dut.events_o.value.to_unsigned() >> 17
+        await RisingEdge(self.dut.clk_i)
+        self.clock_number += 1
+
+    async def frame(self):
+        """Start a frame; wait until its root may be read."""
+        drive(self.dut, start_i=1)
+        await self.clock()
+        drive(self.dut, start_i=0)
+        for _ in range(3000):
+            if self.ready:
+                return
+            await self.clock()
+        raise AssertionError("the frame never begins")
+
+    async def read(self, clocks, *, hot=4, check=True, stop=False):
+        """Let the rays of all lanes read, most of them few blocks; give how many words came."""
+        history, got = [], 0
+        for clock in range(clocks + CLOCKS + 1):
+            slot = self.clock_number % SLOTS
+            addresses, reads = [], 0
+            for lane in range(self.lanes):
+                waits = self.asked[lane][slot]
+                if waits is None and clock < clocks and not stop:
+                    block = random.choice([-1, *range(hot), random.randrange(BLOCKS)])
+                    waits = (block, 7 if block < 0 else random.randrange(8))
+                if clock >= clocks:
+                    waits = None
+                else:
+                    self.asked[lane][slot] = waits
+                addresses.append(0 if waits is None else (waits[0] % (2 * BLOCKS)) << 3 | waits[1])
+                reads |= (waits is not None) << lane
+            drive(self.dut, read_i=reads, address_i=addresses)
+            history.append(
+                (slot, [self.asked[lane][slot] if reads >> lane & 1 else None for lane in range(self.lanes)])
+            )
+            await self.clock()
+            if len(history) > CLOCKS:
+                then, asked = history.pop(0)
+                for lane, place in enumerate(asked):
+                    if self.acks >> lane & 1:
+                        assert place is not None, "an answer that nobody asked for"
+                        word = encoded(kept_here(self.bus.words[1 + 8 * place[0] + place[1]]))
+                        if check:
+                            assert self.words[lane] == word
+                        else:
+                            assert self.words[lane] in (word, ERROR)
+                        self.asked[lane][then] = None
+                        got += 1
+        drive(self.dut, read_i=0)
+        return got
+
+    async def drain(self, limit=40000, *, check=True):
+        """Let all rays have their words."""
+        for _ in range(limit // 60):
+            if all(place is None for lane in self.asked for place in lane):
+                return
+            await self.read(60, stop=True, check=check)
+        raise AssertionError("a ray waits for ever")
+
+
+def kept_here(word):
+    """Give a word as lanes read it; the bench on chip has as many blocks."""
+    return kept(word)
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    (("latency", "jitter", "stalls"), [(1, 0, 0.0), (3, 9, 0.3), (50, 0, 0.0), (200, 40, 0.1), (10, 200, 0.5)])
+)
+async def every_ray_gets_its_word(dut, latency, jitter, stalls):
+    """At any latency, jitter and back-pressure; from hot blocks that all want, and from cold ones."""
+    memory = Memory(dut)
+    memory.bus.latency, memory.bus.jitter, memory.bus.stalls = latency, jitter, stalls
+    await memory.begin()
+    await memory.frame()
+    assert await memory.read(1500) > 0
+    await memory.drain()
+
+
+@cocotb.test()
+async def a_flush_at_any_clock_shows_the_next_frame_what_was_written(dut):
+    """And never disturbs the frame that is traced, as the memory is written between frames."""
+    memory = Memory(dut)
+    memory.bus.latency, memory.bus.jitter = 8, 20
+    await memory.begin()
+    for _ in range(8):
+        await memory.frame()
+        await memory.read(random.randrange(1, 200))
+        drive(dut, flush_i=1)
+        await memory.read(1)
+        drive(dut, flush_i=0)
+        await memory.read(random.randrange(1, 100))
+        await memory.drain()
+        memory.fill()
+
+
+@cocotb.test()
+async def without_a_flush_lines_stay(dut):
+    """Read no line in the second frame of the same few blocks."""
+    memory = Memory(dut)
+    memory.bus.words[1:9] = [0xFFFFFF07] * 8  # A pointer would be followed.
+    await memory.begin()
+    await memory.frame()
+    for _ in range(2):
+        before = len(memory.bus.addresses)
+        memory.asked = [[(0, slot % 8) for slot in range(SLOTS)] for _ in range(memory.lanes)]
+        await memory.drain()
+        lines = len(memory.bus.addresses) - before
+        await memory.frame()
+    assert lines == 0
+
+
+@cocotb.test()
+async def reset_at_any_clock(dut):
+    """Drop what the bus still owes; the frame after it is right."""
+    memory = Memory(dut)
+    memory.bus.latency, memory.bus.jitter = 20, 60
+    await memory.begin()
+    for _ in range(10):
+        await memory.frame()
+        await memory.read(random.randrange(1, 150))
+        memory.asked = [[None] * SLOTS for _ in range(memory.lanes)]
+        drive(dut, rst_ni=0, read_i=0)
+        await memory.clock()
+        drive(dut, rst_ni=1)
+        memory.fill()
+        await memory.frame()
+        await memory.read(200)
+        await memory.drain()
+
+
+@cocotb.test()
+@cocotb.parametrize(response=[SLVERR, DECERR])
+async def an_error_ends_the_frame(dut, response):
+    """All rays get words soon, errors where the bus was needed; the next frame is right."""
+    memory = Memory(dut)
+    memory.bus.latency = 10
+    await memory.begin()
+    for _ in range(4):
+        await memory.frame()
+        await memory.read(random.randrange(60))
+        memory.bus.response = response
+        await memory.read(60, check=False)
+        await memory.drain(1200, check=False)
+        memory.bus.response = 0
+        await memory.frame()
+        await memory.read(200)
+        await memory.drain()
+
+
+@cocotb.test()
+async def silence_ends_the_frame(dut):
+    """After the clocks that the bus may take; and when it speaks again, the next frame is right."""
+    memory = Memory(dut)
+    memory.bus.latency = 10
+    await memory.begin()
+    patience = 1 << int(dut.TimeoutBits.value)
+    for _ in range(3):
+        await memory.frame()
+        await memory.read(40)
+        memory.bus.silent = True
+        await memory.read(patience + 200, check=False)
+        await memory.drain(1200, check=False)
+        memory.bus.silent = False
+        await memory.frame()
+        await memory.read(200)
+        await memory.drain()

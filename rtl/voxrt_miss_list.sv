@@ -1,0 +1,123 @@
+// The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come; and which lanes want each.
+//
+// A miss, per pipe, joins the entry of its line, or gets one: at most one new entry per clock, for which the pipes take
+// turns. An entry stays until free_i, when its line is in the tags for all lookups that come after.
+module voxrt_miss_list #(
+  parameter int unsigned Pipes     = 2,
+  parameter int unsigned PipeLanes = 8,
+  parameter int unsigned LineBits  = 13,
+  parameter int unsigned Entries   = 16   // A power of two.
+) (
+  input  logic                 clk_i,
+  input  logic                 rst_ni,
+  output logic                 empty_o,
+  // Misses.
+  input  logic [    Pipes-1:0] miss_i,
+  input  logic [ LineBits-1:0] line_i       [Pipes],
+  input  logic [PipeLanes-1:0] lanes_i      [Pipes],  // One-hot.
+  input  logic [          1:0] way_i        [Pipes],  // Where its line will go.
+  output logic [    Pipes-1:0] accepted_o,            // Joined or entered.
+  // Lines to fetch.
+  output logic                 fetch_valid_o,
+  input  logic                 fetch_ready_i,
+  output logic [ LineBits-1:0] fetch_line_o,
+  // The next line comes: come_line_o goes to come_way_o.
+  input  logic                 come_i,
+  output logic [ LineBits-1:0] come_line_o,
+  output logic [          1:0] come_way_o,
+  // The oldest entry ends: who wanted it.
+  input  logic                 free_i,
+  output logic [PipeLanes-1:0] free_lanes_o [Pipes]
+);
+  localparam int unsigned IndexBits = $clog2(Entries);
+  typedef logic [IndexBits-1:0] index_t;
+
+  logic [  Entries-1:0] valid_q;
+  logic [ LineBits-1:0] line_q [Entries];
+  logic [          1:0] way_q  [Entries];
+  logic [PipeLanes-1:0] lanes_q[Entries] [Pipes];
+  index_t               tail_q, fetch_q, come_q, free_q;
+
+  logic [Entries-1:0] same[Pipes];
+  logic [  Pipes-1:0] joins, enters;
+  logic               full, second_first_q, enters_second;
+
+  assign full = valid_q[tail_q];
+
+  always_comb begin
+    for (int unsigned p = 0; p < Pipes; p++) begin
+      for (int unsigned e = 0; e < Entries; e++) same[p][e] = valid_q[e] && line_q[e] == line_i[p];
+      joins[p]  = miss_i[p] && same[p] != '0;
+      enters[p] = miss_i[p] && same[p] == '0 && !full;
+    end
+    // Of two, one enters; the other joins it if it wants the same line.
+    enters_second = Pipes == 2 && enters[Pipes-1] && (second_first_q || !enters[0]);
+    accepted_o    = joins | enters;
+    if (enters == '1 && Pipes == 2 && line_i[0] != line_i[Pipes-1]) begin
+      accepted_o[0]       = joins[0] || !enters_second;
+      accepted_o[Pipes-1] = joins[Pipes-1] || enters_second;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned p = 0; p < Pipes; p++) begin
+      for (int unsigned e = 0; e < Entries; e++) begin
+        if (joins[p] && same[p][e]) lanes_q[e][p] <= lanes_q[e][p] | lanes_i[p];
+      end
+    end
+    if (enters != '0) begin
+      valid_q[tail_q] <= 1'b1;
+      line_q[tail_q]  <= line_i[enters_second?Pipes-1 : 0];
+      way_q[tail_q]   <= way_i[enters_second?Pipes-1 : 0];
+      for (int unsigned p = 0; p < Pipes; p++) begin
+        lanes_q[tail_q][p] <= enters[p] && accepted_o[p] ? lanes_i[p] : '0;
+      end
+      tail_q          <= tail_q + 1'b1;
+      second_first_q  <= !enters_second;
+    end
+    if (fetch_valid_o && fetch_ready_i) fetch_q <= fetch_q + 1'b1;
+    if (come_i) come_q <= come_q + 1'b1;
+    if (free_i) begin
+      valid_q[free_q] <= 1'b0;
+      free_q          <= free_q + 1'b1;
+    end
+    if (!rst_ni) begin
+      valid_q        <= '0;
+      tail_q         <= '0;
+      fetch_q        <= '0;
+      come_q         <= '0;
+      free_q         <= '0;
+      second_first_q <= 1'b0;
+    end
+  end
+
+  // An entry whose number comes round again is not fetched before it is entered anew.
+  logic [IndexBits:0] unfetched_q;
+
+  always_ff @(posedge clk_i) begin
+    unfetched_q <= unfetched_q + (IndexBits + 1)'(enters != '0) - (IndexBits + 1)'(fetch_valid_o && fetch_ready_i);
+    if (!rst_ni) unfetched_q <= '0;
+  end
+
+  assign empty_o       = valid_q == '0;
+  assign fetch_valid_o = unfetched_q != '0;
+  assign fetch_line_o  = line_q[fetch_q];
+  assign come_line_o   = line_q[come_q];
+  assign come_way_o    = way_q[come_q];
+
+  always_comb for (int unsigned p = 0; p < Pipes; p++) free_lanes_o[p] = lanes_q[free_q][p];
+
+`ifndef SYNTHESIS
+  // Before the first reset, nothing holds.
+  logic reset_seen_q = 1'b0;
+  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni && reset_seen_q) begin
+      for (int unsigned p = 0; p < Pipes; p++) assert ($onehot0(same[p])) else $error("a line has two entries");
+      assert (!come_i || valid_q[come_q]) else $error("a line comes that nobody waits for");
+      assert (!free_i || valid_q[free_q]) else $error("no entry ends");
+    end
+  end
+`endif
+endmodule

@@ -1,0 +1,115 @@
+// The octree memory in block RAM: word 0 in a register, all other words in one of two forms, an access port that writes and reads
+// it, and a read port per lane.
+//
+// Forms: private copies (voxrt_private_memory), one per two lanes; or one memory in banks (voxrt_banked_memory), for
+// scenes that would not fit twice.
+//
+// The access port is served at every clock and never waits; lanes keep at least half of their share of the memory. A
+// reset drops the requests of lanes, and no access.
+module voxrt_on_chip_memory
+  import voxrt_pkg::*;
+#(
+  parameter int unsigned Lanes     = 1,
+  parameter int unsigned BlockBits = 12,
+  parameter bit          Banked    = 1'b0,
+  parameter string       File      = ""     // As voxrt_octree_memory has it.
+) (
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  // Report dialect, word addresses, any order, one access per clock; what is written beyond the memory is dropped.
+  input  logic                             access_i,
+  input  logic                             access_write_i,
+  input  logic [31:0]                      access_address_i,
+  input  logic [31:0]                      access_word_i,
+  output logic                             access_valid_o,            // access_word_o is what was read.
+  output logic [31:0]                      access_word_o,
+  output logic [payload_bits(BlockBits):0] first_word_o,              // Word 0.
+  // Lanes: a word comes memory_clocks(Banked ? BankedForm : PrivateForm) clocks after its address, {block, octant}, with ack_o or not.
+  input  logic [Lanes-1:0]                 read_i,
+  input  logic [BlockBits+2:0]             address_i         [Lanes],
+  output logic [Lanes-1:0]                 ack_o,
+  output logic [payload_bits(BlockBits):0] word_o            [Lanes]
+);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned AddressBits = BlockBits + 3;
+  localparam int unsigned Clocks = memory_clocks(Banked ? BankedForm : PrivateForm);
+
+  logic [PayloadBits:0] encoded, read_back;
+  logic [         31:0] offset;
+  logic                 is_first, in_memory;
+
+  voxrt_word_encoder #(
+    .BlockBits(BlockBits)
+  ) u_encoder (
+    .word_i(access_word_i),
+    .word_o(encoded)
+  );
+
+  assign offset    = access_address_i - 32'd1;
+  assign is_first  = access_address_i == '0;
+  assign in_memory = offset[31:AddressBits] == '0;
+
+  // Public, so that a simulation can set it.
+  logic [PayloadBits:0] root_q  /* verilator public_flat_rw */;
+
+  always_ff @(posedge clk_i) if (access_i && access_write_i && is_first) root_q <= encoded;
+
+  assign first_word_o = root_q;
+
+  if (Banked) begin : gen_banked
+    voxrt_banked_memory #(
+      .Lanes    (Lanes),
+      .BlockBits(BlockBits)
+    ) u_memory (
+      .clk_i,
+      .rst_ni,
+      .access_i        (access_i && in_memory),
+      .access_write_i,
+      .access_address_i(offset[AddressBits-1:0]),
+      .access_word_i   (encoded),
+      .access_word_o   (read_back),
+      .read_i,
+      .address_i,
+      .ack_o,
+      .word_o
+    );
+  end else begin : gen_private
+    voxrt_private_memory #(
+      .Lanes      (Lanes),
+      .AddressBits(AddressBits),
+      .PayloadBits(PayloadBits),
+      .File       (File)
+    ) u_memory (
+      .clk_i,
+      .rst_ni,
+      .access_i        (access_i && in_memory),
+      .access_write_i,
+      .access_address_i(offset[AddressBits-1:0]),
+      .access_word_i   (encoded),
+      .access_word_o   (read_back),
+      .read_i,
+      .address_i,
+      .ack_o,
+      .word_o
+    );
+  end
+
+  // Reading.
+  logic [Clocks-1:0] reads_q, first_reads_q;
+  logic [      31:0] decoded;
+
+  always_ff @(posedge clk_i) begin
+    reads_q       <= rst_ni ? {reads_q[Clocks-2:0], access_i && !access_write_i} : '0;
+    first_reads_q <= {first_reads_q[Clocks-2:0], is_first};
+  end
+
+  voxrt_word_decoder #(
+    .BlockBits(BlockBits)
+  ) u_decoder (
+    .word_i(first_reads_q[Clocks-1] ? root_q : read_back),
+    .word_o(decoded)
+  );
+
+  assign access_valid_o = reads_q[Clocks-1];
+  assign access_word_o  = decoded;
+endmodule

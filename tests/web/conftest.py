@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+from fakes.browser import chromium
+from fakes.site import site
+
+
+class QuietHandler(SimpleHTTPRequestHandler):
+    """Python's own file server, which keeps what was asked for to itself."""
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.fixture(scope="session")
+def address():
+    """Where the site is served: below a path, from loopback."""
+    handler = partial(QuietHandler, directory=str(site().parent))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/site/"
+        server.shutdown()
+
+
+@pytest.fixture(scope="module")
+def browser(address: str):
+    with chromium() as one:
+        one.address = address
+        yield one

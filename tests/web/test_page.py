@@ -1,0 +1,307 @@
+"""The static page in Chromium: real drops, exact pictures, downloads, keys, phones, bad files."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import voxrt
+from voxrt.octree.camera import Camera
+from voxrt.sim import render
+
+if TYPE_CHECKING:
+    from fakes.browser import Browser
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples"
+RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
+STAGE = ("#picture",)
+
+
+def shown(name: str, depth: int) -> str:
+    return f"document.querySelector('#stage').dataset.scene === '{name} {depth}' && {RESTS}"
+
+
+def opened(browser: Browser, fragment: str = "") -> None:
+    browser.open("about:blank")
+    browser.open(browser.address + fragment)
+
+
+def drop(browser: Browser, *files: Path) -> None:
+    browser.drop(*browser.middle("#stage"), [str(file) for file in files])
+
+
+def notice(browser: Browser) -> str:
+    return browser.run("const n = document.querySelector('#notice'); return n.hidden ? '' : n.innerText")
+
+
+def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
+    """The camera registers, the size and the colours of the newest frame that was rendered."""
+    script = """
+        const done = arguments[0];
+        const { camera, width, height, pixels } = window.voxrt.newest;
+        const text = pixels.reduce((text, byte) => text + String.fromCharCode(byte), "");
+        done({ camera, size: [width, height], pixels: btoa(text) });
+    """
+    got = browser._call("POST", f"{browser._session}/execute/async", {"script": script, "args": []})
+    width, height = got["size"]
+    colours = np.frombuffer(base64.b64decode(got["pixels"]), np.uint8).reshape(height, width, 3)
+    return got["camera"], got["size"], colours
+
+
+def test_the_example_is_shown_exactly_as_natively(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    camera, size, colours = frame_of(browser)
+    rom = voxrt.build(EXAMPLES / "courtyard.glb", depth=7).rom
+    registers = Camera(*(tuple(camera[name]) for name in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+    text = browser.run("return document.querySelector('#memory').innerText")
+    assert f"{len(rom.octree.words):,}" in text
+    assert "pynq-z1" in text
+    assert "fits" in text
+    assert browser.faults() == []
+
+
+@pytest.mark.parametrize(
+    "files",
+    [["house.obj", "house.mtl"], ["planet.glb"]],
+    ids=lambda files: files[0],
+)
+def test_dropped_files_are_shown_exactly(browser: Browser, files: list[str]) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    drop(browser, *(EXAMPLES / name for name in files))
+    name = files[0].split(".")[0]
+    assert browser.until(shown(name, 7)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    rom = voxrt.build(EXAMPLES / files[0], depth=7).rom
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+    assert browser.faults() == []
+
+
+def stl_of_a_tetrahedron() -> bytes:
+    corners = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    records = [struct.pack("<12fH", 0, 0, 0, *(v for i in face for v in corners[i]), 0) for face in faces]
+    return bytes(80) + struct.pack("<I", len(records)) + b"".join(records)
+
+
+PLY = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+PLY += "property list uchar int vertex_indices\nend_header\n"
+PLY += "0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+
+
+@pytest.mark.parametrize("kind", ["stl", "ply", "mem"])
+def test_the_other_formats_drop_too(browser: Browser, tmp_path: Path, kind: str) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    files = [tmp_path / f"tetra.{kind}"]
+    if kind == "mem":
+        (tmp_path / "tetra.stl").write_bytes(stl_of_a_tetrahedron())
+        built = voxrt.build(tmp_path / "tetra.stl", tmp_path, depth=7)
+        files = list(built.outputs.values())
+    else:
+        files[0].write_bytes(stl_of_a_tetrahedron() if kind == "stl" else PLY.encode())
+        built = voxrt.build(files[0], depth=7)
+    drop(browser, *files)
+    assert browser.until(shown("tetra", 7)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(built.rom, registers, tuple(size), engine="model").colour)
+
+
+def saved(browser: Browser, folder: Path, button: str, name: str) -> bytes:
+    """Click a button and return the file that the browser saves."""
+    browser.cdp("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=False)
+    browser.run("document.querySelector(arguments[0]).click()", button)
+    for _ in range(1000):
+        browser.draws()
+        if (folder / name).exists() and not list(folder.glob("*.crdownload")):
+            return (folder / name).read_bytes()
+    raise AssertionError(f"{name} was not saved; there is {[path.name for path in folder.iterdir()]}")
+
+
+def test_downloads_equal_the_files_of_build(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, "#scene=house&depth=6")
+    assert browser.until(shown("house", 6))
+    outputs = voxrt.build(EXAMPLES / "house.obj", tmp_path / "native", depth=6).outputs
+    got = tmp_path / "page"
+    got.mkdir()
+    assert saved(browser, got, "#save-mem", "house.mem") == outputs["mem"].read_bytes()
+    page = json.loads(saved(browser, got, "#save-manifest", "house.json"))
+    native = json.loads(outputs["manifest"].read_bytes())
+    for name in ("seconds", "source"):
+        page.pop(name)
+        native.pop(name)
+    assert page == native
+    assert saved(browser, got, "#save", "house.png").startswith(b"\x89PNG")
+
+
+def test_the_depth_slider_builds_anew_and_keeps_the_view(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    before = browser.run("return window.voxrt.newest.camera")
+    browser.run(
+        "const slider = document.querySelector('#depth'); slider.value = 8;"
+        "slider.dispatchEvent(new Event('input', { bubbles: true }))"
+    )
+    assert browser.until(shown("courtyard", 8)), notice(browser)
+    after = browser.run("return window.voxrt.newest.camera")
+    assert np.allclose(np.array(after["position"]), 2 * np.array(before["position"]), atol=2)
+    words = len(voxrt.build(EXAMPLES / "courtyard.glb", depth=8).octree.words)
+    assert f"{words:,}" in browser.run("return document.querySelector('#facts').innerText")
+
+
+def test_a_drag_orbits_and_a_finger_too(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    x, y = browser.middle("#picture")
+    first = browser.run("return window.voxrt.newest.camera")
+    browser.mouse([(x, y), (x + 60, y), (x + 120, y)])
+    browser.draws()
+    assert browser.until(RESTS)
+    second = browser.run("return window.voxrt.newest.camera")
+    assert second["look"] != first["look"]
+    browser.touch([(x, y), (x - 50, y + 10), (x - 100, y + 20)])
+    browser.draws()
+    assert browser.until(RESTS)
+    assert browser.run("return window.voxrt.newest.camera.look") != second["look"]
+
+
+def test_a_ray_is_followed_as_voxrt_trace_does(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    browser.run("document.querySelector('#inspect').click()")
+    browser.mouse([browser.middle("#picture")])
+    assert browser.until("!document.querySelector('#ray').hidden")
+    text = browser.run("return document.querySelector('#ray-result').textContent")
+    column, row = (int(part) for part in re.match(r"Pixel (\d+), (\d+)", text).groups())
+    camera, size = browser.run(
+        "const { width, height } = document.querySelector('#picture');"
+        "return [window.voxrt.shownCamera(), [width, height]]"
+    )
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    rom = voxrt.build(EXAMPLES / "courtyard.glb", depth=7).rom
+    path = voxrt.sim.follow_pixel(rom.octree, registers, tuple(size), (column, row))
+    rows = browser.run(
+        "return [...document.querySelectorAll('#ray-rows tr')].map(r => [...r.cells])"
+        ".map(cells => cells.map(c => c.textContent))"
+    )
+    assert [(one[1], one[2]) for one in rows] == [(str(step.address), f"{step.word:08X}") for step in path.readings]
+    assert "hits" in text
+    assert browser.run("return document.querySelectorAll('#octants path').length") > 0
+
+
+def test_bad_files_are_refused_and_the_page_lives_on(browser: Browser, tmp_path: Path) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    bad = {
+        "cut.glb": (EXAMPLES / "courtyard.glb").read_bytes()[:2000],
+        "noise.glb": hashlib.sha512(b"noise").digest() * 50,
+        "text.gltf": b'{"asset": {"version": "2.0"}}',
+        "lone.gltf": b'{"asset": {"version": "2.0"}, "buffers": [{"uri": "lone.bin", "byteLength": 4}]}',
+        "cut.mem": b"00000001\nFFFFFF01\n",
+        "cycle.mem": b"00000001\n" + b"00000001\n" * 8,
+        "empty.obj": b"",
+        "notes.txt": b"hello",
+        "cut.stl": stl_of_a_tetrahedron()[:120],
+    }
+    for name, content in bad.items():
+        (tmp_path / name).write_bytes(content)
+        browser.run("document.querySelector('#close').click()")
+        drop(browser, tmp_path / name)
+        assert browser.until(
+            "document.querySelector('#notice').dataset.kind === 'error' && !document.querySelector('#notice').hidden"
+        ), name
+        assert name in notice(browser), notice(browser)
+    drop(browser, EXAMPLES / "planet.glb")
+    assert browser.until(shown("planet", 7)), notice(browser)
+
+
+def test_a_link_carries_scene_depth_and_camera(browser: Browser) -> None:
+    opened(browser, "#scene=planet&depth=5")
+    assert browser.until(shown("planet", 5))
+    browser.mouse([browser.middle("#picture"), (400, 300)])
+    browser.draws()
+    assert browser.until(RESTS)
+    camera = browser.run("return window.voxrt.newest.camera")
+    browser.run("document.querySelector('#copy').click()")
+    link = browser.run("return location.hash")
+    opened(browser, link)
+    assert browser.until(shown("planet", 5))
+    browser.draws()
+    assert browser.until(RESTS)
+    again = browser.run("return window.voxrt.newest.camera")
+    assert np.allclose(again["look"], camera["look"], atol=60)
+    assert np.allclose(again["position"], camera["position"], atol=2)
+
+
+def test_nothing_is_asked_of_other_servers(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    names = browser.run("return performance.getEntriesByType('resource').map(one => one.name)")
+    assert names
+    assert all(name.startswith((browser.address, "blob:")) for name in names)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844), (844, 390)])
+def test_the_page_fits_every_screen(browser: Browser, width: int, height: int) -> None:
+    browser.screen(width, height, touch=width < 1000)
+    try:
+        opened(browser)
+        assert browser.until(shown("courtyard", 7))
+        assert browser.run("return document.documentElement.scrollWidth") <= width
+        box = browser.run(
+            "const b = document.querySelector('#stage').getBoundingClientRect(); return [b.width, b.height]"
+        )
+        assert min(box) > 150
+    finally:
+        browser.screen(1280, 800)
+
+
+def test_every_control_has_a_name_and_keys_reach_it(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    nameless = browser.run(
+        "return [...document.querySelectorAll('button, input:not([hidden]), select')].filter(one => one.offsetParent"
+        " && !one.innerText && !one.getAttribute('aria-label') && !one.labels?.length).map(one => one.outerHTML)"
+    )
+    assert nameless == []
+    browser.run("document.querySelector('#picture').focus()")
+    before = browser.run("return window.voxrt.newest.camera.look")
+    browser.keys(["\ue014"], 0.3)
+    browser.draws()
+    assert browser.until(RESTS)
+    assert browser.run("return window.voxrt.newest.camera.look") != before
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_no_fault(browser: Browser, dark: bool) -> None:
+    source = ROOT / "build" / "web" / "npm" / "axe-core-4.14.1" / "axe.min.js"
+    if not source.exists():
+        pytest.skip("axe-core is not here: make site")
+    browser.theme(dark=dark)
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    browser.run("document.querySelector('#inspect').click()")
+    browser.mouse([browser.middle("#picture")])
+    assert browser.until("!document.querySelector('#ray').hidden")
+    browser.run(
+        source.read_text()
+        + "; window.axe = axe; window.faults = null; axe.run().then(found => { window.faults = found.violations })"
+    )
+    assert browser.until("window.faults !== null")
+    found = browser.run(
+        "return window.faults.map(one => [one.id, one.help, one.nodes.map(node => node.html.slice(0, 200))])"
+    )
+    assert found == []

@@ -1,0 +1,58 @@
+#include "object_warnings.h"
+
+#include "object_mode.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace voxrt::voxelize {
+namespace {
+
+constexpr size_t kMostNames = 20;
+
+/// Names as a message lists them.
+std::string listed(const std::vector<std::string>& names) {
+    std::string shown;
+    for (size_t i = 0; i < std::min(names.size(), kMostNames); ++i)
+        shown += (i > 0 ? ", " : "") + names[i];
+    return names.size() > kMostNames ? shown + " and " + std::to_string(names.size() - kMostNames) + " more" : shown;
+}
+
+} // namespace
+
+std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
+    std::vector<std::string> without, mostly_filled;
+    int64_t open = 0;
+    for (size_t i = 0; i < objects.names.size(); ++i) {
+        if (objects.reported[i] && objects.voxels[i] == 0)
+            without.push_back(objects.names[i]);
+        open += objects.reported[i] && objects.modes[i] == static_cast<uint8_t>(ObjectMode::open);
+        if (objects.mostly_filled[i])
+            mostly_filled.push_back(objects.names[i]);
+    }
+    const int64_t flipped = std::accumulate(objects.flipped.begin(), objects.flipped.end(), int64_t{0});
+
+    std::vector<ObjectWarning> warnings;
+    if (!without.empty())
+        warnings.push_back({"no-voxels", "objects got no voxel: " + listed(without), int64_t(without.size())});
+    if (open > 0)
+        warnings.push_back(
+            {"open-surface",
+             "open objects, like a room without a front, were not filled: close them or give them colliders", open});
+    if (!mostly_filled.empty()) {
+        const size_t others = mostly_filled.size() - 1;
+        const std::string more = others > 0 ? " and " + std::to_string(others) + " more" : "";
+        warnings.push_back({"mostly-filled",
+                            "open objects were filled, and are more inside than shell (" + mostly_filled[0] + more +
+                                "): build thin sheets, such as cloth, with fill auto or surface",
+                            int64_t(mostly_filled.size())});
+    }
+    if (flipped > 0)
+        warnings.push_back(
+            {"turned-pieces",
+             "closed pieces that face inwards, unlike others of their object, were turned: recalculate their normals",
+             flipped});
+    return warnings;
+}
+
+} // namespace voxrt::voxelize

@@ -1,0 +1,130 @@
+/** An error of the input: one line, what is wrong and how to fix it. */
+export class VoxrtError extends Error {}
+
+export type Triple = readonly [number, number, number];
+export type Fill = "surface" | "solid" | "auto";
+
+export interface Material {
+  name: string;
+  /** sRGB, 0 … 255. */
+  colour: Triple;
+  mirror?: boolean;
+  /** False for one that replaces a missing material. */
+  authored?: boolean;
+}
+
+export interface Mesh {
+  /** Three numbers per vertex. */
+  positions: ArrayLike<number>;
+  /** Three vertices per triangle, counter-clockwise seen from outside. */
+  triangles: ArrayLike<number>;
+  /** A material per triangle: 1 is the first of the scene. */
+  materials: ArrayLike<number>;
+}
+
+export interface SceneObject {
+  name: string;
+  /** Index into the scene's meshes. */
+  mesh: number;
+  /** Rows of a 3 x 4 matrix to the scene frame: right-handed, metres, y up. */
+  transform: ArrayLike<number>;
+}
+
+export interface Scene {
+  materials: Material[];
+  meshes: Mesh[];
+  objects: SceneObject[];
+}
+
+export interface Warning {
+  kind: string;
+  message: string;
+  count: number;
+}
+
+export interface Built {
+  /** The octree memory: pointers to blocks of eight words, and leaves 0xFFFFFFmm. */
+  words: Uint32Array;
+  depth: number;
+  grid: { origin: number[]; voxelSize: number };
+  /** By id; entry 0 is empty space, with the background's colour. */
+  materials: Required<Material>[];
+  objects: { name: string; mode: string; voxels: number }[];
+  warnings: Warning[];
+}
+
+export interface Camera {
+  /** 1/16 voxel. */
+  position: Triple;
+  /** Whole numbers below 2^15; direction(column, row) = look + right (column - W/2) + up (H/2 - row). */
+  look: Triple;
+  right: Triple;
+  up: Triple;
+}
+
+export interface Look {
+  /** sRGB by id; entry 0 is the background. */
+  materials: ArrayLike<number>[];
+  /** Ids of mirrors. */
+  mirrors?: number[];
+  bounces?: number;
+  flat?: boolean;
+  /** 1/255, of the faces that look along -x, +x, -y, +y, -z, +z; null: by the angle. */
+  faces?: ArrayLike<number> | null;
+  /** Position in 1/16 voxel; ambient 0 … 255. */
+  light?: { position: Triple; ambient: number } | null;
+}
+
+export interface Rows {
+  /** The first row of pixels. */
+  top: number;
+  /** RGB, row by row. */
+  colour: Uint8Array;
+  material: Uint8Array;
+  /** The axis of the face hit; 3 for none. */
+  face: Uint8Array;
+  wordsRead: number;
+}
+
+export interface Reading {
+  address: number;
+  word: number;
+  /** The word's octant has 2^level voxels per side. */
+  level: number;
+  corner: number[];
+  /** Of the plane that the ray crossed last; 3 for none. */
+  axis: number;
+}
+
+export const FACES: number[];
+export const FILLS: Fill[];
+export const BACKGROUND: number[];
+export const DEPTH_LIMIT: 16;
+
+export class Voxrt {
+  /** `source`: voxrt.wasm as bytes, as a Response or as a module. */
+  static load(source: BufferSource | Response | WebAssembly.Module): Promise<Voxrt>;
+  /** Voxelize a scene and build its octree. `depth` 1 … 16 (7), `fill` (auto). */
+  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill }): Built;
+  /** Take the words of an octree memory, which are checked. */
+  setMemory(words: ArrayLike<number>, depth: number): void;
+  /** The least depth of the world that words describe. */
+  depthOf(words: ArrayLike<number>): number;
+  /** How hits are coloured. */
+  shade(look: Look): void;
+  /** Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. */
+  render(camera: Camera, size: readonly [number, number], first?: number, end?: number): Rows;
+  tileRows(height: number): number;
+  /** Follow one ray: origin in 1/16 voxel, direction below 2^20. */
+  follow(origin: ArrayLike<number>, direction: ArrayLike<number>): {
+    readings: Reading[]; material: number; face: number; cell: number[] | null;
+  };
+  /** The voxels of the memory by material: 256 numbers. */
+  voxels(): number[];
+  /** Cubes that hold all that is solid: x, y, z of the lowest corner and the side, each. */
+  outline(): Int32Array;
+  /** Linear light, 0 … 1, as sRGB, 0 … 255. */
+  srgb(linear: number): number;
+  /** Bytes of memory in use. */
+  readonly bytes: number;
+}

@@ -1,0 +1,198 @@
+// voxrt in WebAssembly: meshes to voxels, to the words of an octree memory, to exact pictures. One instance has one scene,
+// one memory and one frame at a time. Nothing here needs a page: it runs in browsers, workers and Node.
+//
+//     const voxrt = await Voxrt.load(await fetch("voxrt.wasm"));
+//     const built = voxrt.voxelize(scene, { depth: 7 });
+//     voxrt.setMemory(built.words, built.depth);
+//     voxrt.shade({ materials: built.materials.map((material) => material.colour) });
+//     const { colour } = voxrt.render(camera, [640, 480]);
+//
+// Errors are VoxrtError, one line each.
+
+export class VoxrtError extends Error {
+  name = "VoxrtError";
+}
+
+// Brightness, in 1/255, of the faces that look along -x, +x, -y, +y, -z, +z: the default shading.
+export const FACES = [189, 189, 140, 255, 219, 219];
+export const FILLS = ["surface", "solid", "auto"];
+export const DEPTH_LIMIT = 16;
+export const BACKGROUND = [24, 28, 36];
+
+const EXHAUSTED = "takes more memory than a browser gives one page; choose a lesser depth";
+const decoder = new TextDecoder();
+const encoder = new TextEncoder();
+
+export class Voxrt {
+  // Compile and instantiate. `source`: the bytes of voxrt.wasm, a Response with them, or a WebAssembly.Module.
+  static async load(source) {
+    const voxrt = new Voxrt();
+    const bytes = typeof Response !== "undefined" && source instanceof Response ? await source.arrayBuffer() : source;
+    const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
+    voxrt.wasm = (await WebAssembly.instantiate(module, { wasi_snapshot_preview1: system(voxrt) })).exports;
+    voxrt.wasm._initialize();
+    return voxrt;
+  }
+
+  // Voxelize a scene and build its octree.
+  //
+  // scene.materials: [{name, colour: [r, g, b] sRGB, mirror, authored}], of id 1, 2, ...
+  // scene.meshes: [{positions, triangles, materials}]: three numbers per vertex, three vertices per triangle, an id per
+  // triangle. scene.objects: [{name, mesh: index, transform: 12 numbers, rows of 3 x 4, to metres with y up}].
+  voxelize(scene, { depth = 7, fill = "auto" } = {}) {
+    if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT) throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
+    if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
+    return this.#guard(() => {
+      this.wasm.vx_scene_begin();
+      const materials = [{ name: "empty", colour: BACKGROUND, mirror: false, authored: true }];
+      for (const { name, colour, mirror = false, authored = true } of scene.materials) {
+        const [red, green, blue] = colour;
+        const id = this.#text(name, (at) => this.wasm.vx_material(at, (red << 16) | (green << 8) | blue, mirror, authored));
+        materials[this.#checked(id)] = { name: this.#string(this.wasm.vx_material_name(id)), colour: [red, green, blue], mirror, authored };
+      }
+      for (const mesh of scene.meshes) {
+        const [vertices, triangles] = [mesh.positions.length / 3, mesh.triangles.length / 3];
+        const buffers = [this.#copy(Float64Array, mesh.positions), this.#copy(Int32Array, mesh.triangles), this.#copy(Uint8Array, mesh.materials)];
+        this.#checked(this.wasm.vx_mesh(buffers[0], vertices, buffers[1], triangles, buffers[2]));
+      }
+      for (const { name, mesh, transform } of scene.objects)
+        this.#with(Float64Array, transform, (at) => this.#text(name, (text) => this.#checked(this.wasm.vx_object(mesh, at, text))));
+      this.#checked(this.wasm.vx_voxelize(depth, FILLS.indexOf(fill)));
+      const words = this.#view(Uint32Array, this.wasm.vx_words(), this.wasm.vx_word_count()).slice();
+      const voxels = this.#view(BigInt64Array, this.wasm.vx_object_voxels(), scene.objects.length);
+      const objects = scene.objects.map(({ name }, i) => ({ name, mode: this.#string(this.wasm.vx_object_mode(i)), voxels: Number(voxels[i]) }));
+      const warnings = Array.from({ length: this.wasm.vx_warning_count() }, (_, i) => ({
+        kind: this.#string(this.wasm.vx_warning_kind(i)), message: this.#string(this.wasm.vx_warning_message(i)), count: this.wasm.vx_warning_objects(i),
+      }));
+      const grid = { origin: [...this.#view(Float64Array, this.wasm.vx_origin(), 3)], voxelSize: this.wasm.vx_voxel_size() };
+      this.wasm.vx_scene_begin();
+      return { words, depth, grid, materials, objects, warnings };
+    });
+  }
+
+  // Take the words of an octree memory (Uint32Array), which are checked.
+  setMemory(words, depth) {
+    this.#guard(() => this.#with(Uint32Array, words, (at) => this.#checked(this.wasm.vx_memory(at, words.length, depth))));
+  }
+
+  // The least depth of the world that words (Uint32Array) describe.
+  depthOf(words) {
+    return this.#guard(() => this.#with(Uint32Array, words, (at) => this.#checked(this.wasm.vx_depth(at, words.length))));
+  }
+
+  // How hits are coloured. materials: sRGB triples by id, entry 0 the background. mirrors: ids. faces: six brightnesses, or
+  // null for the angle. light: null, or {position in 1/16 voxel, ambient}.
+  shade({ materials, mirrors = [], bounces = 0, flat = false, faces = FACES, light = null }) {
+    const table = new Uint8Array(768);
+    materials.forEach((colour, id) => table.set(colour, 3 * id));
+    const flags = new Uint8Array(256);
+    for (const id of mirrors) flags[id] = 1;
+    this.#guard(() => this.#with(Uint8Array, table, (colours) => this.#with(Uint8Array, flags, (mirrored) =>
+      this.#with(Uint8Array, faces ?? [], (brightness) => this.#with(Int32Array, light?.position ?? [], (place) =>
+        this.wasm.vx_shading(colours, mirrored, bounces, flat, faces && !flat ? brightness : 0, light ? place : 0, light?.ambient ?? 0))))));
+  }
+
+  // Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. camera: {position in
+  // 1/16 voxel, look, right, up}. Returns copies: colour (RGB), material and face, from row `top` on, and wordsRead.
+  render(camera, [width, height], first = 0, end = this.tileRows(height)) {
+    return this.#guard(() => {
+      const registers = [...camera.position, ...camera.look, ...camera.right, ...camera.up];
+      const wordsRead = this.#with(Int32Array, registers, (at) => this.#checked(this.wasm.vx_render(at, width, height, first, end)));
+      const [top, bottom] = [16 * first, Math.min(16 * end, height)];
+      const part = (at, bytes) => this.#view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
+      return {
+        top, wordsRead, colour: part(this.wasm.vx_colour(), 3),
+        material: part(this.wasm.vx_frame_material(), 1), face: part(this.wasm.vx_frame_face(), 1),
+      };
+    });
+  }
+
+  tileRows(height) { return this.wasm.vx_tile_rows(height); }
+
+  // Follow one ray: each word that it reads, and what it hits. origin: 1/16 voxel; direction: below 2^20.
+  follow(origin, direction) {
+    return this.#guard(() => {
+      const count = this.#with(Int32Array, origin, (from) => this.#with(Int32Array, direction, (to) => this.#checked(this.wasm.vx_follow(from, to))));
+      const all = this.#view(Int32Array, this.wasm.vx_readings(), 7 * count + 5).slice();
+      const readings = Array.from({ length: count }, (_, i) => {
+        const [address, word, level, x, y, z, axis] = all.subarray(7 * i, 7 * i + 7);
+        return { address: address >>> 0, word: word >>> 0, level, corner: [x, y, z], axis };
+      });
+      const [material, face, x, y, z] = all.subarray(7 * count);
+      return { readings, material, face, cell: material ? [x, y, z] : null };
+    });
+  }
+
+  // The voxels of the memory by material: 256 numbers, entry 0 the empty ones.
+  voxels() {
+    return this.#guard(() => [...this.#view(Float64Array, this.wasm.vx_voxel_counts(), 256)]);
+  }
+
+  // Cubes that hold all that is solid, no finer than 1/64 of the world: [x, y, z of the lowest corner, side] each.
+  outline() {
+    return this.#guard(() => {
+      const count = this.#checked(this.wasm.vx_outline());
+      return this.#view(Int32Array, this.wasm.vx_outline_leaves(), 4 * count).slice();
+    });
+  }
+
+  // Linear light, 0 … 1, as sRGB, 0 … 255.
+  srgb(linear) { return this.wasm.vx_srgb(linear); }
+
+  // Bytes of memory in use.
+  get bytes() { return this.wasm.memory.buffer.byteLength; }
+
+  #view(type, at, length) { return new type(this.wasm.memory.buffer, at, length); }
+
+  #copy(type, values) {
+    const at = this.wasm.vx_alloc(values.length * type.BYTES_PER_ELEMENT);
+    if (!at) throw new VoxrtError(EXHAUSTED);
+    this.#view(type, at, values.length).set(values);
+    return at;
+  }
+
+  #with(type, values, work) {
+    const at = this.#copy(type, values);
+    try { return work(at); } finally { this.wasm.vx_free(at); }
+  }
+
+  #text(text, work) { return this.#with(Uint8Array, encoder.encode(`${text}\0`), work); }
+
+  #string(at) {
+    const bytes = new Uint8Array(this.wasm.memory.buffer, at);
+    return decoder.decode(bytes.subarray(0, bytes.indexOf(0)).slice());
+  }
+
+  #checked(result) {
+    if (result < 0) throw new VoxrtError(this.#string(this.wasm.vx_error()));
+    return result;
+  }
+
+  // What the machine throws instead of the library: out of memory, out of stack.
+  #guard(work) {
+    try { return work(); } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) throw new VoxrtError(EXHAUSTED);
+      throw error;
+    }
+  }
+}
+
+// What the C library asks of the system: a clock, and nowhere to write.
+function system(voxrt) {
+  const done = 0;
+  return {
+    fd_write: (_file, parts, count, written) => {
+      const view = new DataView(voxrt.wasm.memory.buffer);
+      let bytes = 0;
+      for (let i = 0; i < count; i++) bytes += view.getUint32(parts + 8 * i + 4, true);
+      view.setUint32(written, bytes, true);
+      return done;
+    },
+    fd_seek: () => done,
+    fd_close: () => done,
+    clock_time_get: (_clock, _precision, at) => {
+      new DataView(voxrt.wasm.memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
+      return done;
+    },
+  };
+}

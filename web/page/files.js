@@ -1,0 +1,163 @@
+// Dropped files as a scene: three.js parses them. Nothing is fetched but the files themselves.
+
+import { sceneOf } from "./voxrt/scene.js";
+import { readMem } from "./mem.js";
+
+export const FORMATS = ["glb", "gltf", "obj", "stl", "ply", "usdz", "usda", "usdc", "usd", "mem"];
+const ADDONS = "./three/addons/";
+
+export class FileError extends Error {
+  name = "FileError";
+}
+
+const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
+const stem = (name) => name.slice(0, name.lastIndexOf("."));
+
+// Read files ({name, bytes}), one of which is a scene. Returns {name, file, scene} or {name, file, memory}.
+export async function readFiles(files, voxrt) {
+  const main = files.find(({ name }) => FORMATS.includes(extension(name)));
+  if (!main) throw new FileError(`${files[0]?.name ?? "nothing"}: is no scene; drop ${FORMATS.map((format) => `.${format}`).join(", ")}`);
+  const known = { name: stem(main.name), file: main.name };
+  const kind = extension(main.name);
+  try {
+    if (kind === "mem") {
+      const memory = readMem(main.name, main.bytes, files.find(({ name }) => name === `${stem(main.name)}.json`));
+      return { ...known, memory: { ...memory, depth: memory.depth ?? voxrt.depthOf(memory.words) } };
+    }
+    const read = { glb: readGltf, gltf: readGltf, obj: readObj, stl: readStl, ply: readPly }[kind] ?? readUsd;
+    const scene = await read(main, new Folder(main, files), voxrt);
+    if (!scene.objects.length) throw new FileError("has no triangles to voxelize; check that the scene shows a mesh");
+    return { ...known, scene };
+  } catch (error) {
+    const problem = String(error?.message ?? error).split("\n")[0];
+    throw new FileError(problem.startsWith(main.name) ? problem : `${main.name}: ${problem}`);
+  }
+}
+
+// The files beside a scene, for the loaders of three.js: names that are not among them are refused.
+class Folder {
+  constructor(main, files) {
+    this.main = main;
+    this.files = new Map(files.map((file) => [file.name.toLowerCase(), file]));
+    this.urls = [];
+    this.missing = [];
+  }
+
+  find(name) {
+    const plain = decodeURIComponent(name).replaceAll("\\", "/").replace(/^.*\//, "");
+    return this.files.get(plain.toLowerCase());
+  }
+
+  async manager() {
+    const { LoadingManager } = await import("./three/three.core.js");
+    const manager = new LoadingManager();
+    manager.setURLModifier((url) => {
+      if (url.startsWith("blob:") || url.startsWith("data:")) return url;
+      const file = this.find(url);
+      if (!file) {
+        this.missing.push(url);
+        return "data:application/octet-stream;base64,";
+      }
+      this.urls.push(URL.createObjectURL(new Blob([file.bytes])));
+      return this.urls.at(-1);
+    });
+    return manager;
+  }
+
+  close() {
+    for (const url of this.urls) URL.revokeObjectURL(url);
+    if (this.missing.length) throw new FileError(`${this.main.name}: needs ${this.missing[0]}; drop it together with the scene`);
+  }
+}
+
+const addon = async (path) => import(`${ADDONS}${path}.js`);
+
+async function readGltf(main, folder, voxrt) {
+  const { GLTFLoader } = await addon("loaders/GLTFLoader");
+  const loader = new GLTFLoader(await folder.manager());
+  const { MeshoptDecoder } = await addon("libs/meshopt_decoder.module");
+  loader.setMeshoptDecoder(MeshoptDecoder);
+  let gltf;
+  try {
+    gltf = await loader.parseAsync(main.bytes.buffer, "");
+  } catch (error) {
+    folder.close();
+    if (/draco/i.test(error.message)) throw new FileError("is compressed by Draco, which this page does not read; voxrt build does");
+    throw error;
+  }
+  folder.close();
+  const { parser } = gltf;
+  const { json } = parser;
+  const place = (object, kind) => parser.associations.get(object)?.[kind];
+  // The primitives of a mesh hang below its node, or are the node.
+  const groupOf = (mesh) => (place(mesh, "nodes") === undefined && mesh.parent ? mesh.parent : mesh);
+  const nodeOf = (group) => place(group, "nodes");
+  const named = (group) => json.nodes[nodeOf(group)]?.name || json.meshes?.[json.nodes[nodeOf(group)]?.mesh]?.name || `nodes[${nodeOf(group)}]`;
+  const counts = new Map();
+  gltf.scene.traverse((object) => {
+    if (object.isMesh && groupOf(object) === object || object.isGroup && object.children.some((child) => child.isMesh && groupOf(child) === object))
+      counts.set(named(object), (counts.get(named(object)) ?? 0) + 1);
+  });
+  const scene = sceneOf(gltf.scene, voxrt, {
+    groupOf,
+    nameOf: (_mesh, group) => (counts.get(named(group)) > 1 ? `${named(group)} (nodes[${nodeOf(group)}])` : named(group)),
+    materialOf: (material) => {
+      const index = place(material, "materials");
+      if (index === undefined) return null;
+      const extras = json.materials[index].extras ?? {};
+      return { key: index, order: index, name: extras.voxrt_material || json.materials[index].name || `materials[${index}]`, mirror: Boolean(extras.voxrt_reflect) };
+    },
+  });
+  const ignored = (json.extensionsUsed ?? []).filter((name) => /^KHR_(physics|implicit|materials_variants)/.test(name));
+  for (const name of ignored) scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
+  return scene;
+}
+
+async function readObj(main, folder, voxrt) {
+  const [{ OBJLoader }, { MTLLoader }] = [await addon("loaders/OBJLoader"), await addon("loaders/MTLLoader")];
+  const text = new TextDecoder().decode(main.bytes);
+  const colours = new Map();
+  for (const [, name] of text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)) {
+    const library = folder.find(name);
+    if (!library) continue;
+    const { materialsInfo } = new MTLLoader().parse(new TextDecoder().decode(library.bytes), "");
+    for (const [key, { kd, map_kd: map }] of Object.entries(materialsInfo)) if (!colours.has(key)) colours.set(key, { kd, map });
+  }
+  const root = new OBJLoader().parse(text);
+  const scene = sceneOf(root, voxrt, {
+    nameOf: (mesh) => mesh.name || stem(main.name),
+    materialOf: ({ name }) => {
+      const { kd, map } = colours.get(name) ?? {};
+      if (!name || (!kd && !text.includes("usemtl"))) return null;
+      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200], authored: Boolean(kd), textured: Boolean(map) };
+    },
+  });
+  if ([...colours.values()].some(({ map }) => map)) scene.warnings.push({ kind: "texture", message: "textures of OBJ files are not shown here; voxrt build shows them", count: 1 });
+  return scene;
+}
+
+const encoded = (part) => Math.floor(Math.min(1, Math.max(0, part)) * 255 + 0.5);
+
+async function bare(geometry, main, voxrt) {
+  const { Mesh } = await import("./three/three.core.js");
+  const mesh = new Mesh(geometry);
+  mesh.name = stem(main.name);
+  return sceneOf(mesh, voxrt, { materialOf: () => null });
+}
+
+async function readStl(main, _folder, voxrt) {
+  const { STLLoader } = await addon("loaders/STLLoader");
+  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt);
+}
+
+async function readPly(main, _folder, voxrt) {
+  const { PLYLoader } = await addon("loaders/PLYLoader");
+  return bare(new PLYLoader().parse(main.bytes.buffer), main, voxrt);
+}
+
+async function readUsd(main, folder, voxrt) {
+  const { USDLoader } = await addon("loaders/USDLoader");
+  const root = new USDLoader(await folder.manager()).parse(main.bytes.buffer);
+  folder.close();
+  return sceneOf(root, voxrt);
+}
