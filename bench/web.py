@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SITE = ROOT / "build" / "site"
 CASES = [("courtyard.glb", 7), ("courtyard.glb", 9), ("planet.glb", 8), ("planet.glb", 10)]
 SIZE = (640, 480)
-REPEATS = 5
+REPEATS = 15
 ROUNDS = 3
 
 SCRIPT = """

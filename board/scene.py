@@ -11,6 +11,8 @@ import numpy as np
 from .errors import Refused
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from .view import Camera, Lighting, Triple
@@ -41,6 +43,10 @@ class Scene:
         First camera, for frames of 640 x 480; None where the file has none.
     lighting
         First lighting; None where the file has none.
+    roots
+        The words that are the roots of the frames of an animation; (0,) for a still scene.
+    period
+        Seconds from one frame of an animation to the next; None where that is not known.
     """
 
     name: str
@@ -50,6 +56,8 @@ class Scene:
     mirrors: NDArray[np.bool_]
     camera: Camera | None = None
     lighting: Lighting | None = None
+    roots: tuple[int, ...] = (0,)
+    period: float | None = None
 
     @property
     def background(self) -> Triple:
@@ -63,8 +71,8 @@ class Scene:
         return zlib.crc32(self.words.astype("<u4").tobytes())
 
 
-def check_memory(words: NDArray[np.uint32], depth: int) -> None:
-    """Refuse a memory that is no octree of `depth` levels.
+def check_memory(words: NDArray[np.uint32], depth: int, roots: tuple[int, ...] = (0,)) -> None:
+    """Refuse a memory that is no octree of `depth` levels, from any of its roots.
 
     Raises
     ------
@@ -76,7 +84,9 @@ def check_memory(words: NDArray[np.uint32], depth: int) -> None:
         raise Refused(f"a depth of {depth} is not 1 to {MAX_DEPTH}; build the scene again")
     if len(words) % 8 != 1:
         raise Refused(f"{len(words)} words are not a root and blocks of 8 words; build the scene again")
-    addresses = np.zeros(1, dtype=np.int64)
+    if not roots or not all(0 <= root < len(words) for root in roots):
+        raise Refused(f"a frame has its root outside of the {len(words)} words; build the scene again")
+    addresses = np.unique(np.array([0, *roots], dtype=np.int64))
     for level in range(depth + 1):
         reached = words[addresses]
         is_pointer = reached >> 31 == 0
@@ -88,8 +98,10 @@ def check_memory(words: NDArray[np.uint32], depth: int) -> None:
         addresses = (np.unique(pointers)[:, None] + np.arange(8)).ravel()
 
 
-def octree_end(words: NDArray[np.uint32], root: int, depth: int) -> int:
-    """Find the end of the last block that an octree in a memory leads to; pointers out of the memory end there.
+def octree_span(words: NDArray[np.uint32], root: int, depth: int) -> tuple[int, int]:
+    """Find the first block that an octree in a memory leads to, and the end of the last; both are 1 if there is none.
+
+    Pointers out of the memory end there.
 
     Parameters
     ----------
@@ -100,15 +112,28 @@ def octree_end(words: NDArray[np.uint32], root: int, depth: int) -> int:
     depth
         Its levels.
     """
-    addresses, end = np.array([root]), root + 1
+    addresses, first, end = np.array([root]), 0, 1
     for _ in range(depth):
         reached = words[addresses[addresses < len(words)]]
         pointers = np.unique(reached[reached >> 31 == 0]).astype(np.int64)
         if len(pointers) == 0:
             break
+        first = min(first or int(pointers[0]), int(pointers[0]))
         end = max(end, int(pointers[-1]) + 8)
         addresses = (pointers[:, None] + np.arange(8)).ravel()
-    return end
+    return first or 1, end
+
+
+def frame_period(times: Sequence[float | None]) -> float | None:
+    """Return the seconds from one frame to the next; None where frames have no times.
+
+    Examples
+    --------
+    >>> frame_period([0.0, 0.5, 1.0])
+    0.5
+    """
+    known = [float(time) for time in times if time is not None]
+    return None if len(known) < max(2, len(times)) else (known[-1] - known[0]) / (len(known) - 1)
 
 
 def relocate(words: NDArray[np.uint32], base: int) -> NDArray[np.uint32]:

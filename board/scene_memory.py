@@ -88,7 +88,21 @@ class SceneMemory:
                 f"{scene.name} has {scene.depth} levels and {identity.name} takes {identity.depth}; "
                 "build it with a smaller depth"
             )
-        check_memory(scene.words, scene.depth)
+        check_memory(scene.words, scene.depth, scene.roots)
+
+    def select_frame(self, number: int) -> None:
+        """Show a frame of the loaded scene's animation from the next frame of the device on: one register write.
+
+        Raises
+        ------
+        Refused
+            It has no such frame.
+        """
+        frames = 1 if self._loaded is None else len(self._loaded.roots)
+        if not 0 <= number < frames:
+            raise Refused(f"there is no frame {number}; the scene has {frames}, counted from 0")
+        if self._loaded is not None:
+            self._select_root(self._loaded, self._base, number)
 
     def load(self, scene: Scene, progress: Progress) -> None:
         """Write a scene, read it back, and show it from the next frame on.
@@ -186,7 +200,10 @@ class SceneMemory:
 
     def _select(self, scene: Scene, base: int) -> None:
         self._device.write_materials(scene.colours, scene.mirrors)
-        self._device.select_scene(base, scene.depth)
+        self._select_root(scene, base, 0)
+
+    def _select_root(self, scene: Scene, base: int, frame: int) -> None:
+        self._device.select_scene(base + scene.roots[frame], scene.depth)
 
     def _restore(self, error: BaseException, *, overwritten: bool) -> None:
         try:

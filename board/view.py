@@ -34,9 +34,12 @@ class View:
         sRGB of pixels that hit nothing, 0 ... 255 each.
     lighting
         Brightness of faces, light, mirrors.
+    frame
+        Frame of the scene's animation, counted from 0.
     """
 
     camera: Camera
     size: tuple[int, int]
     background: Triple = (0, 0, 0)
     lighting: Lighting = PLAIN_LIGHTING
+    frame: int = 0

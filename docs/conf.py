@@ -52,6 +52,7 @@ sphinx_gallery_conf = {
     "filename_pattern": "",  # all are run
     "abort_on_example_error": True,
     "image_scrapers": ("check_pictures.scraper",),
+    "matplotlib_animations": True,
     "download_all_examples": False,
     "write_computation_times": False,
     "min_reported_time": 1e9,  # seconds: how long a page took is nobody's question

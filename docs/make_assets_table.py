@@ -89,7 +89,7 @@ def examine(root: Path, asset: str) -> Row:
                 materials=_count(len(scene.materials) - 1),
                 warnings=_by_kind(scene.warnings),
             )
-            result = voxrt.build(root / asset, depth=DEPTH, threads=1, allow_outside=True)
+            result = voxrt.build(scene, depth=DEPTH, threads=1)
             solid_voxels, warnings = result.solid_voxels, result.warnings
         return replace(row, solid_voxels=_count(solid_voxels), warnings=_by_kind(warnings), outcome="built")
     except (voxelize.AssetError, voxelize.DoesNotFitError, octree.RomError) as error:
@@ -140,9 +140,8 @@ def examine_all() -> list[Row]:
     """Examine every listed asset, each in a process of its own."""
     context = multiprocessing.get_context("forkserver")
     # What every process needs is imported once, before they part.
-    context.set_forkserver_preload(
-        ["voxrt", "voxrt.voxelize.formats.gltf", "voxrt.voxelize.formats.obj", "voxrt.voxelize.formats.usd"]
-    )
+    formats = ("gltf.load", "obj.load", "ply.load", "stl.load", "usd.isolated")
+    context.set_forkserver_preload(["voxrt.pipeline", *(f"voxrt.voxelize.formats.{name}" for name in formats)])
     with ThreadPoolExecutor(PROCESSES) as pool:
         return list(pool.map(lambda asset: _examine_apart(context, asset), listed_assets(ROOT)))
 

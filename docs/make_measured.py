@@ -10,6 +10,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 RESULTS = REPOSITORY / "bench" / "results"
 TITLES = {
+    "animation": "Animation",
     "area": "Area",
     "bake": "Baked light",
     "budget": "Budget",

@@ -67,6 +67,13 @@ struct voxrt_faces { /* FACE */
     uint8_t brightness[6]; /* of the faces that look along -x, +x, -y, +y, -z, +z */
 };
 
+struct voxrt_frame { /* FRMS: a uint32_t with their number and one that is 0, then these, each with its name behind it */
+    uint32_t root, words;
+    double second; /* NaN where it is not known */
+    uint16_t name_bytes;
+    uint8_t zero[6];
+};
+
 /* The section called `name` (4 characters), or NULL; the table must lie within the file. */
 static inline const struct voxrt_section *voxrt_find(const struct voxrt_header *blob, const char *name) {
     const struct voxrt_section *section = (const struct voxrt_section *)(blob + 1);

@@ -45,6 +45,7 @@ types:
             '"VIEW"': view
             '"LITE"': lighting
             '"FACE"': faces
+            '"FRMS"': frames
   title:
     seq:
       - id: text
@@ -132,3 +133,30 @@ types:
         type: u1
         repeat: expr
         repeat-expr: 6
+  frames:
+    seq:
+      - id: num_entries
+        type: u4
+      - id: zero
+        type: u4
+      - id: entries
+        type: frame
+        repeat: expr
+        repeat-expr: num_entries
+  frame:
+    seq:
+      - id: root
+        type: u4
+      - id: words
+        type: u4
+      - id: second
+        type: f8
+      - id: len_name
+        type: u2
+      - id: zero
+        size: 6
+      - id: name
+        type: str
+        size: len_name
+      - id: padding
+        size: (8 - len_name % 8) % 8

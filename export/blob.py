@@ -7,9 +7,10 @@ that it does not know.
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -18,7 +19,7 @@ import numpy as np
 from voxrt.export.atomic import write_atomically
 from voxrt.export.provenance import Provenance
 from voxrt.export.word_file import read_bytes
-from voxrt.octree import Rom, RomError, census, decode
+from voxrt.octree import Animation, AnimationFrame, Rom, RomError, census, check_roots, decode, frame_octree
 from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
 from voxrt.voxelize import Grid, Material
 
@@ -34,6 +35,7 @@ _WORLD = struct.Struct("<II4d")  # depth, 1 where the grid is known, origin, vox
 _MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
 _VIEW = struct.Struct("<12i")  # position, look, right, up
 _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
+_FRAME = struct.Struct("<IIdHxxxxxx")  # root, words of the frame alone, second or NaN, bytes of the name
 _FACES = struct.Struct("<6B")  # brightness of the faces along -x, +x, -y, +y, -z, +z; absent where it is the default
 
 _MIRROR, _AUTHORED = 1, 2
@@ -52,6 +54,9 @@ class Blob:
         The camera and the lighting to start with; None leaves them to the board.
     provenance
         What the manifest says of the build. A blob keeps all of it but the seconds: equal memories give equal blobs.
+    animation
+        The table of roots of a memory that holds the frames of an animation; None for a memory of one scene. `rom` is
+        that of the first frame, and :meth:`frame` gives the others.
 
     Examples
     --------
@@ -65,6 +70,32 @@ class Blob:
     view: Camera | None = None
     lighting: Lighting | None = None
     provenance: Provenance = field(default_factory=Provenance)
+    animation: Animation | None = None
+
+    def frame(self, number: int) -> Rom:
+        """Return the memory whose root is that of a frame.
+
+        Parameters
+        ----------
+        number
+            The frame, counted from 0. A memory without animation has frame 0.
+
+        Raises
+        ------
+        RomError
+            There is no such frame.
+
+        Examples
+        --------
+        >>> import voxrt
+        >>> Blob(voxrt.build("examples/house.obj", depth=4).rom).frame(0)
+        <Rom 'house': depth 4, 721 words, 5 materials>
+        """
+        roots = (0,) if self.animation is None else self.animation.roots
+        if not 0 <= number < len(roots):
+            there = f"has frames 0 to {len(roots) - 1}" if self.animation else "is no animation: it has frame 0"
+            raise RomError(f"{self.rom.name}: there is no frame {number}; the memory {there}")
+        return replace(self.rom, octree=frame_octree(self.rom.octree, roots[number]))
 
 
 def blob_bytes(blob: Blob) -> bytes:
@@ -90,6 +121,9 @@ def blob_bytes(blob: Blob) -> bytes:
         sections[b"LITE"] = _LIGHT.pack(*light.position, light.ambient, flags, light.bounces, 0)
         if light.faces not in (None, FACES):
             sections[b"FACE"] = _FACES.pack(*light.faces)
+    if blob.animation:
+        frames = blob.animation.frames
+        sections[b"FRMS"] = struct.pack("<I4x", len(frames)) + b"".join(_pack_frame(frame) for frame in frames)
     told = msgspec.structs.replace(blob.provenance, seconds={})
     if told != Provenance():
         sections[b"PROV"] = msgspec.json.encode(told)
@@ -154,13 +188,16 @@ def read_blob(path: Path) -> Blob:
         raise _damaged(path, "section WORD", f"{len(words)} bytes are not words of 4")
     octree = decode(np.frombuffer(words, dtype="<u4").astype(np.uint32), "report", depth, source=str(path))
     materials = _materials(path, sections[b"MATL"])
-    if (highest := max(census(octree).voxels)) >= len(materials):
+    animation = _animation(path, sections[b"FRMS"]) if b"FRMS" in sections else None
+    highest = check_roots(octree, animation.roots, source=str(path)) if animation else max(census(octree).voxels)
+    if highest >= len(materials):
         raise _damaged(path, "section MATL", f"ends at material {len(materials) - 1} and {highest} is in use")
     return Blob(
         Rom(title, octree, materials, _grid(path, depth, place) if known else None),
         None if view is None else Camera(view[:3], view[3:6], view[6:9], view[9:]),
         None if light is None else _lighting(light, faces),
         _provenance(path, sections[b"PROV"]) if b"PROV" in sections else Provenance(),
+        animation,
     )
 
 
@@ -214,6 +251,30 @@ def _materials(path: Path, section: bytes) -> tuple[Material, ...]:
     except (struct.error, UnicodeDecodeError):
         raise _damaged(path, "section MATL", "is cut short or no text") from None
     return tuple(entries)
+
+
+def _pack_frame(frame: AnimationFrame) -> bytes:
+    name = frame.name.encode()[:0xFFFF]
+    time = math.nan if frame.time is None else frame.time
+    return _FRAME.pack(frame.root, frame.words, time, len(name)) + name + bytes(-len(name) % 8)
+
+
+def _animation(path: Path, section: bytes) -> Animation:
+    frames = []
+    try:
+        (count,) = struct.unpack_from("<I", section)
+        position = 8
+        if not 1 <= count <= len(section) // _FRAME.size:
+            raise _damaged(path, "section FRMS", f"{count} frames are not what its {len(section)} bytes hold")
+        for _ in range(count):
+            root, words, time, length = _FRAME.unpack_from(section, position)
+            position += _FRAME.size
+            name = section[position : position + length].decode()
+            position += length + -length % 8
+            frames.append(AnimationFrame(root, words, None if math.isnan(time) else time, name))
+    except (struct.error, UnicodeDecodeError, ValueError) as error:
+        raise _damaged(path, "section FRMS", f"is no table of roots ({error})") from None
+    return Animation(tuple(frames))
 
 
 def _provenance(path: Path, section: bytes) -> Provenance:

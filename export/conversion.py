@@ -146,6 +146,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
         view=blob.view,
         lighting=blob.lighting,
         baked=told.baked,
+        animation=blob.animation,
     )
     return files.mem, files.manifest
 
@@ -172,5 +173,9 @@ def _with_known_provenance(blob: Blob, target: Path, dialect: str) -> Blob:
     if blob.provenance != Provenance():
         return blob
     return replace(
-        blob, view=blob.view or there.view, lighting=blob.lighting or there.lighting, provenance=there.provenance
+        blob,
+        view=blob.view or there.view,
+        lighting=blob.lighting or there.lighting,
+        provenance=there.provenance,
+        animation=blob.animation or there.animation,
     )

@@ -13,7 +13,7 @@ import msgspec
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.provenance import BakedLight, Provenance, Source
-from voxrt.octree import Dialect, RomError, census
+from voxrt.octree import Animation, Dialect, RomError, census
 from voxrt.octree.camera import Camera, Lighting  # noqa: TC001 - msgspec resolves the annotations of this module
 from voxrt.voxelize import Grid, Material, ObjectReport, SceneWarning
 
@@ -84,6 +84,9 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         The author's camera and light; null, or absent, where the author gave none.
     baked
         The light that was baked into the materials; null, or absent, where none was.
+    animation
+        The frames of an animation and their roots; null, or absent, for a memory of one scene. Voxels and objects are
+        then those of the first frame.
     """
 
     schema: int
@@ -103,6 +106,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     view: Camera | None = None
     lighting: Lighting | None = None
     baked: BakedLight | None = None
+    animation: Animation | None = None
 
     @property
     def material_table(self) -> tuple[Material, ...]:
@@ -132,6 +136,7 @@ def make_manifest(
     view: Camera | None = None,
     lighting: Lighting | None = None,
     baked: BakedLight | None = None,
+    animation: Animation | None = None,
 ) -> Manifest:
     """Return the manifest of a memory whose ``.mem`` file has the CRC-32 `crc32`."""
     voxels = census(rom.octree).voxels
@@ -156,6 +161,7 @@ def make_manifest(
         view=view,
         lighting=lighting,
         baked=baked,
+        animation=animation,
     )
 
 

@@ -22,7 +22,7 @@ from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import raw_bytes, read_raw
 from voxrt.export.word_file import mem_crc32, mem_pieces
-from voxrt.octree import Octree, Rom, RomError, census, decode, detect_dialect, encode
+from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source
     from voxrt.export.word_file import WordFile
+    from voxrt.octree import Animation
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport
 
@@ -74,6 +75,7 @@ def write_rom(
     view: Camera | None = None,
     lighting: Lighting | None = None,
     baked: BakedLight | None = None,
+    animation: Animation | None = None,
     beside: Mapping[Path, bytes | None] | None = None,
 ) -> RomFiles:
     """Write ``folder/NAME.mem`` and ``folder/NAME.json``. An interruption leaves the old pair or the new one.
@@ -96,6 +98,8 @@ def write_rom(
         The camera and the lighting that the manifest names.
     baked
         The light that was baked into the materials.
+    animation
+        The table of roots of a memory that holds the frames of an animation.
     beside
         The bytes of further files that belong to the pair, such as a preview: all of the files change or none. None
         for the bytes removes a file.
@@ -139,6 +143,7 @@ def write_rom(
         view=view,
         lighting=lighting,
         baked=baked,
+        animation=animation,
     )
     files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):
@@ -186,7 +191,7 @@ def read_rom(
     Returns
     -------
     rom
-        The memory.
+        The memory. That of an animation has the root of the first frame; :func:`read_any` returns its frames, too.
     warnings
         What was assumed.
 
@@ -211,7 +216,7 @@ def read_rom(
 def read_words(
     mem_path: Path, depth: int | None = None, dialect: str | None = None
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
-    """Read as :func:`read_rom` does, with the camera and the lighting that the manifest names."""
+    """Read as :func:`read_rom` does, with the camera, the lighting and the animation that the manifest names."""
     if mem_path.suffix.lower() not in _READERS:
         raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
     mem, manifest = _read_pair(mem_path)
@@ -224,14 +229,15 @@ def read_words(
                 f"{mem_path}: the manifest says {name} {said}, and {wanted} was asked for; leave --{name} out"
             )
     octree = decode(mem.words, manifest.dialect, manifest.depth, source=str(mem_path), lines=mem.lines)
-    highest = _highest_material(octree)
+    animation = manifest.animation
+    highest = check_roots(octree, animation.roots, source=str(mem_path)) if animation else _highest_material(octree)
     if highest >= len(manifest.materials):
         raise RomError(
             f"{mem_path}: material {highest} is missing from the manifest, which ends at "
             f"{len(manifest.materials) - 1}; build it again"
         )
     rom = Rom(manifest.name, octree, manifest.material_table, manifest.grid)
-    return Blob(rom, manifest.view, manifest.lighting, manifest.provenance), ()
+    return Blob(rom, manifest.view, manifest.lighting, manifest.provenance, animation), ()
 
 
 def _read_pair(mem_path: Path) -> tuple[WordFile, Manifest | None]:

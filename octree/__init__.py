@@ -11,6 +11,8 @@ __all__ = [
     "BOARDS",
     "DIALECTS",
     "MAX_DEPTH",
+    "Animation",
+    "AnimationFrame",
     "Census",
     "Dialect",
     "Difference",
@@ -25,6 +27,8 @@ __all__ = [
     "SurfaceChange",
     "build",
     "census",
+    "check_frame_count",
+    "check_roots",
     "coarsen",
     "count_in_box",
     "decode",
@@ -34,10 +38,13 @@ __all__ = [
     "encode",
     "fill_hidden",
     "fit",
+    "frame_octree",
+    "frames_as_octants",
     "from_dense",
     "from_points",
     "from_vdb",
     "hidden_voxels",
+    "join_frames",
     "leaves",
     "material_at",
     "octant_at",
@@ -51,6 +58,15 @@ __all__ = [
 
 # Imported when first used: a build waits for what it needs alone.
 _HOMES = {
+    "voxrt.octree.animation": (
+        "Animation",
+        "AnimationFrame",
+        "check_frame_count",
+        "check_roots",
+        "frame_octree",
+        "frames_as_octants",
+        "join_frames",
+    ),
     "voxrt.octree.budget": ("BOARDS", "Fit", "coarsen", "fit", "share"),
     "voxrt.octree.construct": ("build", "from_dense", "from_points"),
     "voxrt.octree.decoding": ("decode",),
@@ -72,6 +88,15 @@ _HOMES = {
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 if TYPE_CHECKING:  # type checkers see these names and no others
+    from voxrt.octree.animation import (
+        Animation,
+        AnimationFrame,
+        check_frame_count,
+        check_roots,
+        frame_octree,
+        frames_as_octants,
+        join_frames,
+    )
     from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
     from voxrt.octree.construct import build, from_dense, from_points
     from voxrt.octree.decoding import decode

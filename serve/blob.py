@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..board.errors import Refused
-from ..board.scene import Scene
+from ..board.scene import Scene, frame_period
 from ..board.view import FACES, Camera, Faces, Lighting
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ _DEPTH = struct.Struct("<I")  # the rest of the section places the grid in the s
 _MATERIAL = struct.Struct("<4BHxx")  # red, green, blue, flags, bytes of the name
 _VIEW = struct.Struct("<12i")  # position, look, right, up
 _LIGHT = struct.Struct("<3i4B")  # position, ambient, flags, bounces, 0
+_FRAME = struct.Struct("<IIdHxxxxxx")  # root, words of the frame alone, second or NaN, bytes of the name
 _FACES = struct.Struct("<6B")  # brightness of the faces along -x, +x, -y, +y, -z, +z; absent where it is the default
 
 _MIRROR = 1
@@ -47,13 +49,14 @@ def read_blob(data: bytes) -> Scene:
         camera = _camera(sections[b"VIEW"]) if b"VIEW" in sections else None
         faces = _FACES.unpack(sections[b"FACE"]) if b"FACE" in sections else FACES
         lighting = _lighting(sections[b"LITE"], faces) if b"LITE" in sections else None
+        roots, period = _frames(sections[b"FRMS"]) if b"FRMS" in sections else ((0,), None)
     except KeyError as error:
         raise Refused(f"the blob has no section {error.args[0].decode()}; write it again") from None
     except (struct.error, ValueError) as error:
         raise Refused(
             f"the sections of the blob do not have the layout of version {VERSION} ({error}); write it again"
         ) from None
-    return Scene(name, depth, words, colours, mirrors, camera, lighting)
+    return Scene(name, depth, words, colours, mirrors, camera, lighting, roots, period)
 
 
 def _sections(data: bytes) -> dict[bytes, bytes]:
@@ -88,6 +91,21 @@ def _materials(section: bytes) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         colours[material], mirrors[material] = (red, green, blue), bool(flags & _MIRROR)
         position += _MATERIAL.size + name + -name % 8
     return colours, mirrors
+
+
+def _frames(section: bytes) -> tuple[tuple[int, ...], float | None]:
+    """Return the roots of the frames of an animation, and its period."""
+    roots, times = [], []
+    (count,) = struct.unpack_from("<I", section)
+    position = 8
+    if not 1 <= count <= len(section) // _FRAME.size:
+        raise ValueError(f"{count} frames are not what {len(section)} bytes hold")
+    for _ in range(count):
+        root, _, time, name = _FRAME.unpack_from(section, position)
+        roots.append(root)
+        times.append(None if math.isnan(time) else time)
+        position += _FRAME.size + name + -name % 8
+    return tuple(roots), frame_period(times)
 
 
 def _camera(section: bytes) -> Camera:

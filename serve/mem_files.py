@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..board.errors import Refused
-from ..board.scene import Scene
+from ..board.scene import Scene, frame_period
 
 _COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _WORD = re.compile(rb"[0-9A-Fa-f]{1,8}")
@@ -39,6 +39,8 @@ def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
         colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
         colours[: len(rows)] = np.array([colour for colour, _ in rows], dtype=np.uint8)
         mirrors[: len(rows)] = [mirror for _, mirror in rows]
+        frames = (described.get("animation") or {"frames": [{"root": 0, "time": None}]})["frames"]
+        roots, period = tuple(int(frame["root"]) for frame in frames), frame_period([one["time"] for one in frames])
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise Refused(f"{name}.json is no manifest of a memory ({error!r}); build the scene again") from None
     if not isinstance(depth, int) or dialect not in _DIALECT_TAGS:
@@ -52,7 +54,7 @@ def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
     tag = _DIALECT_TAGS[dialect]
     leaf = words >> 31 == 1
     words[leaf] = words[leaf] & np.uint32(~tag & 0xFF) | np.uint32(0xFFFFFF00)
-    return Scene(name, depth, words, colours, mirrors)
+    return Scene(name, depth, words, colours, mirrors, roots=roots, period=period)
 
 
 def _manifest(data: bytes) -> dict[str, Any]:

@@ -36,7 +36,7 @@ class RayHit:
     point: tuple[float, float, float]
 
 
-def cast_ray(scene: Scene, origin: Triple, direction: Triple) -> RayHit | None:
+def cast_ray(scene: Scene, origin: Triple, direction: Triple, frame: int = 0) -> RayHit | None:
     """Find the first solid voxel on a ray, as the hardware finds it; None where there is none.
 
     Planes between voxels are ordered by T and axis. T is the distance from the origin along the axis times the two
@@ -50,6 +50,8 @@ def cast_ray(scene: Scene, origin: Triple, direction: Triple) -> RayHit | None:
         1/16 voxel, grid frame; it may stand outside the world.
     direction
         Any length.
+    frame
+        Frame of the scene's animation, counted from 0.
     """
     side = 1 << scene.depth
     mirrored = [component < 0 for component in direction]  # so that the ray goes up on every axis
@@ -74,7 +76,7 @@ def cast_ray(scene: Scene, origin: Triple, direction: Triple) -> RayHit | None:
     voxel = voxel_at(time, last)
     while all(0 <= place < side for place in voxel):
         stored = [side - 1 - place if flip else place for place, flip in zip(voxel, mirrored, strict=True)]
-        word, level = _leaf(scene.words, scene.depth, stored)
+        word, level = _leaf(scene.words, scene.roots[frame], scene.depth, stored)
         if material := word & 0xFF:
             x, y, z = stored
             part = time / (lengths[last] * scales[last]) if lengths[last] else 0.0
@@ -90,9 +92,9 @@ def cast_ray(scene: Scene, origin: Triple, direction: Triple) -> RayHit | None:
     return None
 
 
-def _leaf(words: NDArray[np.uint32], depth: int, voxel: list[int]) -> tuple[int, int]:
+def _leaf(words: NDArray[np.uint32], root: int, depth: int, voxel: list[int]) -> tuple[int, int]:
     """Find the leaf that holds a voxel: its word, and log2 of its side."""
-    word, level = int(words[0]), depth
+    word, level = int(words[root]), depth
     while not word >> 31:
         level -= 1
         octant = sum((place >> level & 1) << axis for axis, place in enumerate(voxel))

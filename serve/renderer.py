@@ -85,6 +85,7 @@ class Renderer:
         self.trouble: str | None = None
         self._memory = SceneMemory(device)
         self._thread = ThreadPoolExecutor(1, "device")
+        self._shown_frame: int | None = 0  # of the animation, that the device shows; None where that is not known
         self._loading = asyncio.Lock()
         self._device_lock = asyncio.Lock()  # fair: frames and the steps of a scene that is loaded take turns
         self._changed = asyncio.Event()
@@ -106,6 +107,9 @@ class Renderer:
         """
         view = change.applied_to(self.view)
         check_view(view, self.device.identity)
+        if view.frame >= len(self.scene.roots):
+            last = len(self.scene.roots) - 1
+            raise Refused(f"there is no frame {view.frame}; those of {self.scene.name} are 0 to {last}")
         self.view = view
         if change.nonstop is not None:
             self.nonstop = change.nonstop
@@ -147,6 +151,7 @@ class Renderer:
             while not complete:
                 async with self._device_lock:
                     check()
+                    self._shown_frame = None  # the present scene may be selected anew, if this one fails
                     try:
                         complete = await self._on_device(partial(_finish_step, steps))
                     except TooSlow as error:
@@ -234,11 +239,15 @@ class Renderer:
             self._drop = None
 
     def _render(self, view: View, drop: FrameDrop | None = None) -> Frame:
+        if view.frame != self._shown_frame:
+            self._memory.select_frame(view.frame)
+            self._shown_frame = view.frame
         return self.device.frame(view, self.device.identity.frame_seconds(view.size), drop)
 
     def _render_first(self, scene: Scene, progress: Progress) -> None:
         progress("render", 0, 1)
         view = self._view_of(scene)
+        self._shown_frame = 0  # of the scene that was selected just now
         self._first_frame = view, self._render(view)
 
     async def _on_device(self, call: Callable[[], Result]) -> Result:
@@ -251,7 +260,7 @@ class Renderer:
     def _view_of(self, scene: Scene) -> View:
         size = self.view.size
         camera = refit(scene.camera, DEFAULT_SIZE, size) if scene.camera else frame_world(scene.depth, size)
-        view = replace(self.view, camera=camera, background=scene.background)
+        view = replace(self.view, camera=camera, background=scene.background, frame=0)
         lighting = scene.lighting
         if lighting is None:
             side, farthest = 16 << scene.depth, self.device.identity.position_limit - 1

@@ -93,7 +93,8 @@ class RequestHandler:
                 answer["registers"] = dict(await session.renderer.read_registers())
             case CastRay():
                 self._require_control()
-                cast = partial(cast_ray, session.renderer.scene, request.origin, request.direction)
+                renderer = session.renderer
+                cast = partial(cast_ray, renderer.scene, request.origin, request.direction, renderer.view.frame)
                 hit = await asyncio.get_running_loop().run_in_executor(None, cast)
                 answer["hit"] = None if hit is None else asdict(hit)
             case ReadCounters():

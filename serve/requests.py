@@ -43,10 +43,11 @@ class ChangeView:
     shading: Shading | None = None
     bounces: int | None = None
     nonstop: bool | None = None
+    frame: int | None = None
 
     def applied_to(self, view: View) -> View:
         """Make the view that is asked for."""
-        fields = ("camera", "size", "background")
+        fields = ("camera", "size", "background", "frame")
         changed = {name: value for name in fields if (value := getattr(self, name)) is not None}
         return replace(view, lighting=self._lighting(view.lighting), **changed)
 
@@ -172,6 +173,7 @@ def _change_view(message: dict[str, Any]) -> ChangeView:
         shading=optional("shading", _shading),
         bounces=optional("bounces", lambda name, value: _whole(name, value, 0, 15)),
         nonstop=optional("nonstop", _truth),
+        frame=optional("frame", lambda name, value: _whole(name, value, 0, _REQUEST_LIMIT)),
     )
 
 

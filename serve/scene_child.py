@@ -58,6 +58,7 @@ def run_child(read: Callable[[Sequence[Path], Progress], Scene], files: Sequence
         _write(out, {"problem": f"the files cannot be read: {type(error).__name__}: {error}; please report this"})
     else:
         described = {"name": scene.name, "depth": scene.depth, "words": len(scene.words)}
+        described |= {"roots": scene.roots, "period": scene.period}
         camera = None if scene.camera is None else astuple(scene.camera)
         lighting = None if scene.lighting is None else asdict(scene.lighting)
         _write(out, {"scene": {**described, "camera": camera, "lighting": lighting}})

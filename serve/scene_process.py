@@ -36,7 +36,7 @@ READ_SECONDS = 600.0
 WORDS_LIMIT = 1 << 26
 """Words of the largest scene."""
 
-_LINE_LIMIT = 1 << 16
+_LINE_LIMIT = 1 << 18  # the roots of 4096 frames among it
 _COLOURS, _MIRRORS = 3 * 256, 256
 
 
@@ -169,4 +169,6 @@ async def _receive_scene(out: asyncio.StreamReader, described: dict[str, Any]) -
         mirrors,
         None if camera is None else Camera(*(tuple(map(int, triple)) for triple in camera)),  # type: ignore[arg-type]
         None if lighting is None else Lighting(**{name: _value(value) for name, value in lighting.items()}),
+        tuple(map(int, described["roots"])),
+        None if described["period"] is None else float(described["period"]),
     )

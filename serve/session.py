@@ -110,6 +110,8 @@ class Session:
                 "bounds": renderer.bounds,
                 "camera": asdict(scene.camera or frame_world(scene.depth, DEFAULT_SIZE)),
                 "size": DEFAULT_SIZE,
+                "frames": len(scene.roots),
+                "period": scene.period,
             },
             "view": {
                 "camera": asdict(renderer.view.camera),
@@ -121,6 +123,7 @@ class Session:
                 "shading": renderer.view.lighting.shading,
                 "bounces": renderer.view.lighting.bounces,
                 "nonstop": renderer.nonstop,
+                "frame": renderer.view.frame,
             },
             "trouble": renderer.trouble,
         }

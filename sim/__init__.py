@@ -32,10 +32,12 @@ __all__ = [
     "comparison_sheet",
     "follow_pixel",
     "follow_ray",
+    "frame_animation",
     "frame_points",
     "frame_scene",
     "look_at",
     "outline",
+    "outline_frames",
     "peak_signal_to_noise",
     "pixel_directions",
     "render",
@@ -57,7 +59,7 @@ _HOMES = {
     "voxrt.sim.errors": ("NoSuchConfigurationError", "SimulatorError"),
     "voxrt.sim.external_memory": ("CacheCost", "Dram"),
     "voxrt.sim.frame": ("FACE_NONE", "Frame", "RenderCost"),
-    "voxrt.sim.framing": ("frame_scene", "outline"),
+    "voxrt.sim.framing": ("frame_animation", "frame_scene", "outline", "outline_frames"),
     "voxrt.sim.image": ("write_png",),
     "voxrt.sim.likeness": ("Comparison", "Likeness", "View", "compare", "comparison_sheet"),
     "voxrt.sim.path": ("RayPath", "Reading", "follow_pixel", "follow_ray"),
@@ -80,7 +82,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
     from voxrt.sim.external_memory import CacheCost, Dram
     from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
-    from voxrt.sim.framing import frame_scene, outline
+    from voxrt.sim.framing import frame_animation, frame_scene, outline, outline_frames
     from voxrt.sim.image import write_png
     from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
     from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray

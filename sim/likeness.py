@@ -13,9 +13,9 @@ import numpy as np
 
 from voxrt.octree.camera import POSITION_UNITS, pixel_directions
 from voxrt.sim import _model
+from voxrt.sim.engine_arguments import palette_of
 from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import FACE_NONE
-from voxrt.sim.rendering import palette_of
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 from voxrt.voxelize.colour.appearance import sample
 from voxrt.voxelize.colour.srgb import srgb_from_linear

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from voxrt.octree import Rom
+from voxrt.octree import Rom, frame_octree
 from voxrt.octree.camera import (
     BOUNCE_LIMIT,
     DIRECTION_LIMIT,
@@ -18,6 +18,7 @@ from voxrt.octree.camera import (
     sample_cameras,
 )
 from voxrt.sim import _model
+from voxrt.sim.engine_arguments import palette_of, registers_of, shading_of
 from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
 from voxrt.sim.external_memory import CacheCost, Dram
 from voxrt.sim.frame import Frame, RenderCost
@@ -73,6 +74,7 @@ def render(
     threads: int = 0,
     config: str = "tiny",
     dram: Dram | None = None,
+    root: int = 0,
 ) -> Frame:
     """Render a frame.
 
@@ -100,6 +102,9 @@ def render(
         The configuration of the ray tracer for ``"rtl"``.
     dram
         The external memory of a configuration that has caches; None takes ``Dram()``.
+    root
+        The word of the memory that is the root of what is rendered: the register ``root``. The frames of an animation
+        (:class:`~voxrt.octree.Animation`) have roots of their own.
 
     Returns
     -------
@@ -131,9 +136,10 @@ def render(
     if engine == "model" and dram is not None:
         raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
+    root = whole("root", root, 0, len(rom.octree.words) - 1)
     return join_samples(
         [
-            _render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram)
+            _render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram, root=root)
             for one in cameras
         ],
         background,
@@ -151,12 +157,13 @@ def check(
     threads: int = 0,
     config: str = "tiny",
     dram: Dram | None = None,
+    root: int = 0,
 ) -> EngineCheck:
     """Render with both engines and compare every sample of every pixel.
 
     Parameters
     ----------
-    rom, camera, size, lighting, samples, background, threads, config, dram
+    rom, camera, size, lighting, samples, background, threads, config, dram, root
         As for :func:`render`.
 
     Returns
@@ -179,12 +186,13 @@ def check(
     0
     """
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
+    root = whole("root", root, 0, len(rom.octree.words) - 1)
     rtl = [
-        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram)
+        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram, root=root)
         for one in cameras
     ]
     model = [
-        _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None)
+        _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None, root=root)
         for one in cameras
     ]
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
@@ -224,10 +232,12 @@ def _render_one(
     threads: int,
     config: str,
     dram: Dram | None,
+    root: int,
 ) -> Frame:
     if engine == "model":
-        return _render_model(rom, camera, size, lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, size, lighting, config=text("config", config), dram=dram)
+        shown = replace(rom, octree=frame_octree(rom.octree, root))
+        return _render_model(shown, camera, size, lighting, whole("threads", threads, 0, 1024))
+    return _render_rtl(rom, camera, size, lighting, config=text("config", config), dram=dram, root=root)
 
 
 def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
@@ -240,11 +250,11 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lig
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
         palette_of(rom),
-        _registers(camera),
+        registers_of(camera),
         size[0],
         size[1],
         threads,
-        **_shading_of(rom, lighting),
+        **shading_of(rom, lighting),
     )
     return Frame(
         colour=pixels.colour,
@@ -290,7 +300,7 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
 
 
 def _render_rtl(
-    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, config: str, dram: Dram | None
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, config: str, dram: Dram | None, root: int
 ) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
@@ -326,16 +336,17 @@ def _render_rtl(
     memory = Dram() if dram is None else dram
     tracer.load(rom.octree.words)
     pixels = tracer.render(
-        _registers(camera),
+        registers_of(camera),
         size[0],
         size[1],
         rom.octree.depth,
         palette_of(rom),
-        **_shading_of(rom, lighting),
+        **shading_of(rom, lighting),
         latency=memory.latency,
         interval=memory.interval,
         jitter=memory.jitter,
         dram_seed=memory.seed,
+        root=root,
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
         raise SimulatorError(
@@ -358,19 +369,6 @@ def _render_rtl(
     )
 
 
-def _shading_of(rom: Rom, lighting: Lighting) -> dict[str, Any]:
-    mirrors = np.zeros(256, dtype=np.uint8)
-    mirrors[: len(rom.materials)] = [material.mirror for material in rom.materials]
-    return {
-        "flat": lighting.flat,
-        "brightness": None if lighting.faces is None else np.array(lighting.faces, dtype=np.uint8),
-        "light": np.array(lighting.position, dtype=np.int32) if lighting.on else None,
-        "ambient": lighting.ambient if lighting.on else 0,
-        "bounces": lighting.bounces,
-        "mirrors": mirrors,
-    }
-
-
 def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
     # Directions are linear in the pixel: the largest stand in the corners.
     largest = max(
@@ -386,10 +384,6 @@ def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
         )
 
 
-def _registers(camera: Camera) -> NDArray[np.int32]:
-    return np.array([camera.position, camera.look, camera.right, camera.up], dtype=np.int32)
-
-
 def _check_lighting(lighting: Lighting) -> None:
     if not 0 <= lighting.bounces <= BOUNCE_LIMIT:
         raise SimulatorError(f"{lighting.bounces} reflections are not 0 … {BOUNCE_LIMIT}")
@@ -403,20 +397,3 @@ def _check_lighting(lighting: Lighting) -> None:
         raise SimulatorError(f"an ambient brightness of {lighting.ambient} is not 0 … 255")
     if max(abs(value) for value in lighting.position) >= 1 << 31:
         raise SimulatorError(f"the light at {lighting.position} is not within signed 32 bits of 1/16 voxel")
-
-
-def palette_of(rom: Rom) -> NDArray[np.uint8]:
-    """Return the colours that the engines take: uint8, shape (256, 3), sRGB, a row per material id.
-
-    Examples
-    --------
-    >>> from voxrt.octree import Rom, from_points
-    >>> from voxrt.voxelize import EMPTY, Material
-    >>> rom = Rom("dot", from_points([[1, 1, 1]], [1], depth=2), (EMPTY, Material("red", (255, 0, 0))))
-    >>> palette_of(rom)[1].tolist()
-    [255, 0, 0]
-    """
-    palette = np.zeros((256, 3), dtype=np.uint8)
-    for number, material in enumerate(rom.materials):
-        palette[number] = material.colour
-    return palette

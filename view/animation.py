@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 ANIMATION_SUFFIXES = (".gif", ".mp4")
 PICTURES_A_SECOND = 20
 
+_FEW_COLOURS = 255
+_PALETTE_PICTURES = 8  # of an animation that give its palette
+
 
 def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
     """Write pictures as an animation that plays for ever (GIF) or once (MP4), :data:`PICTURES_A_SECOND`.
@@ -44,13 +47,55 @@ def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
     if path.suffix.lower() == ".mp4":
         _write_mp4(path, pictures)
         return
-    # One palette for all, of the first picture: what turns keeps its colours.
-    first, *others = (Image.fromarray(picture) for picture in pictures)
-    palette = first.quantize(255, method=Image.Quantize.MEDIANCUT)
-    frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in (first, *others)]
+    write_gif(path, pictures)
+
+
+def write_gif(path: Path, pictures: Iterable[NDArray[np.uint8]], period: float | None = None) -> None:
+    """Write pictures as a GIF that plays for ever.
+
+    Parameters
+    ----------
+    path
+        The file.
+    pictures
+        One or more, uint8, shape (H, W, 3), sRGB, all of one size.
+    period
+        Seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    images = [Image.fromarray(picture) for picture in pictures]
+    palette = _palette(images)
+    frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    milliseconds = 1000 // PICTURES_A_SECOND if period is None else max(20, 10 * round(100 * period))
     encoded = io.BytesIO()
-    frames[0].save(encoded, "GIF", save_all=True, append_images=frames[1:], duration=1000 // PICTURES_A_SECOND, loop=0)
+    frames[0].save(encoded, "GIF", save_all=True, append_images=frames[1:], duration=milliseconds, loop=0)
     write_atomically(path, encoded.getvalue())
+
+
+def _palette(images: list[Image.Image]) -> Image.Image:
+    """Make one palette for all pictures, so that what stays keeps its colours: exact where 255 colours are enough."""
+    seen: set[int] = set()
+    for image in images:
+        found = image.getcolors(_FEW_COLOURS)
+        if found is None or len(seen) > _FEW_COLOURS:
+            break
+        seen |= {int.from_bytes(bytes(colour), "big") for _, colour in found}  # type: ignore[arg-type]
+    else:
+        if len(seen) <= _FEW_COLOURS:
+            exact = Image.new("P", (1, 1))
+            exact.putpalette(b"".join(colour.to_bytes(3, "big") for colour in sorted(seen)))
+            return exact
+    width, height = images[0].size
+    step = max(1, len(images) // _PALETTE_PICTURES)
+    some = images[::step]
+    strip = Image.new("RGB", (width, height * len(some)))
+    for row, image in enumerate(some):
+        strip.paste(image, (0, row * height))
+    return strip.quantize(_FEW_COLOURS, method=Image.Quantize.MEDIANCUT)
 
 
 def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:

@@ -42,6 +42,7 @@ __all__ = [
     "ObjectReport",
     "PointLight",
     "Scene",
+    "SceneFrames",
     "SceneObject",
     "SceneWarning",
     "SphereCollider",
@@ -52,6 +53,7 @@ __all__ = [
     "Voxels",
     "assign_colours",
     "fit_grid",
+    "join_scenes",
     "load",
     "voxelize",
 ]
@@ -61,6 +63,7 @@ _HOMES = {
     "voxrt.voxelize.assets": ("load",),
     "voxrt.voxelize.colour.voxel_colours": ("DEFAULT_COLOURS", "assign_colours"),
     "voxrt.voxelize.grid_fitting": ("fit_grid",),
+    "voxrt.voxelize.scene_frames": ("SceneFrames", "join_scenes"),
     "voxrt.voxelize.voxelizer": ("voxelize",),
     "voxrt.voxelize.voxels": ("ObjectMode", "ObjectReport", "Voxelization", "Voxels"),
 }
@@ -70,6 +73,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.voxelize.assets import load
     from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
     from voxrt.voxelize.grid_fitting import fit_grid
+    from voxrt.voxelize.scene_frames import SceneFrames, join_scenes
     from voxrt.voxelize.voxelizer import voxelize
     from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
 else:

@@ -59,8 +59,10 @@ __all__ = [
     "ViewerError",
     "ViewpointError",
     "aim_camera",
+    "animation_camera",
     "board",
     "build",
+    "build_animation",
     "cast_rays",
     "check",
     "compare",
@@ -72,6 +74,7 @@ __all__ = [
     "export",
     "fit_grid",
     "follow_ray",
+    "frame_times",
     "likeness_curve",
     "load",
     "mesh_scene",
@@ -80,6 +83,7 @@ __all__ = [
     "read_rom",
     "render",
     "rom_info",
+    "save_animation",
     "save_picture",
     "serve",
     "shader_features",
@@ -90,6 +94,8 @@ __all__ = [
 ]
 
 _HOMES = {
+    "voxrt.animation": ("build_animation",),
+    "voxrt.animation_takes": ("frame_times",),
     "voxrt.baking": ("Bake",),
     "voxrt.build_options": ("BuildOptions",),
     "voxrt.build_result": ("BuildResult",),
@@ -124,7 +130,9 @@ _HOMES = {
     "voxrt.outputs": ("OutputError",),
     "voxrt.pictures": (
         "Picture",
+        "animation_camera",
         "render",
+        "save_animation",
         "save_picture",
     ),
     "voxrt.pipeline": (
@@ -170,6 +178,8 @@ _ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 
 if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
     from voxrt import board, export, octree, serve, sim, view, voxelize
+    from voxrt.animation import build_animation
+    from voxrt.animation_takes import frame_times
     from voxrt.baking import Bake
     from voxrt.build_options import BuildOptions
     from voxrt.build_result import BuildResult
@@ -181,7 +191,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.outputs import OutputError
-    from voxrt.pictures import Picture, render, save_picture
+    from voxrt.pictures import Picture, animation_camera, render, save_animation, save_picture
     from voxrt.pipeline import build, voxelize_mesh
     from voxrt.sim import (
         Frame,

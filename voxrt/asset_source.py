@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from voxrt import voxelize
-from voxrt.voxelize import Scene, SceneWarning
+from voxrt.voxelize import AssetError, Scene, SceneWarning
 
 if TYPE_CHECKING:
     import trimesh
@@ -114,3 +114,18 @@ def as_text(name: str) -> str:
     """
     text = os.fsencode(name).decode("utf-8", "replace")
     return text.translate({0xFFFD: "_", ord("\\"): "_"})
+
+
+def refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
+    """Refuse what a build warns of, if it is strict.
+
+    Raises
+    ------
+    AssetError
+        There is a warning; the message is that of the first.
+    """
+    if warnings and options.strict:
+        first, *others = warnings
+        kinds = sorted({warning.kind for warning in others})
+        more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
+        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

@@ -12,10 +12,10 @@ from voxrt.board.scene import Scene
 from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
+from voxrt.pictures import animation_camera
 from voxrt.pipeline import build
 from voxrt.serve.blob import read_blob
 from voxrt.serve.scene_process import ChildReader
-from voxrt.sim import frame_scene
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def board_scene(blob: Blob) -> Scene:
     colours, mirrors = np.zeros((256, 3), dtype=np.uint8), np.zeros(256, dtype=np.bool_)
     for number, material in enumerate(rom.materials):
         colours[number], mirrors[number] = material.colour, material.mirror
-    camera = blob.view or frame_scene(rom, PREVIEW_SIZE)
+    camera = animation_camera(blob, PREVIEW_SIZE)
     return Scene(
         rom.name,
         rom.octree.depth,
@@ -45,6 +45,7 @@ def board_scene(blob: Blob) -> Scene:
         mirrors,
         camera,
         blob.lighting,
+        *((blob.animation.roots, blob.animation.period) if blob.animation else ()),
     )
 
 

@@ -7,7 +7,7 @@ its help from here, so this module imports no heavy library.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence  # type hints are read at run time
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 
@@ -207,6 +207,37 @@ class BuildKeywords(TypedDict, total=False):
     engine: Engine
     strict: bool
     threads: int
+
+
+def merge_options(function: str, options: BuildOptions | None, keywords: BuildKeywords) -> BuildOptions:
+    """Return options with the keywords of a call in their place.
+
+    Parameters
+    ----------
+    function
+        What was called, for errors.
+    options
+        None for the defaults.
+    keywords
+        Options by name.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `options` are none, there is no option of such a name, or it is out of range.
+
+    Examples
+    --------
+    >>> merge_options("build", None, {"depth": 5}).depth
+    5
+    """
+    from voxrt.voxelize.arguments import instance  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    options = instance("options", BuildOptions() if options is None else options, BuildOptions)
+    names = [field.name for field in fields(BuildOptions)]
+    if unknown := sorted(set(keywords) - set(names)):
+        raise TypeError(f"{function}() has no option {unknown[0]!r}; it has {', '.join(names)}")
+    return replace(options, **keywords) if keywords else options
 
 
 def _checked(given: BuildOptions) -> dict[str, object]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from voxrt.baking import Bake
     from voxrt.export import Source
     from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.octree import Octree, Rom
+    from voxrt.octree import Animation, Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.pictures import Picture
     from voxrt.voxelize import ObjectReport, Scene, SceneWarning
@@ -56,6 +56,9 @@ class BuildResult:
         The name of the asset, and the options of the build.
     bake
         What was baked; None if no light was.
+    animation
+        The table of roots of a memory that holds the frames of an animation; None for a memory of one scene. `rom`,
+        `objects`, `solid_voxels` and the arrays are then those of the first frame.
 
     Examples
     --------
@@ -83,20 +86,22 @@ class BuildResult:
     lighting: Lighting | None = None
     source: Source | None = None
     bake: Bake | None = None
+    animation: Animation | None = None
 
     def __repr__(self) -> str:
         words, count = len(self.octree.words), len(self.rom.materials) - 1
+        frames = "" if self.animation is None else f"{len(self.animation.frames)} frames, "
         files = "".join(f", {path}" for path in self.outputs.values())
         return (
-            f"<BuildResult {self.rom.name!r}: depth {self.octree.depth}, {words:,} words, {self.solid_voxels:,} solid "
-            f"voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
+            f"<BuildResult {self.rom.name!r}: {frames}depth {self.octree.depth}, {words:,} words, "
+            f"{self.solid_voxels:,} solid voxels, {count} {'material' if count == 1 else 'materials'}{files}>"
         )
 
     @property
     def blob(self) -> Blob:
         """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
         told = Provenance(self.source, self.objects, self.warnings, self.seconds, self.baked)
-        return Blob(self.rom, self.view, self.lighting, told)
+        return Blob(self.rom, self.view, self.lighting, told, self.animation)
 
     @property
     def baked(self) -> BakedLight | None:

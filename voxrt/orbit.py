@@ -8,16 +8,18 @@ import numpy as np
 
 from voxrt.octree import Rom
 from voxrt.octree.camera import POSITION_UNITS, frame_points, look_at
-from voxrt.sim import outline
+from voxrt.sim import outline, outline_frames
 from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from voxrt.octree.camera import Camera
 
 _CORNERS = 64  # of the polygon that stands for the circle around the scene
 
 
-def orbit(rom: Rom, size: tuple[int, int], count: int = 128) -> list[Camera]:
+def orbit(rom: Rom, size: tuple[int, int], count: int = 128, *, roots: Sequence[int] = (0,)) -> list[Camera]:
     """Make cameras on a circle around a scene: the default view, turned about the vertical in equal steps.
 
     The scene fits each picture: the first camera sees the upright cylinder around it.
@@ -30,6 +32,8 @@ def orbit(rom: Rom, size: tuple[int, int], count: int = 128) -> list[Camera]:
         Columns and rows of the pictures.
     count
         How many cameras, 1 ... 4096.
+    roots
+        Those of the frames of an animation: all of them fit.
 
     Returns
     -------
@@ -52,7 +56,7 @@ def orbit(rom: Rom, size: tuple[int, int], count: int = 128) -> list[Camera]:
     instance("rom", rom, Rom)
     count = whole("count", count, 1, 4096)
     width, height = whole_array("size", size, (2,), np.int64, low=1, high=1 << 14).tolist()
-    points = outline(rom.octree)
+    points = outline(rom.octree) if len(roots) == 1 else outline_frames(rom.octree, roots)
     low, high = points.min(axis=0), points.max(axis=0)
     centre = (low + high) / 2
     radius = np.hypot(*(points[:, [0, 2]] - centre[[0, 2]]).T).max() / np.cos(np.pi / _CORNERS)

@@ -11,14 +11,16 @@ import numpy as np
 from voxrt import sim
 from voxrt.backgrounds import read_background
 from voxrt.build_options import PREVIEW_SIZE
+from voxrt.export import Blob
 from voxrt.octree import Rom
-from voxrt.octree.camera import PLAIN_LIGHTING
+from voxrt.octree.camera import PLAIN_LIGHTING, refit
 from voxrt.outputs import OutputError, check_folder, writing
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Iterable
 
     from numpy.typing import ArrayLike
 
@@ -66,6 +68,7 @@ def render(
     background: Background | str | None = None,
     threads: int = 0,
     dram: Dram | None = None,
+    root: int = 0,
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -93,6 +96,8 @@ def render(
         Threads of the model; 0 takes one per core.
     dram
         The external memory of a configuration that has caches. None takes the default of :class:`voxrt.sim.Dram`.
+    root
+        The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.
 
     Returns
     -------
@@ -127,7 +132,70 @@ def render(
         config=config,
         threads=threads,
         dram=dram,
+        root=root,
     )
+
+
+def animation_camera(blob: Blob, size: tuple[int, int]) -> Camera:
+    """Make the camera for all frames of an animation: the author's, or one that sees all of them.
+
+    Parameters
+    ----------
+    blob
+        The memory; one without animation has one frame.
+    size
+        Width and height of the pictures, pixels.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> blob = voxrt.build("examples/house.obj", depth=4).blob
+    >>> voxrt.animation_camera(blob, (64, 48)) == voxrt.aim_camera(blob.rom, (64, 48))
+    True
+    """
+    blob = instance("blob", blob, Blob)
+    if blob.view is not None:
+        return refit(blob.view, PREVIEW_SIZE, size)
+    if blob.animation is None:
+        return aim_camera(blob.rom, size)
+    return sim.frame_animation(blob.rom, blob.animation.roots, size)
+
+
+def save_animation(pictures: Iterable[ArrayLike], path: str | os.PathLike[str], period: float | None = None) -> None:
+    """Write pictures as a GIF file that plays without end. An interruption leaves the old file or the new one.
+
+    Parameters
+    ----------
+    pictures
+        uint8, shape (H, W, 3), sRGB, all of one size.
+    path
+        The file. Its folder is made if it is missing.
+    period
+        Seconds from one picture to the next, in steps of 1/100; None for 1/20.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+    TypeError, ValueError
+        The arrays are no pictures.
+
+    Examples
+    --------
+    >>> import numpy as np, voxrt
+    >>> voxrt.save_animation([np.full((48, 64, 3), grey, np.uint8) for grey in (0, 255)], "blink.gif", 0.5)
+    """
+    from voxrt.view.animation import write_gif  # noqa: PLC0415 - Pillow comes with it
+
+    arrays = [whole_array("pictures", one, ("H", "W", 3), np.uint8, low=0, high=255) for one in pictures]
+    if not arrays or len({array.shape for array in arrays}) > 1:
+        raise ValueError("pictures must be one or more, all of one size")
+    path = Path(path)
+    check_folder(path.parent)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+    with writing(path):
+        write_gif(path, arrays, period)
 
 
 def save_picture(colour: ArrayLike, path: str | os.PathLike[str]) -> None:

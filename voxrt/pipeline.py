@@ -1,42 +1,40 @@
-"""From an asset to files for the hardware, in one call: load, fit, voxelize, build, write, preview.
-
-What only some builds do is imported where it is done: a small build takes less time than those imports.
-"""
+"""From an asset to files for the hardware, in one call: load, fit, voxelize, build, write, preview."""
 
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack, contextmanager
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.asset_source import as_text, asset_label, asset_name, load_asset
-from voxrt.build_options import DEFAULT_DEPTH, PREVIEW_SIZE, BuildOptions
+from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
+from voxrt.build_grid import build_grid
+from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
-from voxrt.export.atomic import write_together
+from voxrt.build_view import authored_view, preview
+from voxrt.build_writing import named_settings, write_build
+from voxrt.estimate import estimate_build
+from voxrt.from_arrays import mesh_scene
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
-from voxrt.output_files import OutputFiles, output_files, refuse_other_asset
-from voxrt.outputs import writing
-from voxrt.voxelize import AssetError, Scene, SceneWarning
-from voxrt.voxelize.arguments import instance
+from voxrt.output_files import output_files, refuse_other_asset
+from voxrt.sim import SimulatorError
+from voxrt.stage_clock import StageClock
+from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, named_camera
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
     from voxrt.asset_source import Asset
     from voxrt.baking import Bake
-    from voxrt.build_options import BuildKeywords, Fill, UpAxis
+    from voxrt.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Rom
-    from voxrt.octree.camera import Camera, Lighting
-    from voxrt.pictures import Picture
-    from voxrt.voxelize import Grid, Viewpoint, Voxelization
+    from voxrt.octree.camera import Camera
+    from voxrt.voxelize import Grid, Scene, Voxelization
 
 
 _MUCH = 10
@@ -101,25 +99,18 @@ def build(
     >>> voxrt.build("examples/house.obj", options=options).solid_voxels < built.solid_voxels
     True
     """
-    options = instance("options", BuildOptions() if options is None else options, BuildOptions)
-    names = [field.name for field in fields(BuildOptions)]
-    if unknown := sorted(set(keywords) - set(names)):
-        raise TypeError(f"build() has no option {unknown[0]!r}; it has {', '.join(names)}")
-    if keywords:
-        options = replace(options, **keywords)
+    options = merge_options("build", options, keywords)
     files = output_files(asset_name(asset), output, options.preview)
     source = as_text(Path(asset).name if isinstance(asset, str | os.PathLike) else files.name)
     if files.words is not None and not files.named:
         refuse_other_asset(files.words, source)
-    clock = _Clock(progress)
+    clock = StageClock(progress)
     with clock.stage("load"):
         loaded = without_objects(asset_label(asset), load_asset(asset, options), options.ignore)
         if options.camera is not None:
-            from voxrt.viewpoint import named_camera  # noqa: PLC0415 - as above
-
             viewpoint = named_camera(asset_label(asset), loaded, options.camera)
             loaded = replace(loaded, viewpoint=viewpoint)
-    _refuse_warnings(asset, loaded.warnings, options)
+    refuse_warnings(asset, loaded.warnings, options)
     scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
         refuse_empty(asset_label(asset), grid, voxelization)
@@ -127,17 +118,14 @@ def build(
         tree = octree.build(voxelization.voxels, threads=options.threads)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
-    view, lighting, unseen = _authored(scene, rom, options)
+    view, lighting, unseen = authored_view(scene, rom, options)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
-    _refuse_warnings(asset, warnings, options)
+    refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
     if files.preview is not None:
         with clock.stage("preview"):
-            from voxrt.sim import SimulatorError  # noqa: PLC0415 - as above
-            from voxrt.viewpoint import ViewpointError  # noqa: PLC0415
-
             try:
-                picture = _picture(rom, None if view is None else scene.viewpoint, lighting, options)
+                picture = preview(rom, _camera(rom, view, scene, options), lighting, options)
             except (SimulatorError, ViewpointError) as error:
                 unseen_picture = error  # the memory is sound: it is written first
     result = BuildResult(
@@ -153,11 +141,11 @@ def build(
         {"voxelize": voxelization.seconds},
         view,
         lighting,
-        export.Source(source, _settings(options)),
+        export.Source(source, named_settings(options)),
         baked,
     )
     with clock.stage("write"):
-        result.outputs.update(_write(files, result, options))
+        result.outputs.update(write_build(files, result, options))
     if picture is not None:  # what programs read keeps its order
         clock.seconds["preview"] = clock.seconds.pop("preview")
     if unseen_picture is not None:
@@ -212,54 +200,36 @@ def voxelize_mesh(
     >>> cube.coordinates.shape
     (512, 3)
     """
-    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - as above
-
     scene = mesh_scene(vertices, faces, colours=colours, face_colours=face_colours, up=up, unit=unit)
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
 
 
-class _Clock:
-    """The stages of a build and the seconds that each took."""
-
-    def __init__(self, progress: Callable[[str], None] | None) -> None:
-        self._progress = progress
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        if self._progress is not None:
-            self._progress(name)
-        start = perf_counter()
-        yield
-        self.seconds[name] = perf_counter() - start
-
-
 def _voxelize(
-    scene: Scene, options: BuildOptions, clock: _Clock, estimated: Callable[[BuildEstimate], None] | None
+    scene: Scene, options: BuildOptions, clock: StageClock, estimated: Callable[[BuildEstimate], None] | None
 ) -> tuple[Scene, Grid, Voxelization]:
     """Fit a grid, reduce colours to materials, voxelize."""
-    depth = DEFAULT_DEPTH if options.depth is None and options.voxel_size is None else options.depth
-    geometry, pow2 = options.geometry, options.pow2
     with clock.stage("fit"):
-        corners = None if options.bounds is None else (options.bounds[:3], options.bounds[3:])
-        grid = voxelize.fit_grid(
-            scene, depth=depth, voxel_size=options.voxel_size, geometry=geometry, pow2=pow2, bounds=corners
-        )
+        grid = build_grid(scene, options)
     if estimated is not None:
-        from voxrt.estimate import estimate_build  # noqa: PLC0415 - as above
-
         estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
-        scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=geometry)
+        scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
     with clock.stage("voxelize"):
         voxelization = voxelize.voxelize(
-            scene, grid, fill=options.fill, geometry=geometry, pow2=pow2, threads=options.threads
+            scene, grid, fill=options.fill, geometry=options.geometry, pow2=options.pow2, threads=options.threads
         )
     return scene, grid, voxelization
 
 
+def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:
+    """Return the camera of the preview: the author's if it can be used."""
+    if view is not None and scene.viewpoint is not None and rom.grid is not None:
+        return authored_camera(scene.viewpoint, rom.grid, options.size)
+    return aim_camera(rom, options.size)
+
+
 def _finished(
-    rom: Rom, asset: Asset, scenes: tuple[Scene, Scene], options: BuildOptions, clock: _Clock
+    rom: Rom, asset: Asset, scenes: tuple[Scene, Scene], options: BuildOptions, clock: StageClock
 ) -> tuple[Rom, Bake | None, InteriorFit | None, BudgetFit | None]:
     """Give hidden voxels their material, bake light and fit the budget, if that is asked for.
 
@@ -270,7 +240,7 @@ def _finished(
     interior, budget = options.interior, options.budget
     if interior == "keep" and budget is None and not options.bake:
         return rom, None, None, None
-    from voxrt.baking import bake, fit_baked  # noqa: PLC0415 - as above
+    from voxrt.baking import bake, fit_baked  # noqa: PLC0415 - slow to import, and few builds do this
     from voxrt.fitting import find_material, fit_budget, fit_interior  # noqa: PLC0415
 
     if interior not in ("keep", "any"):
@@ -304,135 +274,3 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
         if size <= words:
             return lesser, size
     return None
-
-
-def _settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
-    """Return the options that the manifest names."""
-    settings: dict[str, str | int | float | bool | None] = {
-        "fill": options.fill,
-        "interior": options.interior,
-        "geometry": options.geometry,
-        "pow2": options.pow2,
-        "up": options.up,
-        "unit": options.unit,
-        "time": options.time,
-        "animation": options.animation,
-        "variants": ", ".join(options.variants) or None,
-        "colours": options.colours,
-        "bake": options.bake,
-    }
-    if options.ignore:
-        settings["ignore"] = ", ".join(options.ignore)
-    if options.bounds is not None:
-        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
-    return settings
-
-
-def _write(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
-    """Write the set of files, all of it or nothing, and return the files by kind."""
-    pictures: dict[Path, bytes | None] = {}
-    if files.preview is not None:
-        from voxrt.sim.image import encode_png  # noqa: PLC0415 - as above
-
-        pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
-    outputs: dict[str, Path] = {}
-    with ExitStack() as stack:
-        for path in (*pictures, files.words):
-            if path is not None:
-                stack.enter_context(writing(path))
-        if files.words is None:
-            if result.preview is not None:
-                write_together(pictures)
-        else:
-            written = export.write_rom(
-                files.words.parent,
-                result.rom,
-                stem=files.words.stem,
-                suffix=files.words.suffix,
-                dialect=options.dialect,
-                objects=result.objects,
-                warnings=result.warnings,
-                seconds=result.seconds,
-                source=result.source,
-                view=result.view,
-                lighting=result.lighting,
-                baked=result.baked,
-                beside=pictures,
-            )
-            outputs = {"mem": written.mem, "manifest": written.manifest}
-    if files.preview is not None and result.preview is not None:
-        outputs["preview"] = files.preview
-    return outputs
-
-
-def _picture(rom: Rom, viewpoint: Viewpoint | None, lighting: Lighting | None, options: BuildOptions) -> Picture:
-    from voxrt.pictures import Picture, render  # noqa: PLC0415 - as above
-    from voxrt.viewpoint import aim_camera, authored_camera  # noqa: PLC0415
-
-    if viewpoint is not None and rom.grid is not None:
-        camera = authored_camera(viewpoint, rom.grid, options.size)
-    else:
-        camera = aim_camera(rom, options.size)
-    frame = render(
-        rom,
-        camera,
-        size=options.size,
-        engine=options.engine,
-        config="lit" if lighting is not None and lighting.features else "tiny",
-        lighting=lighting,
-        samples=options.samples,
-        background=options.background,
-        threads=options.threads,
-    )
-    return Picture(frame, camera, options.engine)
-
-
-def _authored(
-    scene: Scene, rom: Rom, options: BuildOptions
-) -> tuple[Camera | None, Lighting | None, tuple[SceneWarning, ...]]:
-    """Return the author's camera and lighting for this memory, and a warning for each that cannot be used.
-
-    A memory with baked light is shown flat, and its author's light is not used.
-    """
-    mirrors = any(material.mirror for material in scene.materials)
-    if scene.viewpoint is None and scene.light is None and not mirrors and not options.bake:
-        return None, None, ()
-    from voxrt.baking import FLAT  # noqa: PLC0415 - as above
-    from voxrt.viewpoint import (  # noqa: PLC0415
-        ViewpointError,
-        authored_camera,
-        authored_lighting,
-        stands_inside,
-    )
-
-    view, lighting, unseen = None, None, []
-    grid = rom.grid
-    assert grid is not None
-    if scene.viewpoint is not None:
-        try:
-            view = authored_camera(scene.viewpoint, grid, PREVIEW_SIZE)
-        except ViewpointError as error:
-            unseen.append(SceneWarning("camera", str(error)))
-    if view is not None and stands_inside(rom, view):
-        unseen.append(
-            SceneWarning("camera", "the scene's camera stands inside a solid; pictures show the whole scene instead")
-        )
-        view = None
-    try:
-        lighting = authored_lighting(scene, grid)
-    except ViewpointError as error:
-        unseen.append(SceneWarning("light", str(error)))
-    if options.bake:
-        if lighting is not None and lighting.on:
-            unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
-        lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)
-    return view, lighting, tuple(unseen)
-
-
-def _refuse_warnings(asset: Asset, warnings: tuple[SceneWarning, ...], options: BuildOptions) -> None:
-    """Raise AssetError for the first warning of a build that is strict."""
-    if warnings and options.strict:
-        first, *others = warnings
-        kinds = sorted({warning.kind for warning in others})
-        more = f"; and {len(others)} more ({', '.join(kinds)})" if others else ""
-        raise AssetError(asset_label(asset), f"{first.message}{more}", fix="correct the asset, or build without strict")

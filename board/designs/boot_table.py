@@ -115,7 +115,7 @@ def boot_table(
     Parameters
     ----------
     scene
-        Its octree is in the octree memory already, but for word 0.
+        Its octree is in the octree memory already, but for word 0. An animation plays along the orbit.
     cameras
         128 of them.
     lighting
@@ -145,11 +145,42 @@ def boot_table(
     boot = encode_list(writes)
     table = np.zeros(TABLE_WORDS, dtype=np.uint32)
     table[: len(boot)] = boot
-    for number, camera in enumerate(cameras):
-        words = encode_list(camera_writes(camera), end=False)
+    steps = orbit_steps(cameras, scene.roots)
+    for number, writes in enumerate(steps):
+        words = encode_list(writes, end=False)
         start = CAMERAS_WORD + CAMERA_WORDS * number
         table[start : start + len(words)] = words
     return table
+
+
+def orbit_steps(cameras: Sequence[Camera], roots: Sequence[int]) -> list[Writes]:
+    """Give what the board writes at each step of its orbit.
+
+    Every second step of an animation writes the root of a frame in place of a camera: the list of a step has no room
+    for both. The animation plays whole times, once or more; of more than 64 frames some are left out.
+
+    Parameters
+    ----------
+    cameras
+        128 of them; an animation takes every second one.
+    roots
+        Those of the frames; one for a still scene.
+
+    Examples
+    --------
+    >>> from voxrt.octree.camera import Camera
+    >>> steps = orbit_steps([Camera((16 * n, 0, 0), (0, 0, -1), (1, 0, 0), (0, 1, 0)) for n in range(128)], [1, 2, 3])
+    >>> steps[1], steps[127]
+    ([(120, [1])], [(120, [3])])
+    """
+    steps = [camera_writes(camera) for camera in cameras]
+    if len(roots) > 1:
+        half = CAMERAS // 2
+        shown = len(roots) * max(1, half // len(roots))  # frames along the orbit
+        for number in range(half):
+            root = roots[number * shown // half % len(roots)]
+            steps[2 * number + 1] = register_writes("root", address=root)
+    return steps
 
 
 def encode_octree(words: NDArray[np.uint32], block_bits: int) -> NDArray[np.uint32]:

@@ -27,7 +27,7 @@ from ..register_writes import (
     tell_problems,
 )
 from ..registers import MATERIALS, REGISTERS
-from ..scene import Scene, check_memory, octree_end
+from ..scene import Scene, check_memory, octree_span
 from ..scene_memory import LoadedScene
 from ..view import FEATURES, refit
 from .boot_table import (
@@ -128,7 +128,7 @@ class SerialDevice:
         pointers = words >> 31 == 0
         words = np.where(pointers, words - np.uint32(root), words)
         try:
-            words = words[: octree_end(words, 0, depth)]
+            words = words[: octree_span(words, 0, depth)[1]]
             check_memory(words, depth)
         except Refused:
             return None

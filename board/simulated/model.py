@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from voxrt.board.device import Counters, Frame, Identity
 from voxrt.board.errors import DeviceError, FrameDropped, TooSlow
-from voxrt.board.scene import EMPTY_LEAF, octree_end
+from voxrt.board.scene import EMPTY_LEAF, octree_span
 from voxrt.board.view import FEATURES
 from voxrt.sim import _model
 
@@ -50,9 +50,10 @@ class _Memory:
         return self._words[address:end].copy()
 
     def octree(self) -> NDArray[np.uint32]:
-        """Return the selected octree, moved so that its root is word 0."""
-        words = self._words[self.root : octree_end(self._words, self.root, self.depth)]
-        return words if self.root == 0 else np.where(words >> 31 == 0, words - np.uint32(self.root), words)
+        """Return the selected octree, moved so that its root is word 0 and its first block follows."""
+        first, end = octree_span(self._words, self.root, self.depth)
+        words = np.concatenate([self._words[self.root : self.root + 1], self._words[first:end]])
+        return np.where(words >> 31 == 0, words - np.uint32(first - 1), words)
 
     def _check(self, address: int, count: int) -> int:
         if not 0 <= address <= address + count <= self.capacity:
@@ -87,6 +88,7 @@ class ModelDevice:
         self._threads = threads
         self._stopped = False
         self._stop = _model.Stop()  # of the present frame
+        self._models: dict[tuple[int, int], _model.Memory] = {}  # of the roots of the words that are there
         self._model = _model.Memory(self._memory.octree(), self._memory.depth)
 
     @property
@@ -111,6 +113,7 @@ class ModelDevice:
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
         """Write words from word `address` on."""
+        self._models.clear()
         self._memory.write(address, words)
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
@@ -124,10 +127,15 @@ class ModelDevice:
     def select_scene(self, root: int, depth: int) -> None:
         """Trace the octree at word `root` from the next frame on."""
         self._memory.root, self._memory.depth = root, depth
-        try:
-            self._model = _model.Memory(self._memory.octree(), depth)
-        except ValueError as error:
-            raise DeviceError(f"the model refuses the memory: {error}") from error
+        if (root, depth) not in self._models:
+            octree = self._memory.octree()
+            while self._models and len(octree) * (len(self._models) + 1) > self._memory.capacity:
+                del self._models[next(iter(self._models))]  # the one that was made first
+            try:
+                self._models[root, depth] = _model.Memory(octree, depth)
+            except ValueError as error:
+                raise DeviceError(f"the model refuses the memory: {error}") from error
+        self._model = self._models[root, depth]
 
     def frame(self, view: View, seconds: float = math.inf, drop: FrameDrop | None = None) -> Frame:
         """Render one frame of `view`, within `seconds`, unless it is dropped."""

@@ -13,6 +13,7 @@ import { focus, frame } from "./navigation.js";
 import { dismiss, hideAway, notice, showAway } from "./notices.js";
 import { Picture } from "./picture.js";
 import { makePilot } from "./pilot.js";
+import { Player } from "./player.js";
 import { Scenes } from "./scenes.js";
 import { add, scale } from "./vectors.js";
 import { Views } from "./views.js";
@@ -54,9 +55,11 @@ const app = {
     Object.assign(state().view, fields); // the next change starts from it
     frames.change(fields);
   },
+  waits: () => connection.sent.size > 0 || frames.changed,
   fixSize(size) { frames.resolution.fixed = size; },
   coarsen() { if (view) frames.coarsen(view); },
 };
+const player = new Player(app);
 const panels = { scenes: new Scenes(app), views: new Views(app), light: new Light(app), advanced: new Advanced(app) };
 
 connection.addEventListener("hello", ({ detail }) => {
@@ -91,7 +94,7 @@ function showControl({ controller, waiting, viewers }, mine) {
   $("take").disabled = waiting.includes(connection.hello.viewer);
   $("take").textContent = $("take").disabled ? "Control requested" : "Take control";
   $("release").hidden = !mine || waiting.length === 0;
-  for (const made of document.querySelectorAll("#panel :is(button, input, select), #empty button, #frame, #pad button"))
+  for (const made of document.querySelectorAll("#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button"))
     if (made.id !== "help") made.disabled = !mine;
 }
 
@@ -129,6 +132,7 @@ connection.addEventListener("state", ({ detail }) => {
   $("details").textContent = scene === 0 ? "" : `${2 ** detail.scene.depth}³ voxels · ${detail.scene.words.toLocaleString()} words`;
   canvas.style.backgroundColor = `rgb(${detail.view.background.join()})`;
   panels.scenes.mark(detail);
+  player.show(detail);
   panels.light.show(detail);
   panels.advanced.show(detail);
   panels.advanced.showCamera(view);
@@ -207,6 +211,7 @@ function animate() {
   if (!hasControl() || !view || scene === 0) return;
   gestures.step();
   flight.step();
+  player.step();
   const gliding = glide.step();
   if (gliding) {
     view = gliding;

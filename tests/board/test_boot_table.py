@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -107,3 +109,24 @@ def test_the_board_starts_frames_by_the_registers_of_the_core():
     )
     assert REGISTERS["status"][0] == 0x010
     assert REGISTERS["status"][1]["busy"] == (0, 1)
+
+
+@pytest.mark.parametrize("count", [3, 24, 64, 100])
+def test_an_animation_plays_along_the_orbit(scene, count):
+    roots = tuple(range(1, 1 + count))
+    cameras = [camera(i) for i in range(CAMERAS)]
+    table = boot_table(replace(scene, roots=roots), cameras, Lighting())
+    steps = [play(table, 2048 + 16 * number, 16) for number in range(CAMERAS)]
+    for number in range(0, CAMERAS, 2):
+        writes = camera_writes(cameras[number])
+        assert steps[number] == {
+            address + 4 * i: value & 0xFFFFFFFF for address, values in writes for i, value in enumerate(values)
+        }
+    shown = [step[REGISTERS["root"][0]] for step in steps[1::2]]
+    assert all(len(step) == 1 for step in steps[1::2])
+    times = [shown.count(root) for root in roots]
+    assert max(times) - min(times) <= 2
+    assert (shown[0], shown == sorted(shown)) == (1, count > 32)
+    if count <= 64:
+        assert set(shown) == set(roots)
+        assert shown[-1] == roots[-1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -43,6 +44,25 @@ def test_client(run):
             counters = (await client.request("counters"))["counters"]
             assert counters["viewers"] == 1
             assert counters["frames"] >= 2
+
+    run(check())
+
+
+def test_the_frames_of_an_animation(run):
+    async def check():
+        film = scene(material=5)
+        film.words[3] = 0xFFFFFF09  # octant 2 is of another material: a frame of its own
+        film = replace(film, roots=(0, 3), period=0.5)
+        async with served(loaded=film) as server, open_client(server.url) as client:
+            await client.take_control()
+            for frame, material in ((0, 5), (1, 9), (0, 5)):
+                request = await client.send("view", frame=frame)
+                packet = await frame_where(client, lambda packet, request=request: packet.request == request)
+                assert pixel(packet)[0] == material
+            with pytest.raises(Refused, match="no frame 2; those of scene are 0 to 1"):
+                await client.request("view", frame=2)
+            with pytest.raises(Refused, match="frame"):
+                await client.request("view", frame=-1)
 
     run(check())
 

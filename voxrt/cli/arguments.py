@@ -8,7 +8,7 @@ from decimal import Decimal
 from math import inf, isfinite
 from pathlib import Path
 from string import hexdigits
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args
 
 from cyclopts import Parameter
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 SIZE_LIMIT = 1 << 14
 BRIGHTEST = 16  # of a sky
+MOST_FRAMES = 4096  # of an animation
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 _TIMES = "xX\N{MULTIPLICATION SIGN}"
@@ -34,6 +35,9 @@ _UNITS = {
 _LENGTH = re.compile(
     rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
 )
+
+FrameChoice: TypeAlias = tuple[float, float, int] | Literal["files"]
+"""The frames of an animation: start, stop and count, or the assets themselves."""
 
 
 class UsageError(Exception):
@@ -214,6 +218,27 @@ def seconds(_type: type, tokens: Sequence[Token]) -> float:
     return number
 
 
+def frame_choice(_type: object, tokens: Sequence[Token]) -> FrameChoice:
+    """Read what the frames of an animation are: ``0:2:24``, or ``files``."""
+    said = tokens[0].value
+    if said == "files":
+        return "files"
+    parts = said.split(":")
+    try:
+        start, stop, count = float(parts[0]), float(parts[1]), int(parts[2], 10)
+    except (ValueError, IndexError):
+        parts = []
+    if len(parts) != 3 or not (isfinite(start) and isfinite(stop)):
+        raise ValueError(
+            f"{said!r} is not START:STOP:COUNT, such as 0:2:24 for 24 frames of two seconds, and not files"
+        )
+    if stop <= start:
+        raise ValueError(f"{said}: the stop must be after the start, {parts[0]}")
+    if not 1 <= count <= MOST_FRAMES:
+        raise ValueError(f"{said}: {count} frames are not 1 to {MOST_FRAMES}")
+    return start, stop, count
+
+
 def corners(_type: object, tokens: Sequence[Token]) -> tuple[float, ...]:
     """Read the lowest and the highest corner of a box, ``-1,0,-1,1,2.5,1``."""
     text = tokens[0].value
@@ -268,6 +293,15 @@ def pixel(_type: object, tokens: Sequence[Token]) -> tuple[int, int]:
     if len(parts) != 2 or not all(part.isdecimal() and len(part) < 8 for part in parts):
         raise ValueError(f"{tokens[0].value!r} is not COLUMN,ROW, such as 320,240")
     return int(parts[0]), int(parts[1])
+
+
+def picture_file(path: Path) -> Path:
+    """Refuse a file's name that is not that of a picture or of an animation."""
+    if path.suffix.lower() not in (".png", ".gif"):
+        raise UsageError(
+            f"{path}: pictures are PNG files, and animations GIF: give it a name that ends in .png or .gif"
+        )
+    return path
 
 
 def png(path: Path) -> Path:

@@ -74,7 +74,8 @@ def bitstream(
     blob = _read(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
-    cameras = orbit(blob.rom, SCREEN)
+    roots = (0,) if blob.animation is None else blob.animation.roots
+    cameras = orbit(blob.rom, SCREEN, roots=roots)
     with transfer_bar() as progress:
         beam = fit_beam(
             blob.rom,
@@ -84,7 +85,7 @@ def bitstream(
             clock_hz=design.clock_hz,
             progress=lambda done, total: progress("count cycles", done, total),
         )
-    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size), lighting, beam)
+    bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
     file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file)
     _write(file, bits, report, result)

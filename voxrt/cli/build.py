@@ -13,12 +13,14 @@ from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, P
 from voxrt.cli.arguments import (
     Backdrop,
     Direction,
+    FrameChoice,
     Pixels,
     Reporting,
     UsageError,
     board_name,
     choice,
     corners,
+    frame_choice,
     levels,
     metres,
     metres_per_unit,
@@ -30,7 +32,7 @@ from voxrt.cli.arguments import (
     words,
 )
 from voxrt.cli.arguments import background as read_colour
-from voxrt.cli.messages import picture_cost, summarize, tabulate, warn
+from voxrt.cli.messages import frames_row, picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
 from voxrt.cli.process_age import process_age
 from voxrt.cli.progress import build_bar
@@ -39,6 +41,12 @@ _NAMED = 32  # so many materials still read as a list
 
 _ASSET = (
     "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml)."
+)
+
+_FRAMES = (
+    "Build an animation: one memory whose roots are its frames. START:STOP:COUNT: so many frames, evenly from second "
+    "START up to but without STOP, so that a loop closes (glTF, USD). files: each ASSET is a frame, in the natural "
+    "order of their names; a folder stands for the assets in it."
 )
 
 
@@ -73,6 +81,10 @@ def build(
     ] = BuildOptions.unit,
     time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
+    frames: Annotated[
+        FrameChoice | None,
+        Parameter(converter=frame_choice, n_tokens=1, metavar="START:STOP:COUNT|files", help=_FRAMES),
+    ] = None,
     variants: Annotated[tuple[str, ...], _option("variants", "--variant", metavar="NAME", show_default=False)] = (),
     ignore: Annotated[tuple[str, ...], _option("ignore", metavar="NAME", show_default=False)] = (),
     bounds: Annotated[
@@ -116,7 +128,8 @@ def build(
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    _check_company(assets, output, preview)
+    told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
+    _check_company(assets, output, preview) if frames is None else _check_frames(assets, frames, told)
     options = BuildOptions(
         depth=depth,
         voxel_size=voxel_size,
@@ -150,10 +163,9 @@ def build(
     )
     reports = []
     waited = process_age()
-    for asset in assets:
+    for asset in assets if frames is None else assets[:1]:
         begun = perf_counter()
-        with build_bar() as bar:
-            result = voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+        result = _build(asset, assets, frames, output, options)
         seconds = {"start": waited, **result.seconds}
         seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
         waited = 0.0
@@ -172,6 +184,33 @@ def build(
         from voxrt.cli.results import print_json  # noqa: PLC0415 - as above
 
         print_json(reports[0] if len(reports) == 1 else reports)
+
+
+def _check_frames(assets: tuple[Path, ...], frames: FrameChoice, others: dict[str, object]) -> None:
+    """Refuse what does not go together with the frames of an animation."""
+    for name, value in others.items():
+        if value is not None:
+            raise UsageError(f"{name} is not for the frames of an animation; leave it out")
+    if frames != "files" and len(assets) > 1:
+        raise UsageError(
+            f"--frames with times is of one asset, and there are {len(assets)}; name one, or --frames files"
+        )
+
+
+def _build(
+    asset: Path, assets: tuple[Path, ...], frames: FrameChoice | None, output: Path, options: BuildOptions
+) -> voxrt.BuildResult:
+    """Build an asset, or the animation of one or all."""
+    with build_bar() as bar:
+        if frames is None:
+            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+        made: Path | list[Path] = asset
+        if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
+            from voxrt.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it
+
+            made = sorted(assets, key=natural_order)
+        times = None if frames == "files" else voxrt.frame_times(*frames)
+        return voxrt.build_animation(made, output, options, times=times, progress=bar.begin, estimated=bar.estimate)
 
 
 def _check_company(assets: tuple[Path, ...], output: Path, preview: str | None) -> None:
@@ -218,6 +257,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         ("grid", f"{1 << rom.octree.depth} voxels per side (depth {rom.octree.depth}){voxel}"),
         ("solid", f"{result.solid_voxels:,} voxels"),
         ("memory", f"{size:,} words, {size * 4 / 1024:,.1f} KiB"),
+        *([("frames", frames_row(result.animation, size))] if result.animation else []),
         *([("interior", _interior(result.interior, rom))] if result.interior else []),
         *([("baked", _baked(result.bake))] if result.bake else []),
         *([("budget", _budget(result.budget))] if result.budget else []),

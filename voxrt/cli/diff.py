@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Depth, Reporting, UsageError
+from voxrt.cli.arguments import Depth, Reporting, UsageError, whole
 from voxrt.cli.memory_results import DiffResult, RegionEntry
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
@@ -17,9 +17,11 @@ from voxrt.cli.source import Source, is_asset, read_source
 
 def diff(
     first: Annotated[Path, Parameter(metavar="FIRST")],
-    second: Annotated[Path, Parameter(metavar="SECOND")],
+    second: Annotated[Path | None, Parameter(metavar="SECOND", show_default=False)] = None,
     /,
     *,
+    frame: Annotated[int | None, Parameter(converter=whole, metavar="K")] = None,
+    to_frame: Annotated[int | None, Parameter(converter=whole, metavar="K")] = None,
     depth: Depth = None,
     reporting: Annotated[Reporting, Parameter(name="*", show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -30,18 +32,31 @@ def diff(
     first
         A memory in any format, or an asset, which is built first.
     second
-        Another, of the same depth.
+        Another, of the same depth; left out, two frames of FIRST are compared.
+    frame
+        Frame of FIRST, counted from 0, if that is an animation. [default: 0]
+    to_frame
+        Frame of SECOND, or without one, of FIRST. [default: 0, or the one after --frame]
     depth
         Levels of the octree, for an asset or for a memory without a manifest. An asset has those of the other file if
         that is a memory.
     reporting
         How results are printed.
     """
-    sources: dict[Path, Source] = {}
-    for path in sorted((first, second), key=is_asset):  # memories first: they know their depth
-        known = depth if depth is not None or not sources else next(iter(sources.values())).rom.octree.depth
-        sources[path] = read_source(path, known if is_asset(path) else depth)
-    roms = [sources[path].rom for path in (first, second)]
+    if second is None:
+        blob = read_source(first, depth).blob
+        if blob.animation is None:
+            raise UsageError(f"{first} is no animation: name a second memory to compare it with")
+        one = frame or 0
+        other = (one + 1) % len(blob.animation.frames) if to_frame is None else to_frame
+        roms, labels = [blob.frame(one), blob.frame(other)], (f"frame {one}", f"frame {other}")
+    else:
+        sources: dict[Path, Source] = {}
+        for path in sorted((first, second), key=is_asset):  # memories first: they know their depth
+            known = depth if depth is not None or not sources else next(iter(sources.values())).rom.octree.depth
+            sources[path] = read_source(path, known if is_asset(path) else depth)
+        roms = [sources[first].blob.frame(frame or 0), sources[second].blob.frame(to_frame or 0)]
+        labels = first.name, second.name
     depths = [rom.octree.depth for rom in roms]
     if depths[0] != depths[1]:
         raise UsageError(f"{first} has depth {depths[0]} and {second} {depths[1]}: only equal depths can be compared")
@@ -60,7 +75,7 @@ def diff(
         ("recoloured", f"{found.recoloured:,}"),
         *(("region", _described(region)) for region in regions),
     ]
-    summarize(f"{first.name} to {second.name}:", rows if found.voxels else rows[:1], answer=True)
+    summarize(f"{labels[0]} to {labels[1]}:", rows if found.voxels else rows[:1], answer=True)
 
 
 def _described(region: voxrt.Region) -> str:

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 from voxrt.cli.arguments import Depth, Reporting, choice
 from voxrt.cli.memory_results import info_result
-from voxrt.cli.messages import summarize, tabulate
+from voxrt.cli.messages import frames_row, summarize, tabulate
 from voxrt.cli.results import print_json
 from voxrt.cli.source import read_source
 
@@ -36,20 +36,23 @@ def info(
     reporting
         How results are printed.
     """
-    told = info_result(read_source(scene, depth, dialect).rom)
+    blob = read_source(scene, depth, dialect).blob
+    told = info_result(blob)
     if reporting.json:
         print_json(told)
         return
     side, world = 1 << told.depth, told.world
     size = f", {world.voxel_size:.4g} m each" if world else ""
-    unshared = 1 + 8 * told.unshared_blocks
+    without = f"; {1 + 8 * told.unshared_blocks:,} words without sharing"
     rows = [
         ("grid", f"{side} voxels per side (depth {told.depth}){size}"),
         ("solid", f"{told.voxels:,} voxels, {100 * told.voxels / side**3:.2f} %"),
-        ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB; {unshared:,} words without sharing"),
+        ("memory", f"{told.words:,} words, {told.words * 4 / 1024:,.1f} KiB" + ("" if blob.animation else without)),
     ]
-    if told.shared_words < told.words:
+    if told.shared_words < told.words and blob.animation is None:
         rows.append(("shared", f"{told.shared_words:,} words would do: equal blocks are stored more than once"))
+    if blob.animation is not None:
+        rows.append(("frames", frames_row(blob.animation, told.words)))
     if told.bounds:
         rows.insert(2, ("within", "{} up to {}".format(*told.bounds)))
     rows += [
@@ -69,3 +72,12 @@ def info(
         ],
         answer=True,
     )
+    if told.frames is not None:
+        tabulate(
+            ("frame", "root", "words", "time", "name"),
+            [
+                (str(row), str(one.root), f"{one.words:,}", "" if one.time is None else f"{one.time:.4g}", one.name)
+                for row, one in enumerate(told.frames)
+            ],
+            answer=True,
+        )

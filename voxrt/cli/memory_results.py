@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.depth_likeness import LikenessAtDepth
-    from voxrt.octree import Rom
+    from voxrt.export import Blob
+    from voxrt.octree import Animation
     from voxrt.sim import Camera, Likeness, RayPath
 
 _AXES = ("x", "y", "z", None)
@@ -45,6 +46,19 @@ class WorldEntry(msgspec.Struct, frozen=True):
     """Metres."""
 
 
+class FrameEntry(msgspec.Struct, frozen=True):
+    """A frame of an animation."""
+
+    root: int
+    """The word of the memory that is its root: what the register `root` takes."""
+    words: int
+    """Words of its octree alone."""
+    time: float | None
+    """Its second; null where frames are assets of their own."""
+    name: str
+    """The name of its asset; empty where all frames are of one."""
+
+
 class InfoResult(msgspec.Struct, frozen=True):
     """``voxrt info --json``: what :class:`voxrt.export.RomInfo` holds, and where the voxels stand."""
 
@@ -64,6 +78,8 @@ class InfoResult(msgspec.Struct, frozen=True):
     boards: list[BoardInfo]
     world: WorldEntry | None
     """Null for a memory that does not say."""
+    frames: list[FrameEntry] | None = None
+    """Those of an animation; null for a memory of one scene. All else is then of the first, but for the words."""
 
 
 class RegionEntry(msgspec.Struct, frozen=True):
@@ -190,8 +206,14 @@ def trace_result(camera: Camera, size: tuple[int, int], pixel: tuple[int, int], 
     )
 
 
-def info_result(rom: Rom) -> InfoResult:
+def frame_entries(animation: Animation) -> list[FrameEntry]:
+    """Tell programs the frames of an animation."""
+    return [FrameEntry(one.root, one.words, one.time, one.name) for one in animation.frames]
+
+
+def info_result(blob: Blob) -> InfoResult:
     """Tell programs what a memory holds."""
+    rom = blob.rom
     told = voxrt.rom_info(rom)
     return InfoResult(
         name=told.name,
@@ -206,6 +228,7 @@ def info_result(rom: Rom) -> InfoResult:
         materials=list(told.materials),
         boards=list(told.boards),
         world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
+        frames=None if blob.animation is None else frame_entries(blob.animation),
     )
 
 

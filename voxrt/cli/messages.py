@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.cli.arguments import Messages
+    from voxrt.octree import Animation
     from voxrt.sim import CacheCost, Frame
     from voxrt.voxelize import SceneWarning
 
@@ -99,6 +100,14 @@ def picture_cost(frame: Frame, engine: str) -> str:
     cycles = "" if cost.cycles is None else f"{cost.cycles / cost.rays:.2f} cycles per pixel, "
     words = "" if cost.words_read is None else f"{cost.words_read / cost.rays:.2f} words per ray, "
     return f"{width}x{height} by {engine}: {cycles}{words}{cost.seconds:.2f} s"
+
+
+def frames_row(animation: Animation, words: int) -> str:
+    """Return in one line how many frames a memory holds, and what it saves by sharing their blocks."""
+    count, alone = len(animation.frames), animation.words_alone
+    times = [frame.time for frame in animation.frames if frame.time is not None]
+    when = f" of {times[0]:g} to {times[-1]:g} s" if times else ""
+    return f"{count}{when}; {alone:,} words alone, of which {words / alone:.2f} when equal blocks are shared"
 
 
 def cache_cost(cost: CacheCost, pixels: int) -> str:

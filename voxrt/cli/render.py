@@ -4,19 +4,32 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import Dialect, Engine  # noqa: TC001 - cyclopts reads the signature
-from voxrt.cli.arguments import Backdrop, Depth, Pixels, Reporting, Sight, UsageError, choice, place, png, whole
+from voxrt.cli.arguments import (
+    Backdrop,
+    Depth,
+    Pixels,
+    Reporting,
+    Sight,
+    UsageError,
+    choice,
+    picture_file,
+    place,
+    whole,
+)
 from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import read_source
 
 if TYPE_CHECKING:
-    from voxrt import Lighting
+    from voxrt import Camera, Frame, Lighting
+    from voxrt.export import Blob
+    from voxrt.octree import Animation, Rom
     from voxrt.octree.camera import Shading
     from voxrt.sim import Dram
 
@@ -32,6 +45,7 @@ def render(
     config: Annotated[str | None, Parameter(metavar="NAME")] = None,
     size: Pixels = (640, 480),
     sight: Annotated[Sight, Parameter(name="*")] = Sight(),  # noqa: B008
+    frame: Annotated[int | None, Parameter(converter=whole, metavar="K")] = None,
     depth: Depth = None,
     dialect: Annotated[Dialect | None, Parameter(converter=choice)] = None,
     light: Annotated[
@@ -56,7 +70,7 @@ def render(
         A memory: .mem or another format. Its manifest, the .json beside it, states materials, depth and dialect. Or an
         asset, which is built first.
     output
-        The picture, a .png. The default is NAME.png in this folder.
+        The picture, a .png; or a .gif of all frames of an animation. The default is NAME.png in this folder.
     engine
         rtl: the verilated hardware, which counts its clock cycles. model: the exact C++ model, which is faster. Both
         give the same pixels.
@@ -67,6 +81,8 @@ def render(
         Width and height in pixels. [default: 640x480]
     sight
         The camera.
+    frame
+        Frame of an animation, counted from 0, for a .png. The camera is that of all frames. [default: 0]
     depth
         Levels of the octree, for an asset or for a memory without a manifest.
     dialect
@@ -100,9 +116,10 @@ def render(
     reporting
         How results are printed.
     """
-    file = png(Path(f"{scene.stem}.png") if output is None else output)
+    file = picture_file(Path(f"{scene.stem}.png") if output is None else output)
     source = read_source(scene, depth, dialect)
     blob, memory = source.blob, source.rom
+    roots = _roots(blob, file, frame, check=check, background=background)
     camera = source.camera(size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, shading)
     if config is None:
@@ -115,31 +132,16 @@ def render(
             )
             lighting = replace(lighting, on=False, bounces=0)
     dram = _dram(latency, interval, jitter)
-    wrong_pixels = None
-    if check:
-        checked = voxrt.check(
-            memory, camera, size, lighting=lighting, samples=samples, background=background, config=config, dram=dram
-        )
-        frame, wrong_pixels = getattr(checked, engine), checked.wrong_pixels
-    else:
-        frame = voxrt.render(
-            memory,
-            camera,
-            size=size,
-            engine=engine,
-            config=config,
-            lighting=lighting,
-            samples=samples,
-            background=background,
-            dram=dram,
-        )
-    voxrt.save_picture(frame.colour, file)
+    asked = _Asked(memory, camera, size, roots, engine, config, lighting, samples, background, dram)
+    shown, wrong_pixels = asked.check(file) if check else (asked.render(file, blob.animation), None)
     if reporting.json:
-        print_json(render_result(voxrt.Picture(frame, camera, engine), file, wrong_pixels))
+        print_json(render_result(voxrt.Picture(shown, camera, engine), file, wrong_pixels))
     else:
-        rows = [("picture", picture_cost(frame, engine))]
-        if frame.cost.cache is not None:
-            rows.append(("caches", cache_cost(frame.cost.cache, frame.cost.rays)))
+        rows = [("picture", picture_cost(shown, engine))]
+        if shown.cost.cache is not None:
+            rows.append(("caches", cache_cost(shown.cost.cache, shown.cost.rays)))
+        if len(roots) > 1:
+            rows.append(("frames", f"{len(roots)}; the cost is that of the first"))
         rows.append(("wrote", str(file)))
         if check:
             rows.append(("check", f"{wrong_pixels} pixels differ between the hardware and its model"))
@@ -148,6 +150,78 @@ def render(
         raise voxrt.SimulatorError(
             f"{scene}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+class _Asked(NamedTuple):
+    """Frames that are asked for."""
+
+    memory: Rom
+    camera: Camera
+    size: tuple[int, int]
+    roots: tuple[int, ...]
+    engine: Engine
+    config: str
+    lighting: Lighting
+    samples: int
+    background: tuple[int, int, int] | Literal["transparent"] | None
+    dram: Dram | None
+
+    def render(self, file: Path, animation: Animation | None) -> Frame:
+        """Render and save them, and return the first."""
+        frames = [
+            voxrt.render(
+                self.memory,
+                self.camera,
+                size=self.size,
+                engine=self.engine,
+                config=self.config,
+                lighting=self.lighting,
+                samples=self.samples,
+                background=self.background,
+                dram=self.dram,
+                root=root,
+            )
+            for root in self.roots
+        ]
+        if file.suffix.lower() == ".gif":
+            voxrt.save_animation([one.colour for one in frames], file, animation.period if animation else None)
+        else:
+            voxrt.save_picture(frames[0].colour, file)
+        return frames[0]
+
+    def check(self, file: Path) -> tuple[Frame, int]:
+        """Render the first with both engines and save it; return it and the number of pixels that differ."""
+        checked = voxrt.check(
+            self.memory,
+            self.camera,
+            self.size,
+            lighting=self.lighting,
+            samples=self.samples,
+            background=self.background,
+            config=self.config,
+            dram=self.dram,
+            root=self.roots[0],
+        )
+        frame: Frame = getattr(checked, self.engine)
+        voxrt.save_picture(frame.colour, file)
+        return frame, checked.wrong_pixels
+
+
+def _roots(blob: Blob, file: Path, frame: int | None, *, check: bool, background: object) -> tuple[int, ...]:
+    """Return the roots of the frames that are asked for."""
+    roots = (0,) if blob.animation is None else blob.animation.roots
+    if file.suffix.lower() != ".gif":
+        blob.frame(frame or 0)  # refuses one that is not there
+        return roots[frame or 0 : (frame or 0) + 1]
+    if blob.animation is None:
+        raise UsageError(f"{file}: a .gif is of an animation, and the memory has one frame; name a .png")
+    if frame is not None:
+        raise UsageError(f"{file}: a .gif has all frames; leave --frame out, or name a .png")
+    if check:
+        raise UsageError("--check is of one frame: name a .png, and the frame by --frame")
+    if background == "transparent":
+        raise UsageError(f"{file}: a .gif has no transparent background; name another one")
+    return roots
 
 
 def _dram(latency: int | None, interval: int | None, jitter: int | None) -> Dram | None:

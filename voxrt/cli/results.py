@@ -140,6 +140,15 @@ class BakedEntry(msgspec.Struct, frozen=True):
     """What it takes with it, before a budget."""
 
 
+class FramesEntry(msgspec.Struct, frozen=True):
+    """The frames of an animation."""
+
+    roots: list[int]
+    """The words of the memory that are their roots: what the register `root` takes."""
+    words_alone: int
+    """Words of all frames, each in a memory of its own."""
+
+
 class BuildReport(msgspec.Struct, frozen=True):
     """``voxrt build --json``."""
 
@@ -161,11 +170,13 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when they keep their materials."""
     baked: BakedEntry | None = None
     """Null when no light was baked."""
+    frames: FramesEntry | None = None
+    """Null when no animation was built."""
 
 
 def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
     """Return what a build made, for programs. `seconds`: its stages, with what came before and between them."""
-    rom = result.rom
+    rom, animation = result.rom, result.animation
     return BuildReport(
         outputs={kind: name_file(path) for kind, path in result.outputs.items()},
         depth=rom.octree.depth,
@@ -182,6 +193,7 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
         baked=None if result.bake is None else BakedEntry(**asdict(result.bake)),
+        frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
     )
 
 

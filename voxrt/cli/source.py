@@ -57,6 +57,8 @@ class Source:
             return authored_camera(self.scene.viewpoint, self.rom.grid, size)
         if self.blob.view is not None and sight == Sight():
             return refit(self.blob.view, PREVIEW_SIZE, size)
+        if self.blob.animation is not None and sight == Sight():
+            return voxrt.animation_camera(self.blob, size)
         return voxrt.aim_camera(
             self.rom, size, position=sight.position, look=sight.look, right=sight.right, up=sight.up
         )

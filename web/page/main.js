@@ -113,6 +113,7 @@ async function showMemory(built, first) {
   canvas.style.backgroundColor = `rgb(${look.background.join()})`;
   describe();
   frames.change();
+  $("stage").setAttribute("aria-busy", "true");
   $("stage").dataset.scene = `${built.name} ${built.depth}`;
 }
 let first_depth = 7; // of the memory that `view` belongs to

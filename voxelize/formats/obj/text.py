@@ -260,10 +260,11 @@ def _parsed(characters: NDArray[np.uint8], total: int, kind: type[_Number]) -> N
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # older NumPy warns when it stops early
         try:
-            values = np.fromstring(characters.tobytes(), dtype=kind, sep=" ")
+            # A word more at the end: older NumPy stops within a word that is no number, and keeps what it has of it.
+            values = np.fromstring(characters.tobytes() + b" 0", dtype=kind, sep=" ")
         except ValueError:
             return None
-    return values if len(values) == total else None
+    return values[:-1] if len(values) == total + 1 else None
 
 
 def _real(word: bytes) -> float:

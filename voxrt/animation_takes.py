@@ -1,0 +1,160 @@
+"""What the frames of an animation are made from: one asset at several times, or several assets."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import takewhile
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from voxrt.asset_source import as_text, asset_name
+from voxrt.from_trimesh import is_trimesh
+from voxrt.voxelize import AssetError, Scene
+from voxrt.voxelize.arguments import real, whole
+from voxrt.voxelize.assets import SUFFIXES
+
+if TYPE_CHECKING:
+    from voxrt.asset_source import Asset
+    from voxrt.build_options import BuildOptions
+
+_MOST_FRAMES = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """What one frame is made from.
+
+    Attributes
+    ----------
+    asset, options
+        What is loaded, and how: the options have the time.
+    name
+        Of the frame; empty where all frames are of one asset.
+    """
+
+    asset: Asset
+    options: BuildOptions
+    name: str = ""
+
+
+def takes_of(
+    assets: Asset | Sequence[Asset], options: BuildOptions, times: Sequence[float] | None
+) -> tuple[str, tuple[Take, ...]]:
+    """Return the name of an animation, and what its frames are made from.
+
+    Raises
+    ------
+    TypeError, ValueError
+        There is no frame, or times are given for several assets.
+    AssetError
+        A folder has no asset.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions
+    >>> name, takes = takes_of(["walk_1.glb", "walk_2.glb"], BuildOptions(), None)
+    >>> name, [take.name for take in takes]
+    ('walk', ['walk_1.glb', 'walk_2.glb'])
+    """
+    if times is not None:
+        if not _is_one(assets):
+            raise ValueError("times are of one asset; give several assets without times")
+        seconds = [real(f"times[{row}]", one) for row, one in enumerate(times)]
+        if not 1 <= len(seconds) <= _MOST_FRAMES:
+            raise ValueError(f"times must be 1 … {_MOST_FRAMES}, not {len(seconds)}")
+        asset = cast("Asset", assets)
+        return asset_name(asset), tuple(Take(asset, replace(options, time=one)) for one in seconds)
+    several: Sequence[Asset]
+    if isinstance(assets, str | os.PathLike):
+        name, several = asset_name(assets), frame_files(assets)
+    elif _is_one(assets):
+        raise ValueError("one asset is an animation only at several times; give times, or several assets")
+    else:
+        several = cast("Sequence[Asset]", assets)
+        name = _common_name([asset_name(one) for one in several])
+    frames = tuple(Take(one, options, _frame_name(one)) for one in several)
+    if not 1 <= len(frames) <= _MOST_FRAMES:
+        raise ValueError(f"an animation has 1 … {_MOST_FRAMES} frames, not {len(frames)}")
+    return name, frames
+
+
+def frame_times(start: float, stop: float, count: int) -> tuple[float, ...]:
+    """Return the times of frames from `start` up to but without `stop`, evenly, so that a loop closes.
+
+    Parameters
+    ----------
+    start, stop
+        Seconds.
+    count
+        How many, 1 … 4096.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `stop` is not after `start`, or a number is of another kind or out of range.
+
+    Examples
+    --------
+    >>> frame_times(0, 2, 4)
+    (0.0, 0.5, 1.0, 1.5)
+    """
+    start, stop = real("start", start), real("stop", stop)
+    count = whole("count", count, 1, _MOST_FRAMES)
+    if stop <= start:
+        raise ValueError(f"stop must be after start, and {stop:g} is not after {start:g}")
+    return tuple(start + (stop - start) * number / count for number in range(count))
+
+
+def frame_files(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Find the assets of a folder, in the natural order of their names: ``walk_2`` comes before ``walk_10``.
+
+    Raises
+    ------
+    AssetError
+        It is no folder, or has no asset.
+
+    Examples
+    --------
+    >>> [path.name for path in frame_files("examples")][:2]
+    ['courtyard.glb', 'dog.usda']
+    """
+    path = Path(folder)
+    if not path.is_dir():
+        raise AssetError(path, "is no folder", fix="name a folder of assets")
+    found = [one for one in path.iterdir() if one.suffix.lower() in SUFFIXES and one.is_file()]
+    if not found:
+        raise AssetError(path, "the folder has no asset", fix=f"put files there that end in {', '.join(SUFFIXES)}")
+    return tuple(sorted(found, key=natural_order))
+
+
+def natural_order(path: Path) -> tuple[list[tuple[str, int]], str]:
+    """Return the key by which names are sorted as people do: numbers in them by their value."""
+    parts = re.findall(r"(\D*)(\d*)", path.name.casefold())
+    return [(text, int(digits or 0)) for text, digits in parts], str(path)
+
+
+def _is_one(assets: object) -> bool:
+    """Tell one asset from a sequence of assets; vertices and faces in a tuple are one."""
+    if isinstance(assets, str | os.PathLike | Scene) or is_trimesh(assets):
+        return True
+    if not isinstance(assets, Sequence):
+        raise TypeError(f"assets must be an asset or a sequence of assets, not {type(assets).__name__}")
+    one = (str, os.PathLike, Scene, tuple)
+    return (
+        isinstance(assets, tuple)
+        and len(assets) == 2
+        and not any(isinstance(part, one) or is_trimesh(part) for part in assets)
+    )
+
+
+def _frame_name(asset: Asset) -> str:
+    return as_text(Path(asset).name) if isinstance(asset, str | os.PathLike) else asset_name(asset)
+
+
+def _common_name(names: list[str]) -> str:
+    """Return the beginning that names have in common, without a number at its end."""
+    same = takewhile(lambda letters: len(set(letters)) == 1, zip(*names, strict=False))
+    return "".join(letters[0] for letters in same).rstrip("0123456789-_. ") or "animation"

@@ -1,0 +1,103 @@
+"""What a build writes: words, manifest and preview, all of them or none."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+from voxrt import export
+from voxrt.export.atomic import write_together
+from voxrt.outputs import writing
+from voxrt.sim.image import encode_png
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from voxrt.build_options import BuildOptions
+    from voxrt.build_result import BuildResult
+    from voxrt.output_files import OutputFiles
+
+
+def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
+    """Return the options that the manifest names.
+
+    Examples
+    --------
+    >>> from voxrt import BuildOptions
+    >>> named_settings(BuildOptions(colours=8))["colours"]
+    8
+    """
+    settings: dict[str, str | int | float | bool | None] = {
+        "fill": options.fill,
+        "interior": options.interior,
+        "geometry": options.geometry,
+        "pow2": options.pow2,
+        "up": options.up,
+        "unit": options.unit,
+        "time": options.time,
+        "animation": options.animation,
+        "variants": ", ".join(options.variants) or None,
+        "colours": options.colours,
+        "bake": options.bake,
+    }
+    if options.ignore:
+        settings["ignore"] = ", ".join(options.ignore)
+    if options.bounds is not None:
+        settings["bounds"] = ", ".join(f"{value:g}" for value in options.bounds)
+    return settings
+
+
+def write_build(files: OutputFiles, result: BuildResult, options: BuildOptions) -> dict[str, Path]:
+    """Write the set of files of a build, all of it or nothing.
+
+    Parameters
+    ----------
+    files
+        Where they go.
+    result
+        What was made; its own `outputs` do not count.
+    options
+        How it was made.
+
+    Returns
+    -------
+    dict of Path
+        The files by kind: ``"mem"``, ``"manifest"``, ``"preview"``.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written. Old files stay as they were.
+    """
+    pictures: dict[Path, bytes | None] = {}
+    if files.preview is not None:
+        pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
+    outputs: dict[str, Path] = {}
+    with ExitStack() as stack:
+        for path in (*pictures, files.words):
+            if path is not None:
+                stack.enter_context(writing(path))
+        if files.words is None:
+            if result.preview is not None:
+                write_together(pictures)
+        else:
+            written = export.write_rom(
+                files.words.parent,
+                result.rom,
+                stem=files.words.stem,
+                suffix=files.words.suffix,
+                dialect=options.dialect,
+                objects=result.objects,
+                warnings=result.warnings,
+                seconds=result.seconds,
+                source=result.source,
+                view=result.view,
+                lighting=result.lighting,
+                baked=result.baked,
+                animation=result.animation,
+                beside=pictures,
+            )
+            outputs = {"mem": written.mem, "manifest": written.manifest}
+    if files.preview is not None and result.preview is not None:
+        outputs["preview"] = files.preview
+    return outputs
