@@ -10,7 +10,6 @@ from __future__ import annotations
 import errno
 import os
 import re
-import secrets
 import stat
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -24,13 +23,13 @@ except ImportError:  # no POSIX system: files are replaced all the same, and nob
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 _STEM = 60
 """Characters of the target's name in that of the temporary file: whatever these are, the name is not too long."""
 
 
-def write_atomically(path: Path, data: bytes) -> None:
+def write_atomically(path: Path, data: bytes | Iterable[bytes]) -> None:
     """Write `data` to `path` so that an interruption at any moment leaves the old file or the new.
 
     A file that is replaced keeps its mode. A link is followed. What is no regular file, such as a pipe, is written to
@@ -44,10 +43,10 @@ def write_atomically(path: Path, data: bytes) -> None:
     write_together({path: data})
 
 
-def write_together(files: Mapping[Path, bytes | None]) -> None:
+def write_together(files: Mapping[Path, bytes | Iterable[bytes] | None]) -> None:
     """Write files that belong together: an error or an interruption leaves all of the old ones or all of the new.
 
-    None in place of the bytes removes a file that does not belong to the new set.
+    The bytes of a file may come in pieces. None in place of them removes a file that does not belong to the new set.
 
     They change places in their order. Sets whose first files stand in one folder change one after another, whoever
     writes them. A process that is killed in the microseconds between two renamings leaves the rest of the set under
@@ -69,7 +68,7 @@ def write_together(files: Mapping[Path, bytes | None]) -> None:
                 staged[path] = None
             elif _is_device(path):
                 with path.open("wb") as device:
-                    device.write(data)
+                    device.writelines(_pieces(data))
             else:
                 staged[path] = _stage(path, data, stack)
         _rename(staged)
@@ -138,7 +137,11 @@ def _is_device(path: Path) -> bool:
         return False
 
 
-def _stage(path: Path, data: bytes, stack: ExitStack) -> Path:
+def _pieces(data: bytes | Iterable[bytes]) -> Iterable[bytes]:
+    return (data,) if isinstance(data, bytes) else data
+
+
+def _stage(path: Path, data: bytes | Iterable[bytes], stack: ExitStack) -> Path:
     """Write to a new file beside the target; `stack` removes and closes it."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -147,7 +150,7 @@ def _stage(path: Path, data: bytes, stack: ExitStack) -> Path:
     stack.callback(temporary.unlink, missing_ok=True)
     with suppress(FileNotFoundError):
         os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
-    file.write(data)
+    file.writelines(_pieces(data))
     file.flush()
     os.fsync(file.fileno())
     return temporary
@@ -165,7 +168,7 @@ def _new_file(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _temporary(path: Path) -> Path:
-    return path.with_name(f".{path.name[:_STEM]}.{secrets.token_hex(4)}.tmp")
+    return path.with_name(f".{path.name[:_STEM]}.{os.urandom(4).hex()}.tmp")
 
 
 def _rename(staged: Mapping[Path, Path | None]) -> None:

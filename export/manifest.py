@@ -6,7 +6,6 @@ a schema version that it does not know.
 
 from __future__ import annotations
 
-import zlib
 from pathlib import Path  # noqa: TC003 - msgspec resolves the annotations of this module
 from typing import TYPE_CHECKING
 
@@ -127,7 +126,7 @@ class Manifest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def make_manifest(
     rom: Rom,
-    mem: bytes,
+    crc32: int,
     dialect: Dialect,
     *,
     objects: tuple[ObjectReport, ...] = (),
@@ -139,7 +138,7 @@ def make_manifest(
     baked: BakedLight | None = None,
     animation: Animation | None = None,
 ) -> Manifest:
-    """Return the manifest of a memory and of the bytes of its ``.mem`` file."""
+    """Return the manifest of a memory whose ``.mem`` file has the CRC-32 `crc32`."""
     voxels = census(rom.octree).voxels
     return Manifest(
         schema=SCHEMA_VERSION,
@@ -148,7 +147,7 @@ def make_manifest(
         blocks=rom.octree.blocks,
         depth=rom.octree.depth,
         dialect=dialect,
-        crc32=f"{zlib.crc32(mem):08X}",
+        crc32=f"{crc32:08X}",
         voxels=sum(count for material, count in voxels.items() if material != 0),
         materials=tuple(
             MaterialEntry(i, entry.name, entry.colour, entry.mirror, entry.authored, voxels.get(i, 0))

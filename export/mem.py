@@ -14,18 +14,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
-from voxrt.export.word_file import WordFile, mem_bytes, read_bytes
-from voxrt.octree import RomError
+from voxrt.export.word_file import WordFile, mem_pieces, read_bytes
+from voxrt.octree import RomError, _native
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-_DIGITS = np.frombuffer(b"0123456789ABCDEF", dtype=np.uint8)
 _COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _WORD = re.compile(rb"[0-9A-Fa-f_]+")
-_LINE_LENGTH = 9
 
 
 def write_mem(path: Path, words: NDArray[np.uint32]) -> None:
@@ -49,7 +47,7 @@ def write_mem(path: Path, words: NDArray[np.uint32]) -> None:
     >>> from voxrt.octree import from_points
     >>> write_mem(Path("dot.mem"), from_points([[1, 2, 3]], [7], depth=2).words)
     """
-    write_atomically(path, mem_bytes(words))
+    write_atomically(path, mem_pieces(words))
 
 
 def read_mem(path: Path) -> WordFile:
@@ -70,25 +68,10 @@ def read_mem(path: Path) -> WordFile:
     """
     data = read_bytes(path)
     crc32 = zlib.crc32(data)
-    words = _parse_plain(data)
+    words = _native.read_mem_text(data)  # None where the file is not laid out as written here
     if words is not None:
         return WordFile(words, np.arange(1, len(words) + 1), crc32)
     return WordFile(*_parse(path, data), crc32)
-
-
-def _parse_plain(data: bytes) -> NDArray[np.uint32] | None:
-    """Read the layout that :func:`mem_bytes` writes; None where the file has any other."""
-    if len(data) % _LINE_LENGTH:
-        return None
-    text = np.frombuffer(data, dtype=np.uint8).reshape(-1, _LINE_LENGTH)
-    values = np.full(256, 255, dtype=np.uint8)
-    values[_DIGITS] = np.arange(16)
-    if (text[:, 8] != ord("\n")).any() or (values[text[:, :8]] == 255).any():
-        return None
-    words = np.zeros(len(text), dtype=np.uint32)
-    for digit in range(8):
-        words = words << np.uint32(4) | values[text[:, digit]]
-    return words
 
 
 def _parse(path: Path, data: bytes) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:

@@ -21,14 +21,17 @@ from voxrt.export.mem import read_mem
 from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import raw_bytes, read_raw
-from voxrt.export.word_file import mem_bytes, word_file
+from voxrt.export.word_file import mem_crc32, mem_pieces
 from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source
@@ -39,7 +42,12 @@ if TYPE_CHECKING:
 
 
 _READERS = {".mem": read_mem, ".coe": read_coe, ".mif": read_mif, ".bin": read_raw}
-_WRITERS = {".mem": mem_bytes, ".coe": coe_bytes, ".mif": mif_bytes, ".bin": raw_bytes}
+_WRITERS: dict[str, Callable[[NDArray[np.uint32]], bytes | Iterable[bytes]]] = {
+    ".mem": mem_pieces,
+    ".coe": coe_bytes,
+    ".mif": mif_bytes,
+    ".bin": raw_bytes,
+}
 
 WORD_SUFFIXES = tuple(_WRITERS)
 """The files of words that are read and written."""
@@ -126,7 +134,7 @@ def write_rom(
     words = encode(rom.octree.words, dialect)
     manifest = make_manifest(
         rom,
-        mem_bytes(words),
+        mem_crc32(words),
         as_dialect(dialect),
         objects=objects,
         warnings=warnings,
@@ -140,19 +148,17 @@ def write_rom(
     files = RomFiles(folder / f"{stem}{suffix}", folder / f"{stem}.json")
     with new_folder(folder):
         _refuse_foreign(files.manifest)
-        write_together(
-            {
-                files.mem: _WRITERS[suffix.lower()](words),
-                files.manifest: manifest_bytes(manifest),
-                **(beside or {}),
-            }
-        )
+        contents: dict[Path, bytes | Iterable[bytes] | None] = {
+            files.mem: _WRITERS[suffix.lower()](words),
+            files.manifest: manifest_bytes(manifest),
+        }
+        write_together(contents | dict(beside or {}))
     return files
 
 
 def words_crc32(rom: Rom, dialect: str) -> str:
     """Return the CRC-32 by which a manifest knows the words of a memory in a dialect."""
-    return f"{word_file(encode(rom.octree.words, dialect), None).crc32:08X}"
+    return f"{mem_crc32(encode(rom.octree.words, dialect)):08X}"
 
 
 def other_words(path: Path, manifest: Manifest) -> Path | None:

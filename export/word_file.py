@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from voxrt.octree import RomError
+from voxrt.octree import RomError, _native
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
+    import numpy as np
     from numpy.typing import NDArray
 
-_DIGITS = np.frombuffer(b"0123456789ABCDEF", dtype=np.uint8)
+_PIECE = 1 << 20
+"""Words that are formatted at a time."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -40,16 +40,18 @@ class WordFile:
 
 def word_file(words: NDArray[np.uint32], lines: NDArray[np.int64] | None) -> WordFile:
     """Make the value for words from a file that is no ``.mem``."""
-    return WordFile(words, lines, zlib.crc32(mem_bytes(words)))
+    return WordFile(words, lines, mem_crc32(words))
 
 
-def mem_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Format words (uint32, shape (N,)) as the bytes of a ``.mem`` file."""
-    text = np.empty((len(words), 9), dtype=np.uint8)
-    for digit in range(8):
-        text[:, digit] = _DIGITS[(words >> np.uint32(28 - 4 * digit)) & np.uint32(15)]
-    text[:, 8] = ord("\n")
-    return text.tobytes()
+def mem_crc32(words: NDArray[np.uint32]) -> int:
+    """Return the CRC-32 of the ``.mem`` file that would hold `words` (uint32, shape (N,))."""
+    return _native.mem_text_crc32(words)
+
+
+def mem_pieces(words: NDArray[np.uint32]) -> Iterator[bytes]:
+    """Format words (uint32, shape (N,)) as the bytes of a ``.mem`` file, piece by piece."""
+    for first in range(0, len(words), _PIECE):
+        yield _native.mem_text(words[first : first + _PIECE])
 
 
 def read_bytes(path: Path) -> bytes:

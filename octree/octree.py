@@ -18,7 +18,7 @@ MAX_DEPTH = 16
 """The most levels below the root: 65,536 voxels per side."""
 
 
-@dataclass(frozen=True, eq=False, slots=True, repr=False)
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True, repr=False)
 class Octree:
     """A valid octree memory. :func:`build`, :func:`from_dense`, :func:`from_points` and :func:`decode` make one.
 

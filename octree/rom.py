@@ -9,6 +9,8 @@ from voxrt.octree.statistics import census
 from voxrt.voxelize import Grid, Material
 from voxrt.voxelize.arguments import instance, text
 
+_MOST_MATERIALS = 256
+
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Rom:
@@ -62,12 +64,7 @@ class Rom:
             raise TypeError("materials must be a sequence of Material, not one Material")
         materials = tuple(instance(f"materials[{row}]", one, Material) for row, one in enumerate(self.materials))
         object.__setattr__(self, "materials", materials)
-        if not 1 <= len(materials) <= 256:
+        if not 1 <= len(materials) <= _MOST_MATERIALS:
             raise ValueError(f"materials must have 1 to 256 entries, entry 0 for empty space, not {len(materials)}")
-        if _highest_word(self.octree) >= len(materials) and (used := max(census(self.octree).voxels)) >= len(materials):
+        if len(materials) < _MOST_MATERIALS and (used := max(census(self.octree).voxels)) >= len(materials):
             raise ValueError(f"materials end at id {len(materials) - 1}, and the octree uses {used}")
-
-
-def _highest_word(octree: Octree) -> int:
-    """Return the highest material id of all words, those that no pointer leads to included."""
-    return int((octree.words[octree.words >> 31 == 1] & 0xFF).max(initial=0))

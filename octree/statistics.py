@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from voxrt.voxelize.arguments import instance
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+_COUNTED: WeakKeyDictionary[Octree, Census] = WeakKeyDictionary()  # an octree never changes
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,6 +47,8 @@ class Census:
 def census(octree: Octree) -> Census:
     """Count the leaves of an octree. The cost grows with its words, not with its world.
 
+    An octree is counted once: its census is kept as long as the octree is.
+
     Examples
     --------
     >>> from voxrt.octree import from_points
@@ -50,5 +56,8 @@ def census(octree: Octree) -> Census:
     >>> counts.voxels, counts.solid_voxels, counts.leaves[0, 7].item()
     ({0: 63, 7: 1}, 1, 1)
     """
-    instance("octree", octree, Octree)
-    return Census(_native.leaf_counts(octree.words, octree.depth))
+    if (known := _COUNTED.get(instance("octree", octree, Octree))) is None:
+        counts = _native.leaf_counts(octree.words, octree.depth)
+        counts.flags.writeable = False
+        known = _COUNTED[octree] = Census(counts)
+    return known

@@ -1,28 +1,10 @@
 """The verilated ray tracer and the exact model: cameras, rendering, comparison."""
 
+from importlib import import_module
 from pkgutil import extend_path
+from typing import TYPE_CHECKING
 
 __path__ = extend_path(__path__, __name__)
-
-from voxrt.octree.camera import (
-    Camera,
-    Lighting,
-    camera_from_registers,
-    frame_points,
-    look_at,
-    pixel_directions,
-)
-from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
-from voxrt.sim.external_memory import CacheCost, Dram
-from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
-from voxrt.sim.framing import frame_animation, frame_scene, outline, outline_frames
-from voxrt.sim.image import write_png
-from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
-from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
-from voxrt.sim.ray_query import RayHits, cast_rays
-from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
-from voxrt.sim.samples import Background
-from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 __all__ = [
     "FACE_NONE",
@@ -63,3 +45,58 @@ __all__ = [
     "structural_similarity",
     "write_png",
 ]
+
+# Imported when first used: a build without a preview renders nothing.
+_HOMES = {
+    "voxrt.octree.camera": (
+        "Camera",
+        "Lighting",
+        "camera_from_registers",
+        "frame_points",
+        "look_at",
+        "pixel_directions",
+    ),
+    "voxrt.sim.errors": ("NoSuchConfigurationError", "SimulatorError"),
+    "voxrt.sim.external_memory": ("CacheCost", "Dram"),
+    "voxrt.sim.frame": ("FACE_NONE", "Frame", "RenderCost"),
+    "voxrt.sim.framing": ("frame_animation", "frame_scene", "outline", "outline_frames"),
+    "voxrt.sim.image": ("write_png",),
+    "voxrt.sim.likeness": ("Comparison", "Likeness", "View", "compare", "comparison_sheet"),
+    "voxrt.sim.path": ("RayPath", "Reading", "follow_pixel", "follow_ray"),
+    "voxrt.sim.ray_query": ("RayHits", "cast_rays"),
+    "voxrt.sim.rendering": ("Engine", "EngineCheck", "check", "render", "shader_features"),
+    "voxrt.sim.samples": ("Background",),
+    "voxrt.sim.similarity": ("peak_signal_to_noise", "structural_similarity"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+if TYPE_CHECKING:  # type checkers see these names and no others
+    from voxrt.octree.camera import (
+        Camera,
+        Lighting,
+        camera_from_registers,
+        frame_points,
+        look_at,
+        pixel_directions,
+    )
+    from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+    from voxrt.sim.external_memory import CacheCost, Dram
+    from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
+    from voxrt.sim.framing import frame_animation, frame_scene, outline, outline_frames
+    from voxrt.sim.image import write_png
+    from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
+    from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
+    from voxrt.sim.ray_query import RayHits, cast_rays
+    from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
+    from voxrt.sim.samples import Background
+    from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
+else:
+
+    def __getattr__(name: str) -> object:
+        if name in _HOME:
+            return getattr(import_module(_HOME[name]), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -6,8 +6,6 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PIL import Image
-
 from voxrt.export.atomic import write_atomically
 
 if TYPE_CHECKING:
@@ -19,6 +17,8 @@ if TYPE_CHECKING:
 
 def encode_png(colour: NDArray[np.uint8]) -> bytes:
     """Return a picture, as :func:`write_png` takes it, as the bytes of a PNG file. Equal pixels give equal bytes."""
+    from PIL import Image  # noqa: PLC0415 - slow to import, and pictures are rare
+
     encoded = io.BytesIO()
     Image.fromarray(colour).save(encoded, format="PNG")
     return encoded.getvalue()

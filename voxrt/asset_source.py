@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from voxrt import voxelize
-from voxrt.from_arrays import mesh_scene
-from voxrt.from_trimesh import is_trimesh, trimesh_scene
 from voxrt.voxelize import AssetError, Scene, SceneWarning
 
 if TYPE_CHECKING:
@@ -36,6 +34,8 @@ def asset_name(asset: Asset) -> str:
         return as_text(Path(asset).stem)
     if isinstance(asset, Scene):
         return as_text(asset.name)
+    from voxrt.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
+
     if is_trimesh(asset):
         return as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or "mesh")).stem)
     return "mesh"
@@ -80,6 +80,9 @@ def load_asset(asset: Asset, options: BuildOptions) -> Scene:
             variants=tuple(options.variants),
             allow_outside=options.allow_outside,
         )
+    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - as above
+    from voxrt.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
+
     unused = {"time": options.time, "animation": options.animation, "variants": options.variants}
     if isinstance(asset, Scene):
         scene, unused = asset, unused | {"up": options.up, "unit": options.unit}

@@ -242,14 +242,18 @@ def merge_options(function: str, options: BuildOptions | None, keywords: BuildKe
 
 def _checked(given: BuildOptions) -> dict[str, object]:
     """Return the options by name, converted exactly; TypeError or ValueError if that is not possible."""
-    from voxrt.octree import BOARDS, MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.octree import MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
     from voxrt.voxelize.arguments import choice, flag, real, text, vector, whole  # noqa: PLC0415
 
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
 
     def budget(name: str, value: object) -> int | str:
-        return choice(name, value, tuple(BOARDS)) if isinstance(value, str) else whole(name, value, 1, 1 << 31)
+        if not isinstance(value, str):
+            return whole(name, value, 1, 1 << 31)
+        from voxrt.octree import BOARDS  # noqa: PLC0415 - slow to import
+
+        return choice(name, value, tuple(BOARDS))
 
     checks: dict[str, Callable[[str, Any], object]] = {
         "depth": lambda name, value: whole(name, value, 1, MAX_DEPTH),

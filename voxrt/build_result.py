@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING
 
 from voxrt.export import BakedLight, Blob, Provenance
-from voxrt.octree import census, to_dense, to_points
+from voxrt.octree import census
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -121,11 +121,15 @@ class BuildResult:
     @property
     def coordinates(self) -> NDArray[np.int32]:
         """The solid voxels: int32, shape (N, 3), grid frame, in Morton order. :func:`voxrt.octree.to_points`."""
+        from voxrt.octree import to_points  # noqa: PLC0415 - few need it, and every build would wait for it
+
         return to_points(self.rom.octree)[0]
 
     @property
     def material_ids(self) -> NDArray[np.uint8]:
         """The materials of `coordinates`: uint8, shape (N,), rows of ``rom.materials``."""
+        from voxrt.octree import to_points  # noqa: PLC0415 - as above
+
         return to_points(self.rom.octree)[1]
 
     def to_dense(self) -> NDArray[np.uint8]:
@@ -136,4 +140,6 @@ class BuildResult:
         DoesNotFitError
             The array would take more than 2 GiB; :func:`voxrt.octree.to_dense` returns a part of it.
         """
+        from voxrt.octree import to_dense  # noqa: PLC0415 - as above
+
         return to_dense(self.rom.octree)

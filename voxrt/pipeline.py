@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
-from voxrt.baking import bake, fit_baked
 from voxrt.build_grid import build_grid
 from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
 from voxrt.build_view import authored_view, preview
 from voxrt.build_writing import named_settings, write_build
 from voxrt.estimate import estimate_build
-from voxrt.fitting import find_material, fit_budget, fit_interior
 from voxrt.from_arrays import mesh_scene
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import output_files, refuse_other_asset
@@ -240,6 +238,11 @@ def _finished(
     loaded, scene = scenes
     light, baked, interior_fit, budget_fit = None, None, None, None
     interior, budget = options.interior, options.budget
+    if interior == "keep" and budget is None and not options.bake:
+        return rom, None, None, None
+    from voxrt.baking import bake, fit_baked  # noqa: PLC0415 - slow to import, and few builds do this
+    from voxrt.fitting import find_material, fit_budget, fit_interior  # noqa: PLC0415
+
     if interior not in ("keep", "any"):
         with clock.stage("interior"):
             material = find_material(asset_label(asset), rom.materials, interior)

@@ -8,6 +8,7 @@
 #include "hidden.h"
 #include "interior.h"
 #include "leaves.h"
+#include "mem_text.h"
 #include "query.h"
 #include "regions.h"
 #include "surface.h"
@@ -262,6 +263,31 @@ nb::object bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidd
     return words_to_numpy(run([&] { return share_hidden(memory, hidden_memory); }));
 }
 
+nb::bytes bind_mem_text(const Vector<Word>& words, int threads) {
+    const std::size_t count = words.shape(0);
+    PyObject* text = PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(kMemLine * count));
+    if (text == nullptr)
+        throw nb::python_error();
+    const nb::bytes result = nb::steal<nb::bytes>(text);
+    run([&] { write_mem_text(words.data(), count, PyBytes_AS_STRING(text), threads); });
+    return result;
+}
+
+std::uint32_t bind_mem_text_crc32(const Vector<Word>& words, std::uint32_t before, int threads) {
+    return run([&] { return mem_text_crc32(words.data(), words.shape(0), before, threads); });
+}
+
+// None where the text is not that of mem_text().
+nb::object bind_read_mem_text(const nb::bytes& text) {
+    if (text.size() % kMemLine != 0)
+        return nb::none();
+    std::vector<Word> words(text.size() / kMemLine);
+    if (!run([&] { return read_mem_text(text.c_str(), words.size(), words.data(), 0); }))
+        return nb::none();
+    const std::size_t count = words.size();
+    return to_numpy(std::move(words), {count});
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -322,6 +348,9 @@ NB_MODULE(_native, m) {
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
     m.def("fit_bricks", &bind_fit_bricks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
           "same_axis"_a.noconvert(), "other_axis"_a.noconvert(), "occlusion"_a.noconvert(), "limit"_a);
+    m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);
+    m.def("mem_text_crc32", &bind_mem_text_crc32, "words"_a.noconvert(), "before"_a = 0, "threads"_a = 0);
+    m.def("read_mem_text", &bind_read_mem_text, "text"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);

@@ -65,7 +65,9 @@ def test_json_is_all_that_stdout_gets_and_keeps_its_promise(process, folder):
         assert result[key] == manifest[key], key
     assert report.words == 1 + 8 * report.blocks == len((folder / "out/house.mem").read_text().split())
     assert [material.name for material in report.materials[1:]] == ["timber", "glass", "brick", "plaster", "tiles"]
-    assert list(report.seconds) == ["load", "fit", "colour", "voxelize", "octree", "write", "preview"]
+    assert list(report.seconds) == [
+        "start", "load", "fit", "colour", "voxelize", "octree", "write", "preview", "rest",
+    ]  # fmt: skip
     assert report.render is not None
     assert report.render.rays == 640 * 480
     assert report.render.cycles is None

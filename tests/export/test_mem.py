@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from voxrt import export
-from voxrt.octree import RomError
+from voxrt.export.word_file import mem_crc32, mem_pieces
+from voxrt.octree import RomError, _native
 
 words32 = st.lists(st.integers(0, 2**32 - 1), max_size=40)
 
@@ -91,3 +92,27 @@ def test_the_published_memories_keep_their_last_word(name, count, last):
     assert len(found.words) == count
     assert found.words[-1] == last
     assert found.lines[-1] == count
+
+
+@given(st.lists(st.integers(0, 2**32 - 1), max_size=300), st.integers(0, 300))
+def test_the_text_and_its_crc_are_those_of_python(values, cut):
+    words = np.array(values, np.uint32)
+    text = b"".join(b"%08X\n" % value for value in values)
+    assert b"".join(mem_pieces(words)) == text
+    assert mem_crc32(words) == zlib.crc32(text)
+    before = zlib.crc32(text[: 9 * cut])
+    assert _native.mem_text_crc32(words[cut:], before) == zlib.crc32(text)
+    assert _native.read_mem_text(text).tolist() == values
+
+
+def test_long_texts_are_cut_into_pieces_for_the_threads():
+    words = np.random.default_rng(0).integers(0, 1 << 32, (1 << 20) + 77, np.uint32)
+    text = b"".join(mem_pieces(words))
+    assert len(text) == 9 * len(words)
+    assert zlib.crc32(text) == mem_crc32(words)
+    assert (_native.read_mem_text(text) == words).all()
+
+
+@pytest.mark.parametrize("text", [b"0000000g\n", b"0000000a\n", b"00000000 ", b"0000000\n", b"-0000000\n"])
+def test_other_layouts_are_left_to_the_reader_of_all(text):
+    assert _native.read_mem_text(text) is None

@@ -88,11 +88,11 @@ def _unpacked(packed: NDArray[np.uint32]) -> NDArray[np.uint8]:
 
 def _grouped(distinct: NDArray[np.uint8], weights: NDArray[np.float64], count: int) -> NDArray[np.int64]:
     """Return the group of each of the `distinct` colours: at most `count` groups, numbered from 0 without gaps."""
+    from PIL import Image  # noqa: PLC0415 - slow to import, and few assets have so many colours
+
     share = weights / max(float(weights.sum()), np.finfo(np.float64).tiny)
     repeats = np.maximum(1, np.round(share * _PIXELS)).astype(np.int64)
     pixels = np.repeat(distinct, repeats, axis=0)[None]
-    from PIL import Image  # noqa: PLC0415 - most scenes have fewer colours, and it is slow to import
-
     image = Image.fromarray(np.ascontiguousarray(pixels))
     reduced = image.quantize(count, Image.Quantize.MAXCOVERAGE, kmeans=_UNTIL_CHANGES, dither=Image.Dither.NONE)
     first = np.cumsum(repeats) - repeats

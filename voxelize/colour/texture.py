@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -19,7 +20,6 @@ WRAPS: tuple[Wrap, ...] = ("repeat", "mirror", "clamp")
 
 _STRIP = 1 << 22  # pixels
 _LINEAR = LINEAR_OF_SRGB8.astype(np.float32)
-_SRGB = srgb_from_linear(np.arange(1 << 16) / 65535)
 _SHARE = (np.arange(256) / 255).astype(np.float32)
 
 
@@ -103,17 +103,23 @@ def halved(texture: Texture) -> Texture:
     return Texture(np.concatenate(strips), texture.wrap)
 
 
+@cache
+def _srgb_of_16_bits() -> NDArray[np.uint8]:
+    return srgb_from_linear(np.arange(1 << 16) / 65535)
+
+
 def _halved(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     mixed = np.full((len(pixels) // 2, pixels.shape[1] // 2, 4), 255, np.uint8)
     opaque = bool((pixels[:, :, 3] == 255).all())
     share = _SHARE[pixels[:, :, 3]] if not opaque else np.ones((2, 2), np.float32)
     alpha = _mean(share)
+    srgb = _srgb_of_16_bits()
     for channel in range(3):
         linear = _LINEAR[pixels[:, :, channel]]
         mean = _mean(linear)
         if not opaque:
             np.divide(_mean(linear * share), alpha, out=mean, where=alpha > 0)
-        mixed[:, :, channel] = _SRGB[(mean * 65535 + np.float32(0.5)).astype(np.uint16)]
+        mixed[:, :, channel] = srgb[(mean * 65535 + np.float32(0.5)).astype(np.uint16)]
     if not opaque:
         mixed[:, :, 3] = np.floor(alpha * 255 + 0.5)
     return mixed

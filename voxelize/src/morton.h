@@ -9,12 +9,18 @@ namespace voxrt::voxelize {
 /// Moves bit k of the low 16 bits to bit 3k.
 constexpr std::uint64_t spread_bits(std::uint64_t v) {
     v &= 0xFFFF;
-    v = (v | v << 16) & 0x0000'00FF'0000'00FF;
-    v = (v | v << 8) & 0x0000'F00F'0000'F00F;
-    v = (v | v << 4) & 0x000C'30C3'000C'30C3;
+    v = (v | v << 16) & 0x0000'0000'FF00'00FF;
+    v = (v | v << 8) & 0x0000'00F0'0F00'F00F;
+    v = (v | v << 4) & 0x0000'0C30'C30C'30C3;
     v = (v | v << 2) & 0x0000'2492'4924'9249;
     return v;
 }
+static_assert([] {
+    for (int k = 0; k < 16; ++k)
+        if (spread_bits(std::uint64_t{1} << k) != std::uint64_t{1} << 3 * k)
+            return false;
+    return spread_bits(0xFFFF) == 0x0000'2492'4924'9249;
+}());
 
 /// The code of a position of 16 bits per axis.
 constexpr std::uint64_t morton(std::uint32_t x, std::uint32_t y, std::uint32_t z) {

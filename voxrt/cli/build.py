@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from time import perf_counter
 from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -33,8 +34,8 @@ from voxrt.cli.arguments import (
 from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.messages import frames_row, picture_cost, summarize, tabulate, warn
 from voxrt.cli.option_help import OPTION_HELP
+from voxrt.cli.process_age import process_age
 from voxrt.cli.progress import build_bar
-from voxrt.cli.results import build_report, print_json
 
 _NAMED = 32  # so many materials still read as a list
 
@@ -161,18 +162,27 @@ def build(
         strict=strict,
     )
     reports = []
+    waited = process_age()
     for asset in assets if frames is None else assets[:1]:
+        begun = perf_counter()
         result = _build(asset, assets, frames, output, options)
+        seconds = {"start": waited, **result.seconds}
+        seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
+        waited = 0.0
         warn(result.warnings)
         if result.budget is not None and (loss := _loss(result.budget)):
             warn((voxrt.SceneWarning("budget", loss),))
         if reporting.json:
-            reports.append(build_report(result))
+            from voxrt.cli.results import build_report  # noqa: PLC0415 - most builds print a summary
+
+            reports.append(build_report(result, seconds))
         else:
             summarize(f"{asset.name}:", _rows(result))
         if profile:
-            _print_profile(result)
+            _print_profile(seconds, result.parts)
     if reporting.json:
+        from voxrt.cli.results import print_json  # noqa: PLC0415 - as above
+
         print_json(reports[0] if len(reports) == 1 else reports)
 
 
@@ -226,12 +236,12 @@ def _check_company(assets: tuple[Path, ...], output: Path, preview: str | None) 
         names[name.casefold()] = asset
 
 
-def _print_profile(result: voxrt.BuildResult) -> None:
-    total = sum(result.seconds.values())
+def _print_profile(seconds: dict[str, float], parts: dict[str, dict[str, float]]) -> None:
+    total = sum(seconds.values())
     rows = [
         row
-        for stage, took in result.seconds.items()
-        for row in [(stage, took), *((f"  {part}", took) for part, took in result.parts.get(stage, {}).items())]
+        for stage, took in seconds.items()
+        for row in [(stage, took), *((f"  {part}", took) for part, took in parts.get(stage, {}).items())]
     ]
     percents = [(name, f"{1e3 * took:.1f}", f"{100 * took / total:.0f}") for name, took in rows]
     tabulate(("stage", "ms", "%"), [*percents, ("all", f"{1e3 * total:.1f}", "100")])

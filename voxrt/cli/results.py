@@ -161,7 +161,7 @@ class BuildReport(msgspec.Struct, frozen=True):
     materials: list[MaterialEntry]
     warnings: list[WarningEntry]
     seconds: dict[str, float]
-    """Wall seconds per stage, in order."""
+    """Wall seconds per stage, in order. `start`: from the start of the process; `rest`: between the stages."""
     render: RenderResult | None
     """The preview; null when none was asked for."""
     budget: BudgetEntry | None = None
@@ -174,8 +174,8 @@ class BuildReport(msgspec.Struct, frozen=True):
     """Null when no animation was built."""
 
 
-def build_report(result: BuildResult) -> BuildReport:
-    """Return what a build made, for programs."""
+def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
+    """Return what a build made, for programs. `seconds`: its stages, with what came before and between them."""
     rom, animation = result.rom, result.animation
     return BuildReport(
         outputs={kind: name_file(path) for kind, path in result.outputs.items()},
@@ -188,7 +188,7 @@ def build_report(result: BuildResult) -> BuildReport:
             for number, material in enumerate(rom.materials)
         ],
         warnings=warning_entries(result.warnings),
-        seconds=result.seconds,
+        seconds=seconds,
         render=None if result.preview is None else render_result(result.preview),
         budget=None if result.budget is None else _budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
