@@ -4,8 +4,9 @@
 // Forms: private copies (voxrt_private_memory), one per two lanes; or one memory in banks (voxrt_banked_memory), for
 // scenes that would not fit twice.
 //
-// The access port is served at every clock and never waits; lanes keep at least half of their share of the memory. A
-// reset drops the requests of lanes, and no access.
+// The access port is served at every clock and never waits; lanes keep at least half of their share of the memory. A word
+// comes access_clocks(Banked ? BankedForm : PrivateForm) clocks after its address. A reset drops the requests of lanes,
+// and no write.
 module voxrt_on_chip_memory
   import voxrt_pkg::*;
 #(
@@ -34,9 +35,9 @@ module voxrt_on_chip_memory
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Clocks = memory_clocks(Banked ? BankedForm : PrivateForm);
 
-  logic [PayloadBits:0] encoded, read_back;
-  logic [         31:0] offset;
-  logic                 is_first, in_memory;
+  logic [PayloadBits:0] encoded, encoded_q, read_back;
+  logic [         31:0] offset, offset_q;
+  logic                 access_q, write_q, first_q, in_memory_q;
 
   voxrt_word_encoder #(
     .BlockBits(BlockBits)
@@ -45,14 +46,21 @@ module voxrt_on_chip_memory
     .word_o(encoded)
   );
 
-  assign offset    = access_address_i - 32'd1;
-  assign is_first  = access_address_i == '0;
-  assign in_memory = offset[31:AddressBits] == '0;
+  assign offset = access_address_i - 32'd1;
+
+  always_ff @(posedge clk_i) begin
+    access_q    <= access_i;
+    write_q     <= access_write_i;
+    encoded_q   <= encoded;
+    offset_q    <= offset;
+    first_q     <= access_address_i == '0;
+    in_memory_q <= offset[31:AddressBits] == '0;
+  end
 
   // Public, so that a simulation can set it.
   logic [PayloadBits:0] root_q  /* verilator public_flat_rw */;
 
-  always_ff @(posedge clk_i) if (access_i && access_write_i && is_first) root_q <= encoded;
+  always_ff @(posedge clk_i) if (access_q && write_q && first_q) root_q <= encoded_q;
 
   assign first_word_o = root_q;
 
@@ -63,10 +71,10 @@ module voxrt_on_chip_memory
     ) u_memory (
       .clk_i,
       .rst_ni,
-      .access_i        (access_i && in_memory),
-      .access_write_i,
-      .access_address_i(offset[AddressBits-1:0]),
-      .access_word_i   (encoded),
+      .access_i        (access_q && in_memory_q),
+      .access_write_i  (write_q),
+      .access_address_i(offset_q[AddressBits-1:0]),
+      .access_word_i   (encoded_q),
       .access_word_o   (read_back),
       .read_i,
       .address_i,
@@ -82,10 +90,10 @@ module voxrt_on_chip_memory
     ) u_memory (
       .clk_i,
       .rst_ni,
-      .access_i        (access_i && in_memory),
-      .access_write_i,
-      .access_address_i(offset[AddressBits-1:0]),
-      .access_word_i   (encoded),
+      .access_i        (access_q && in_memory_q),
+      .access_write_i  (write_q),
+      .access_address_i(offset_q[AddressBits-1:0]),
+      .access_word_i   (encoded_q),
       .access_word_o   (read_back),
       .read_i,
       .address_i,
@@ -99,8 +107,8 @@ module voxrt_on_chip_memory
   logic [      31:0] decoded;
 
   always_ff @(posedge clk_i) begin
-    reads_q       <= rst_ni ? {reads_q[Clocks-2:0], access_i && !access_write_i} : '0;
-    first_reads_q <= {first_reads_q[Clocks-2:0], is_first};
+    reads_q       <= rst_ni ? {reads_q[Clocks-2:0], access_q && !write_q} : '0;
+    first_reads_q <= {first_reads_q[Clocks-2:0], first_q};
   end
 
   voxrt_word_decoder #(

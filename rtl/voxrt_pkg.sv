@@ -89,6 +89,11 @@ package voxrt_pkg;
     return form == int'(PrivateForm) ? 2 : 5;
   endfunction
 
+  // From an address of the memory port to its word: a register more, so that the port may be far away.
+  function automatic int access_clocks(int form);
+    return 1 + memory_clocks(form);
+  endfunction
+
   // Rays in the ring of a lane.
   function automatic int lane_slots(int clocks);
     return 10 + clocks;

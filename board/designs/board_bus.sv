@@ -5,7 +5,7 @@
 module board_bus
   import board_pkg::*;
 #(
-  parameter int unsigned MemoryClocks = 2  // From an address of the octree memory to its word.
+  parameter int unsigned MemoryClocks = 3  // From an address of the octree memory to its word.
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,

@@ -29,7 +29,7 @@ module board_system
   input  logic             pixel_rst_ni,
   output logic [2:0][9:0]  words_o        // DVI: blue, green, red.
 );
-  localparam int unsigned MemoryClocks = voxrt_pkg::memory_clocks(MemoryForm);
+  localparam int unsigned AccessClocks = voxrt_pkg::access_clocks(MemoryForm);
 
   // Master 0 is the player, and between lists the frames; master 1 the serial line.
   logic    [ 1:0] bus_valid, bus_done;
@@ -134,7 +134,7 @@ module board_system
   logic [TableBits-1:0] table_word;
 
   board_bus #(
-    .MemoryClocks(MemoryClocks)
+    .MemoryClocks(AccessClocks)
   ) u_bus (
     .clk_i,
     .rst_ni,

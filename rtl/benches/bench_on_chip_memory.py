@@ -60,14 +60,15 @@ class Memory:
             self.words[address] = kept(word)
             await RisingEdge(self.dut.clk_i)
         drive(self.dut, access_i=0, access_write_i=0)
-        await ClockCycles(self.dut.clk_i, 5)
+        await ClockCycles(self.dut.clk_i, 6)
 
     async def read(self, clocks, lanes, port, *, writes=False):
         """Let lanes read, and the processor's port: each at any clock, or all the time.
 
-        With `writes` the port writes now and then: who asks later reads it, who asks at that clock or before does not.
+        With `writes` the port writes now and then: who asks two clocks later reads it, who asks before does not. For
+        the port has a register: it accesses the memory a clock later, at the clock of `before`.
         """
-        dut, asked, answered = self.dut, [], 0
+        dut, asked, answered, before = self.dut, [], 0, (None, False, 0)
         wants, accesses = pace(lanes), pace(port)
         hot = random.randrange(1 << BLOCK_BITS)
         for clock in range(clocks):
@@ -85,10 +86,16 @@ class Memory:
             if clock >= self.clocks:
                 answered += self.check(*asked.pop(0))
             wanted = [self.words[1 + a] if bit else None for a, bit in zip(addresses, reads, strict=True)]
-            asked.append((wanted, None if address is None or is_write else self.words[address], address is not None))
-            if is_write:
-                self.words[address] = kept(word)
+            accessed, written, value = before
+            read = None if accessed is None or written else self.words[accessed]
+            asked.append((wanted, read, accessed is not None))
+            if written:
+                self.words[accessed] = kept(value)
+            before = address, is_write, word
         drive(dut, read_i=0, access_i=0)
+        accessed, written, value = before
+        if written:
+            self.words[accessed] = kept(value)
         return answered
 
     def check(self, wanted, read, accessed):
@@ -137,7 +144,7 @@ async def words_beyond_the_memory_are_dropped(dut):
         drive(dut, access_i=1, access_write_i=1, access_address_i=address, access_word_i=0xFFFFFF33)
         await RisingEdge(dut.clk_i)
     drive(dut, access_i=0, access_write_i=0)
-    await ClockCycles(dut.clk_i, 5)
+    await ClockCycles(dut.clk_i, 6)
     await memory.read(500, "random", "random")
 
 
@@ -193,5 +200,5 @@ async def a_reset_loses_no_word(dut):
         await RisingEdge(dut.clk_i)
     dut.rst_ni.value = 1
     drive(dut, access_i=0, access_write_i=0)
-    await ClockCycles(dut.clk_i, 5)
+    await ClockCycles(dut.clk_i, 6)
     await memory.read(2000, "random", "random")

@@ -36,11 +36,11 @@ def number(signal, digits=8):
 
 @cocotb.test()
 async def memory_port(dut):
-    """Write two words and read them: what is read comes two clocks after its address."""
+    """Write two words and read them: what is read comes three clocks after its address."""
     core = Core(dut)
     await core.start()
     rows = {name: [] for name in ("bram_en_i", "bram_we_i", "bram_addr_i", "bram_wrdata_i", "bram_rddata_o")}
-    steps = [(15, 4, 0xFFFFFF07), (15, 8, 9), (0, 4, 0), (0, 8, 0), None, None, None]
+    steps = [(15, 4, 0xFFFFFF07), (15, 8, 9), (0, 4, 0), (0, 8, 0), None, None, None, None]
     answers = []
     for clock, step in enumerate(steps):
         dut.bram_en_i.value = step is not None
@@ -51,9 +51,9 @@ async def memory_port(dut):
         rows["bram_we_i"].append("" if step is None else number(dut.bram_we_i, 1))
         rows["bram_addr_i"].append("" if step is None else number(dut.bram_addr_i, 2))
         rows["bram_wrdata_i"].append("" if step is None or not step[0] else number(dut.bram_wrdata_i))
-        rows["bram_rddata_o"].append(number(dut.bram_rddata_o) if clock in {4, 5} else "")
+        rows["bram_rddata_o"].append(number(dut.bram_rddata_o) if clock in {5, 6} else "")
         answers.append(number(dut.bram_rddata_o))
-    assert answers[4:6] == ["FFFFFF07", "00000009"]
+    assert answers[5:7] == ["FFFFFF07", "00000009"]
     show("memory port, private copies", rows)
 
 

@@ -58,7 +58,7 @@ set_property -dict $settings [get_bd_cells ps]
 
 create_bd_cell -type module -reference voxrt_pynq_z1 core
 create_bd_cell -type ip -vlnv xilinx.com:ip:axi_bram_ctrl memory
-set_property -dict [list CONFIG.SINGLE_PORT_BRAM 1 CONFIG.READ_LATENCY 2 CONFIG.PROTOCOL AXI4] [get_bd_cells memory]
+set_property -dict [list CONFIG.SINGLE_PORT_BRAM 1 CONFIG.READ_LATENCY 3 CONFIG.PROTOCOL AXI4] [get_bd_cells memory]
 create_bd_cell -type ip -vlnv xilinx.com:ip:axi_vdma vdma
 set_property -dict [list \
   CONFIG.c_include_mm2s 0 \

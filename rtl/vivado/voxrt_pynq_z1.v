@@ -24,7 +24,7 @@ module voxrt_pynq_z1 (
   output wire [31:0] s_axil_rdata,
   output wire [ 1:0] s_axil_rresp,
   (* X_INTERFACE_INFO = "xilinx.com:interface:bram:1.0 bram EN" *)
-  (* X_INTERFACE_PARAMETER = "MASTER_TYPE BRAM_CTRL, MEM_SIZE 131072, MEM_WIDTH 32, READ_LATENCY 2" *)
+  (* X_INTERFACE_PARAMETER = "MASTER_TYPE BRAM_CTRL, MEM_SIZE 131072, MEM_WIDTH 32, READ_LATENCY 3" *)
   input  wire        bram_en_i,
   (* X_INTERFACE_INFO = "xilinx.com:interface:bram:1.0 bram WE" *)
   input  wire [ 3:0] bram_we_i,

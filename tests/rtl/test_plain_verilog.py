@@ -115,7 +115,7 @@ def test_icarus_shows_what_the_model_does(name, plain, tmp_path):
         plain(name),
         scene_commands(words, table, camera, shading=shading, faces=faces, light=light),
         tmp_path,
-        memory_clocks=2,
+        memory_clocks=3,
     )
     np.testing.assert_array_equal(picture(transfers), model.colour)
     assert reads[register("identity")] == int.from_bytes(b"VXRT", "big")

@@ -94,7 +94,7 @@ public:
 
     void read_memory(std::size_t address, std::span<uint32_t> words) override {
         enter();
-        const std::size_t latency = limits_.form == MemoryForm::copies ? 2 : 5; // voxrt_pkg::memory_clocks
+        const std::size_t latency = limits_.form == MemoryForm::copies ? 3 : 6; // voxrt_pkg::access_clocks
         for (std::size_t i = 0; i < words.size() + latency; ++i) {
             model_->bram_en_i = i < words.size();
             model_->bram_addr_i = static_cast<uint32_t>(4 * (address + i));

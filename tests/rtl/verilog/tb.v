@@ -9,7 +9,7 @@
 module tb;
   parameter COMMANDS = 1;           // in commands.hex
   parameter CLOCKS   = 1000000;     // after which the bench gives up
-  parameter MEMORY_CLOCKS = 2;      // from an address of the memory port to its word
+  parameter MEMORY_CLOCKS = 3;      // from an address of the memory port to its word
 
   localparam WRITE_MEMORY   = 4'h0;
   localparam WRITE_REGISTER = 4'h1;
