@@ -40,7 +40,6 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = _INTERRUPTED
     if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
-    gc.freeze()  # the end of the process frees what is left
     sys.exit(code)
 
 
