@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 _VERSION_FLAGS = (["--version"], ["-V"])
 _GARBAGE = 1 << 17
-"""Objects made between two collections of garbage: imports make many and leave none, and took a quarter longer."""
+"""Objects made between two collections of garbage: imports make many and leave none, and took a quarter longer. A
+server lives longer than that, and takes USUAL_GARBAGE."""
+USUAL_GARBAGE = gc.get_threshold()[0]
+"""What Python begins with."""
 
 _INTERRUPTED = 128 + _signal.SIGINT
 
