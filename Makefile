@@ -102,7 +102,7 @@ HEADERS := $(wildcard voxelize/src/*.h octree/src/*.h sim/src/model/*.h)
 # $(call archive,FOLDER): the library of a folder's sources.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp,$(wildcard $(1)/src/*.cpp)))
+cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp)))
 $(AR) rcs $@ $(@:.a=)/*.o
 endef
 
@@ -138,7 +138,7 @@ fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
 	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
 covered = $(CXX) -std=c++20 -O1 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
-COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
+COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp %_bindings.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
 build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	@mkdir -p $(@D)
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<

@@ -154,9 +154,6 @@ def _suffix(path: Path) -> str:
     if address := _ADDRESS.match(str(path)):  # a path has lost one of the slashes
         shown = f"{address[1]}://{address[2]}"
         raise AssetError(shown, "is an address, and files are read from folders alone", fix="download it first")
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"use one of {', '.join(SUFFIXES)}")
     try:
         is_file, is_folder = path.is_file(), path.is_dir()
     except OSError:  # the name is longer than any file's
@@ -164,4 +161,7 @@ def _suffix(path: Path) -> str:
     if not is_file:
         problem = "is a folder, not a file" if is_folder else "no such file"
         raise AssetError(path, problem, fix="check the path")
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise AssetError(path, f"unknown kind of file {path.suffix!r}", fix=f"use one of {', '.join(SUFFIXES)}")
     return suffix

@@ -114,6 +114,13 @@ def join_scenes(scenes: Iterable[Scene]) -> SceneFrames:
         There is no scene.
     DoesNotFitError
         All frames together have more than 255 materials.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import load
+    >>> frames = join_scenes([load("examples/house.obj"), load("examples/house.obj")])
+    >>> frames.scene(0).objects[0].mesh is frames.scene(1).objects[0].mesh
+    True
     """
     known: dict[object, object] = {}
     table = _MaterialTable()

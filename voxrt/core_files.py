@@ -175,9 +175,15 @@ _HEADER = """\
 #define VOXRT_SCENE_HEIGHT {height}
 #define VOXRT_SCENE_WORDS {words}
 #define VOXRT_SCENE_WRITES {writes}
+#define VOXRT_SCENE_FRAMES {frames}
 
 static const uint32_t voxrt_scene_words[VOXRT_SCENE_WORDS] = {{
 {word_rows}
+}};
+
+/* What the register root takes to show each frame: one for a still scene. */
+static const uint32_t voxrt_scene_roots[VOXRT_SCENE_FRAMES] = {{
+{roots}
 }};
 
 static const uint32_t voxrt_scene_writes[VOXRT_SCENE_WRITES][2] = {{
@@ -202,6 +208,8 @@ def _header(scene: Scene, view: View, configuration: Configuration, writes: Writ
         height=view.size[1],
         words=len(scene.words),
         writes=len(pairs),
+        frames=len(scene.roots),
+        roots=textwrap.fill(", ".join(map(str, scene.roots)), 110, initial_indent="    ", subsequent_indent="    "),
         word_rows=textwrap.fill(words, 110, initial_indent="    ", subsequent_indent="    "),
         write_rows="\n".join(pairs),
     )

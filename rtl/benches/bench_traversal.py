@@ -77,10 +77,11 @@ async def look(core, position, direction, mirrored=(0, 0, 0), side=SIDE):
 
 
 async def prepare(dut, depth=DEPTH):
-    """Start the core with frames of one pixel."""
+    """Start the core with frames of one pixel, brightness by the angle."""
     core = Core(dut)
     core.ready = itertools.repeat(1)
     await core.start()
+    await core.write("shading")
     await core.write("size", width=1, height=1)
     await core.write("depth", depth=depth)
     return core

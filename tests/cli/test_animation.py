@@ -162,6 +162,23 @@ def test_info_and_diff_tell_of_frames(lift, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
+    ("command", "whole"),
+    [
+        (["trace", "lift.mem", "--pixel", "3,4"], False),
+        (["convert", "lift.mem", "lift.vox"], False),
+        (["convert", "lift.mem", "lift.coe"], True),
+        (["convert", "lift.mem", "core", "--form", "core"], True),
+        (["info", "lift.mem"], True),
+    ],
+)
+def test_a_command_that_uses_one_frame_says_so(lift, monkeypatch, capsys, command, whole):
+    voxrt.build_animation(lift, lift.parent, depth=4, times=voxrt.frame_times(0, 2, 4))
+    monkeypatch.chdir(lift.parent)
+    assert run(command) == 0
+    assert ("lift.mem has 4 frames, and the first is used" in capsys.readouterr().err) != whole
+
+
+@pytest.mark.parametrize(
     ("arguments", "told"),
     [
         (["lift.glb", "--frames", "0:2:0"], (2, "0 frames are not 1 to 4096")),

@@ -67,7 +67,8 @@ def test_usage(voxrt, arguments, said):
     [
         (["build", "nothing.glb"], "nothing.glb: no such file"),
         (["build", "house.obj", "more.obj"], "more.obj: no such file; check the path; nothing was built"),
-        (["build", "."], "unknown kind of file"),
+        (["build", "."], ".: is a folder, not a file"),
+        (["build", "nothing"], "nothing: no such file; check the path"),
         (["build", "folder.glb"], "folder.glb: is a folder"),
         (["build", "notes.txt"], ".gltf, .glb, .usd, .usda, .usdc, .usdz"),
         (["build", "notes"], "unknown kind of file"),

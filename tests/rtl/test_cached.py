@@ -74,8 +74,9 @@ def test_a_scene_larger_than_the_caches(config, latency):
     assert cost.lines_read < cost.line_requests < cost.words_read < cost.word_requests
 
 
-@pytest.mark.parametrize("config", CACHED)
-@pytest.mark.parametrize("width", [1024, 1025, 2049])
+@pytest.mark.parametrize(
+    ("config", "width"), [("cached1", 2049), ("cached4", 1025), ("cached8", 1024), ("cached16", 2049)]
+)
 def test_wide_pictures_come_in_lower_strips(config, width):
     voxels = random_voxels(np.random.default_rng(4), 3, 0.1)
     design = rtl.Tracer(config)

@@ -17,6 +17,7 @@ from voxrt.cli.messages import name_file, summarize
 from voxrt.cli.results import print_json, warning_entries
 from voxrt.cli.source import read_source
 from voxrt.outputs import check_folder, writing
+from voxrt.writers import PANE_WRITERS
 
 if TYPE_CHECKING:
     from voxrt.cli.source import Source
@@ -69,7 +70,7 @@ def convert(
         if target.suffix.lower() in voxrt.WRITABLE_SUFFIXES:
             raise UsageError(f"{target}: --form core writes several files; name a folder")
         check_folder(target)
-        read = read_source(source, depth, from_dialect, _colours(material))
+        read = read_source(source, depth, from_dialect, _colours(material), frames=True)
         files = _write_core(read, target, config, size or (640, 480))
     else:
         if config is not None or size is not None:
@@ -77,7 +78,8 @@ def convert(
         if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
             raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
         check_folder(target.parent)
-        read = read_source(source, depth, from_dialect, _colours(material))
+        whole = target.suffix.lower() not in PANE_WRITERS
+        read = read_source(source, depth, from_dialect, _colours(material), frames=whole)
         files = voxrt.convert(read.blob, target, dialect=dialect)
     if reporting.json:
         print_json(ConvertResult([name_file(file) for file in files], warning_entries(read.warnings)))

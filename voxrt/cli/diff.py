@@ -44,7 +44,7 @@ def diff(
         How results are printed.
     """
     if second is None:
-        blob = read_source(first, depth).blob
+        blob = read_source(first, depth, frames=True).blob
         if blob.animation is None:
             raise UsageError(f"{first} is no animation: name a second memory to compare it with")
         one = frame or 0
@@ -54,7 +54,7 @@ def diff(
         sources: dict[Path, Source] = {}
         for path in sorted((first, second), key=is_asset):  # memories first: they know their depth
             known = depth if depth is not None or not sources else next(iter(sources.values())).rom.octree.depth
-            sources[path] = read_source(path, known if is_asset(path) else depth)
+            sources[path] = read_source(path, known if is_asset(path) else depth, frames=True)
         roms = [sources[first].blob.frame(frame or 0), sources[second].blob.frame(to_frame or 0)]
         labels = first.name, second.name
     depths = [rom.octree.depth for rom in roms]

@@ -36,7 +36,7 @@ def info(
     reporting
         How results are printed.
     """
-    blob = read_source(scene, depth, dialect).blob
+    blob = read_source(scene, depth, dialect, frames=True).blob
     told = info_result(blob)
     if reporting.json:
         print_json(told)

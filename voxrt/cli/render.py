@@ -117,7 +117,7 @@ def render(
         How results are printed.
     """
     file = picture_file(Path(f"{scene.stem}.png") if output is None else output)
-    source = read_source(scene, depth, dialect)
+    source = read_source(scene, depth, dialect, frames=True)
     blob, memory = source.blob, source.rom
     roots = _roots(blob, file, frame, check=check, background=background)
     camera = source.camera(size, sight)

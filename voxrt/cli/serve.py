@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,7 @@ from voxrt.cli.arguments import Reporting, UsageError, whole
 from voxrt.cli.board_results import ServeResult
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
+from voxrt.cli.start import USUAL_GARBAGE
 
 if TYPE_CHECKING:
     from voxrt.board.designs.serial_device import SerialDevice
@@ -96,6 +98,7 @@ def serve(
     library = SceneLibrary(asset_reader(depth), named, asset_reader(depth, memory_depth=depth))
     options = ServerOptions(host, port, token, origin, legacy_port)
     opened = open_device(device, config, bitstream)
+    gc.set_threshold(USUAL_GARBAGE)
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_serve(opened, first, library, options, json=reporting.json))
 

@@ -74,13 +74,21 @@ def read_source(
     depth: int | None = None,
     dialect: str | None = None,
     colours: Mapping[str, tuple[int, int, int]] | None = None,
+    *,
+    frames: bool = False,
 ) -> Source:
-    """Read a memory of any format, or build an asset in memory; warns of what was not honoured."""
+    """Read a memory of any format, or build an asset in memory; warns of what was not honoured.
+
+    `frames`: the command uses all frames of an animation, and not the first alone.
+    """
     if is_asset(path):
         with build_bar() as bar:
             result = voxrt.build(path, depth=depth, progress=bar.begin, estimated=bar.estimate)
         warn(result.warnings)
         return Source(result.blob, result.scene, result.warnings)
     blob, warnings = voxrt.read_any(path, depth=depth, dialect=dialect, colours=colours)
+    if blob.animation is not None and not frames:
+        count = len(blob.animation.frames)
+        warnings += (voxrt.SceneWarning("frames", f"{path.name} has {count} frames, and the first is used"),)
     warn(warnings)
     return Source(blob, warnings=warnings)

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 _VERSION_FLAGS = (["--version"], ["-V"])
 _GARBAGE = 1 << 17
-"""Objects made between two collections of garbage: imports make many and leave none, and took a quarter longer."""
+"""Objects made between two collections of garbage: imports make many and leave none, and took a quarter longer. A
+server lives longer than that, and takes USUAL_GARBAGE."""
+USUAL_GARBAGE = gc.get_threshold()[0]
+"""What Python begins with."""
 
 _INTERRUPTED = 128 + _signal.SIGINT
 
@@ -40,7 +43,6 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = _INTERRUPTED
     if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
-    gc.freeze()  # the end of the process frees what is left
     sys.exit(code)
 
 

@@ -24,7 +24,7 @@ export function manifestOf({ name, file, words, depth, materials, grid, objects,
     world: grid && { origin: grid.origin, voxel_size: size, matrix: [[size, 0, 0, x], [0, size, 0, y], [0, 0, size, z], [0, 0, 0, 1]] },
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings, seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: null, baked: null,
+    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: null, baked: null, animation: null,
   };
 }
 

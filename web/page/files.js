@@ -88,7 +88,7 @@ async function readGltf(main, folder, voxrt) {
   folder.close();
   const { parser } = gltf;
   const { json } = parser;
-  const place = (object, kind) => parser.associations.get(object)?.[kind];
+  const place = (object, kind) => (parser.associations.get(object) ?? {})[kind];
   // The primitives of a mesh hang below its node, or are the node.
   const groupOf = (mesh) => (place(mesh, "nodes") === undefined && mesh.parent ? mesh.parent : mesh);
   const nodeOf = (group) => place(group, "nodes");

@@ -5,8 +5,8 @@
 // The program mutates inputs of a corpus and calls fuzz_one with each, RUNS times. The code under test is compiled with
 // -fsanitize-coverage=trace-pc; an input that reaches a place, or a number of visits of one, that none reached before
 // joins the corpus and, where FOLDER is given, is kept there for the next time. An input on which a sanitizer, an
-// uncaught exception or 20 seconds of the processor end the program is left in FOLDER as `finding`. At the end the program prints the
-// number of executions, their time, and the corpus' size.
+// uncaught exception or 20 seconds of the processor end the program is left in FOLDER as `finding`. At the end the
+// program prints the number of executions, their time, and the corpus' size.
 #pragma once
 
 #include <cstddef>
