@@ -23,6 +23,7 @@ PARAMETERS = (
     "L2SetBits",
     "Light",
     "Mirrors",
+    "RayClocks",
 )
 _SIMULATION = "SimulationBlockBits"
 

@@ -27,6 +27,7 @@ voxrt_next_cell.sv
 voxrt_octree_memory.sv
 voxrt_on_chip_memory.sv
 voxrt_pixel_buffer.sv
+voxrt_collect.sv
 voxrt_core.sv
 voxrt_pixel_packer.sv
 voxrt_pixels.sv
@@ -42,6 +43,9 @@ voxrt_rtu.sv
 voxrt_scan.sv
 voxrt_shader.sv
 voxrt_stream_register.sv
+voxrt_three_plane_times.sv
+voxrt_three_products.sv
+voxrt_turns.sv
 voxrt_strip_buffer.sv
 voxrt_strip_generator.sv
 voxrt_strip_place.sv

@@ -27,6 +27,9 @@ module voxrt_core
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
+  // Clocks per ray and per pixel: 1; or 4, at which the setup of rays and the shader share their multipliers. 4 needs a
+  // core without Light and Mirrors.
+  parameter int unsigned RayClocks    = 1,
   // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
   parameter string       OctreeFile   = ""
 ) (
@@ -104,6 +107,9 @@ module voxrt_core
   end
   if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
     $error("voxrt_core: BlockBits must be 5 to 24 bits");
+  end
+  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors)) begin : gen_bad_ray_clocks
+    $error("voxrt_core: RayClocks must be 1, or 4 without Light and Mirrors");
   end
   if (MemoryForm > CachedForm) begin : gen_bad_form
     $error("voxrt_core: MemoryForm must be 0, 1 or 2");
@@ -219,6 +225,7 @@ module voxrt_core
     .L2SetBits   (L2SetBits),
     .Light       (Light),
     .Mirrors     (Mirrors),
+    .RayClocks   (RayClocks),
     .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,

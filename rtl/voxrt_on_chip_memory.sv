@@ -35,9 +35,10 @@ module voxrt_on_chip_memory
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Clocks = memory_clocks(Banked ? BankedForm : PrivateForm);
 
-  logic [PayloadBits:0] encoded, encoded_q, read_back;
-  logic [         31:0] offset, offset_q;
-  logic                 access_q, write_q, first_q, in_memory_q;
+  logic [  PayloadBits:0] encoded, encoded_q, read_back;
+  logic [           31:0] offset;
+  logic [AddressBits-1:0] offset_q;
+  logic                   access_q, write_q, first_q, in_memory_q;
 
   voxrt_word_encoder #(
     .BlockBits(BlockBits)
@@ -52,7 +53,7 @@ module voxrt_on_chip_memory
     access_q    <= access_i;
     write_q     <= access_write_i;
     encoded_q   <= encoded;
-    offset_q    <= offset;
+    offset_q    <= offset[AddressBits-1:0];
     first_q     <= access_address_i == '0;
     in_memory_q <= offset[31:AddressBits] == '0;
   end
@@ -73,7 +74,7 @@ module voxrt_on_chip_memory
       .rst_ni,
       .access_i        (access_q && in_memory_q),
       .access_write_i  (write_q),
-      .access_address_i(offset_q[AddressBits-1:0]),
+      .access_address_i(offset_q),
       .access_word_i   (encoded_q),
       .access_word_o   (read_back),
       .read_i,
@@ -92,7 +93,7 @@ module voxrt_on_chip_memory
       .rst_ni,
       .access_i        (access_q && in_memory_q),
       .access_write_i  (write_q),
-      .access_address_i(offset_q[AddressBits-1:0]),
+      .access_address_i(offset_q),
       .access_word_i   (encoded_q),
       .access_word_o   (read_back),
       .read_i,

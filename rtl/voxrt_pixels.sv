@@ -3,11 +3,12 @@
 module voxrt_pixels
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Lanes    = 1,
-  parameter int unsigned MaxDepth = 10,
-  parameter bit          Light    = 1'b0,
-  parameter bit          Mirrors  = 1'b0,
-  parameter bit          Strips   = 1'b0
+  parameter int unsigned Lanes     = 1,
+  parameter int unsigned MaxDepth  = 10,
+  parameter bit          Light     = 1'b0,
+  parameter bit          Mirrors   = 1'b0,
+  parameter bit          Strips    = 1'b0,
+  parameter int unsigned RayClocks = 1
 ) (
   input  logic                                            clk_i,
   input  logic                                            rst_ni,
@@ -121,7 +122,8 @@ module voxrt_pixels
   end
 
   voxrt_shader #(
-    .Given(Given)
+    .Given    (Given),
+    .RayClocks(RayClocks)
   ) u_shader (
     .clk_i,
     .rst_ni,

@@ -1,4 +1,5 @@
-// From a direction to a ray that a lane can trace: mirrored, weighed, and entered into the world. One ray per clock.
+// From a direction to a ray that a lane can trace: mirrored, weighed, and entered into the world. One ray per RayClocks
+// clocks, when ready_o is high.
 //
 // The weight of an axis is the product of the other two components (0 counts as 1), so that the plane p is crossed at
 // T = (16 p - origin) * weight, an integer. Planes are ordered by (T, axis). The entry key is the last of the world's
@@ -19,7 +20,8 @@ module voxrt_ray_setup
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned Lanes        = 1,
-  parameter bit          Light        = 1'b0
+  parameter bit          Light        = 1'b0,
+  parameter int unsigned RayClocks    = 1      // 1, or 4: one multiplier for three axes.
 ) (
   input  logic                                    clk_i,
   input  logic                                    rst_ni,
@@ -29,6 +31,7 @@ module voxrt_ray_setup
   input  material_t                               root_material_i,  // ... of this material.
   // Directions.
   input  logic                                    valid_i,
+  output logic                                    ready_o,
   input  logic        [Lanes-1:0]                 lane_i,           // One-hot: which lane the ray is for.
   input  logic signed [ScanBits-1:0]              direction_i [3],
   input  logic                                    shadow_i,         // A shadow ray, from ...
@@ -66,8 +69,24 @@ module voxrt_ray_setup
     side  = world_i.side[MaxDepth:0];
   end
 
+  // The pipeline moves when `advance` is high; `moves`: a stage that holds a ray does.
+  logic       advance, takes;
+  logic [1:0] turn;
+
+  voxrt_turns #(
+    .RayClocks(RayClocks)
+  ) u_turns (
+    .clk_i,
+    .rst_ni,
+    .turn_o   (turn),
+    .advance_o(advance)
+  );
+
+  assign ready_o = advance;
+  assign takes   = valid_i && advance;
+
   // What travels along unchanged.
-  logic [Stages:1]            valid_q;
+  logic [Stages:1]            valid_q, moves;
   logic [Lanes-1:0]           lane_q     [1:Stages];
   logic [2:0]                 mirrored_q [1:Stages];
   logic [2:0]                 dead_q     [1:Stages];
@@ -75,20 +94,25 @@ module voxrt_ray_setup
   logic [WeightBits-1:0]      weight3    [3];
   logic [WeightBits-1:0]      weight_q   [4:Stages] [3];
 
+  assign moves = advance ? valid_q : '0;
+
   always_ff @(posedge clk_i) begin
-    valid_q <= rst_ni ? {valid_q[Stages-1:1], valid_i} : '0;
-    for (int unsigned s = 2; s <= Stages; s++) begin
-      lane_q[s]     <= lane_q[s-1];
-      mirrored_q[s] <= mirrored_q[s-1];
-      dead_q[s]     <= dead_q[s-1];
-      overflow_q[s] <= overflow_q[s-1];
+    if (advance) begin
+      valid_q   <= {valid_q[Stages-1:1], valid_i};
+      lane_q[1] <= lane_i;
+      for (int unsigned s = 2; s <= Stages; s++) begin
+        lane_q[s]     <= lane_q[s-1];
+        mirrored_q[s] <= mirrored_q[s-1];
+        dead_q[s]     <= dead_q[s-1];
+        overflow_q[s] <= overflow_q[s-1];
+      end
     end
+    if (!rst_ni) valid_q <= '0;
     // Registers keep what they have where no ray is.
-    if (valid_q[3]) weight_q[4] <= weight3;
+    if (moves[3]) weight_q[4] <= weight3;
     for (int unsigned s = 5; s <= Stages; s++) begin
-      if (valid_q[s-1]) weight_q[s] <= weight_q[s-1];
+      if (moves[s-1]) weight_q[s] <= weight_q[s-1];
     end
-    lane_q[1] <= lane_i;
   end
 
   // 1: sign and size.
@@ -109,7 +133,7 @@ module voxrt_ray_setup
   end
 
   always_ff @(posedge clk_i) begin
-    if (valid_i) begin
+    if (takes) begin
       mirrored_q[1] <= negative;
       dead_q[1]     <= zero;
       // A zero counts as 1 in the weights of the other axes.
@@ -132,21 +156,31 @@ module voxrt_ray_setup
     end
   end
 
-  for (genvar a = 0; a < 3; a++) begin : gen_weight
-    voxrt_multiply #(
-      .ABits    (DirectionBits),
-      .BBits    (DirectionBits),
-      .LogicBits(DirectionBits - MultiplierSide)
-    ) u_weight (
-      .clk_i,
-      .a_i      (size_q[(a+1)%3]),
-      .b_i      (size_q[(a+2)%3]),
-      .product_o(weight3[a])
-    );
+  logic [DirectionBits-1:0] next_size[3], previous_size[3];
+
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      next_size[a]     = size_q[(a+1)%3];
+      previous_size[a] = size_q[(a+2)%3];
+    end
   end
 
+  voxrt_three_products #(
+    .RayClocks(RayClocks),
+    .ABits    (DirectionBits),
+    .BBits    (DirectionBits),
+    .LogicBits({3{8'(DirectionBits - MultiplierSide)}})
+  ) u_weights (
+    .clk_i,
+    .turn_i   (turn),
+    .advance_i(advance),
+    .a_i      (next_size),
+    .b_i      (previous_size),
+    .product_o(weight3)
+  );
+
   always_ff @(posedge clk_i) begin
-    if (valid_q[2]) begin
+    if (moves[2]) begin
       for (int unsigned a = 0; a < 3; a++) begin
         distance_q[a][FractionBits-1:0] <= other_origin[a][FractionBits-1:0];
         distance_q[a][DistanceBits-1:FractionBits] <= ~origin[a][DistanceBits-1:FractionBits] +
@@ -168,15 +202,17 @@ module voxrt_ray_setup
     logic signed [PointBits-1:0] point_q[1:Stages][3];
 
     always_ff @(posedge clk_i) begin
-      shadow_q <= {shadow_q[Stages-1:1], shadow_i};
-      tag_q[1] <= tag_i;
-      for (int unsigned a = 0; a < 3; a++) point_q[1][a] <= point_i[a][PointBits-1:0];
-      for (int unsigned s = 2; s <= Stages; s++) begin
-        tag_q[s]   <= tag_q[s-1];
-        point_q[s] <= point_q[s-1];
+      if (advance) begin
+        shadow_q <= {shadow_q[Stages-1:1], shadow_i};
+        tag_q[1] <= tag_i;
+        for (int unsigned a = 0; a < 3; a++) point_q[1][a] <= point_i[a][PointBits-1:0];
+        for (int unsigned s = 2; s <= Stages; s++) begin
+          tag_q[s]   <= tag_q[s-1];
+          point_q[s] <= point_q[s-1];
+        end
+        // Mirrored from here on.
+        for (int unsigned a = 0; a < 3; a++) point_q[3][a] <= PointBits'(point2[a]);
       end
-      // Mirrored from here on.
-      for (int unsigned a = 0; a < 3; a++) point_q[3][a] <= PointBits'(point2[a]);
     end
 
     always_comb begin
@@ -205,16 +241,17 @@ module voxrt_ray_setup
   // 4, 5, 6: plane 0.
   logic signed [TimeBits-1:0] near_time[3];
 
-  for (genvar a = 0; a < 3; a++) begin : gen_near
-    voxrt_plane_time #(
-      .DistanceBits(DistanceBits)
-    ) u_near (
-      .clk_i,
-      .distance_i(distance_q[a]),
-      .weight_i  (weight3[a]),
-      .time_o    (near_time[a])
-    );
-  end
+  voxrt_three_plane_times #(
+    .RayClocks   (RayClocks),
+    .DistanceBits(DistanceBits)
+  ) u_near (
+    .clk_i,
+    .turn_i    (turn),
+    .advance_i (advance),
+    .distance_i(distance_q),
+    .weight_i  (weight3),
+    .time_o    (near_time)
+  );
 
   // 7: order of the near planes.
   logic signed [TimeBits-1:0] near_q[7:8] [3];
@@ -222,7 +259,7 @@ module voxrt_ray_setup
   logic                       later_yx_q, later_zx_q, later_zy_q;
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[6]) begin
+    if (moves[6]) begin
       near_q[7] <= near_time;
       // On a dead axis no plane is at the origin, and 0 is ahead.
       for (int unsigned a = 0; a < 3; a++) begin
@@ -251,7 +288,7 @@ module voxrt_ray_setup
   end
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[7]) begin
+    if (moves[7]) begin
       entry_time_q    <= near[entry_face];
       entry_face_q[8] <= entry_face;
       outside_q[8]    <= (ahead_q & dead_q[7]) != '0;
@@ -266,15 +303,15 @@ module voxrt_ray_setup
 
   always_ff @(posedge clk_i) begin
     for (int unsigned a = 0; a < 3; a++) begin
-      if (valid_q[7]) begin
+      if (moves[7]) begin
         half_span8_q[a] <= (SpanBits - 1)'(weight_q[7][a]) << {1'b0, depth[0]} << (FractionBits - 1) << shadow7;
       end
-      if (valid_q[8]) begin
+      if (moves[8]) begin
         half_span_q[a] <= half_span8_q[a] << {depth[DepthBits-1:1], 1'b0};
         gap_q[a]       <= GapBits'(near_q[8][a]) + ~(dead_q[8][a] ? '0 : GapBits'(entry_time_q));
       end
     end
-    if (valid_q[8]) begin
+    if (moves[8]) begin
       entry_time_key_q[9] <= KeyBits'(entry_time_q);
       entry_face_q[9]     <= entry_face_q[8];
       outside_q[9]        <= outside_q[8];
@@ -296,7 +333,7 @@ module voxrt_ray_setup
   end
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[9]) begin
+    if (moves[9]) begin
       for (int unsigned a = 0; a < 3; a++) begin
         past_middle_q[10][a] <= middle[a][GapBits];
         past_far_q[a]        <= far[a][GapBits];
@@ -309,7 +346,7 @@ module voxrt_ray_setup
 
   // 11: out.
   always_ff @(posedge clk_i) begin
-    if (valid_q[10]) begin
+    if (moves[10]) begin
       entry_time_key_q[11] <= entry_time_key_q[10];
       entry_face_q[11]     <= entry_face_q[10];
       past_middle_q[11]    <= past_middle_q[10];
@@ -317,7 +354,7 @@ module voxrt_ray_setup
     end
   end
 
-  assign valid_o    = valid_q[11];
+  assign valid_o    = moves[11];
   assign lane_o     = lane_q[11];
   assign overflow_o = overflow_q[11];
 

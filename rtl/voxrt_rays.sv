@@ -1,4 +1,4 @@
-// Issues the rays of a frame to the lanes, one per clock. Rays of the camera go to the lanes in turn, each when its
+// Issues the rays of a frame to the lanes, one per RayClocks clocks. Rays of the camera go to the lanes in turn, each when its
 // lane has a credit; shadow rays (Light) go first, at any clock: their places in the queue are reserved already.
 module voxrt_rays
   import voxrt_pkg::*;
@@ -7,7 +7,8 @@ module voxrt_rays
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter bit          Light        = 1'b0,
-  parameter bit          Strips       = 1'b0   // Rays in strips, not line by line.
+  parameter bit          Strips       = 1'b0,  // Rays in strips, not line by line.
+  parameter int unsigned RayClocks    = 1
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -30,11 +31,11 @@ module voxrt_rays
   output ray_t                    ray_o,
   output weights_t                weights_o
 );
-  logic                       direction_valid, issues;
+  logic                       direction_valid, setup_ready, issues;
   logic signed [ScanBits-1:0] direction[3], ray_direction[3];
   logic        [   Lanes-1:0] next_lane_q;  // One-hot.
 
-  assign issues  = direction_valid && (credit_i & next_lane_q) != '0 && !shadow_valid_i;
+  assign issues  = direction_valid && setup_ready && (credit_i & next_lane_q) != '0 && !shadow_valid_i;
   assign issue_o = issues ? next_lane_q : '0;
 
   always_comb begin
@@ -79,7 +80,8 @@ module voxrt_rays
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Lanes       (Lanes),
-    .Light       (Light)
+    .Light       (Light),
+    .RayClocks   (RayClocks)
   ) u_ray_setup (
     .clk_i,
     .rst_ni,
@@ -87,6 +89,7 @@ module voxrt_rays
     .root_leaf_i,
     .root_material_i,
     .valid_i    (issues || shadow_valid_i),
+    .ready_o    (setup_ready),
     .lane_i     (shadow_valid_i ? shadow_lane_i : next_lane_q),
     .direction_i(ray_direction),
     .shadow_i   (shadow_valid_i),

@@ -24,6 +24,7 @@ module voxrt_rtu
   parameter int unsigned L2SetBits    = 9,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
+  parameter int unsigned RayClocks    = 1,
   parameter string       OctreeFile   = ""
 ) (
   input  logic            clk_i,
@@ -197,7 +198,8 @@ module voxrt_rtu
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Light       (Light),
-    .Strips      (Strips)
+    .Strips      (Strips),
+    .RayClocks   (RayClocks)
   ) u_rays (
     .clk_i,
     .rst_ni,
@@ -347,11 +349,12 @@ module voxrt_rtu
 
   // Pixels.
   voxrt_pixels #(
-    .Lanes   (Lanes),
-    .MaxDepth(MaxDepth),
-    .Light   (Light),
-    .Mirrors (Mirrors),
-    .Strips  (Strips)
+    .Lanes    (Lanes),
+    .MaxDepth (MaxDepth),
+    .Light    (Light),
+    .Mirrors  (Mirrors),
+    .Strips   (Strips),
+    .RayClocks(RayClocks)
   ) u_pixels (
     .clk_i,
     .rst_ni,

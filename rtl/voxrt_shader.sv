@@ -1,4 +1,4 @@
-// From materials and faces to colours, exact to the last bit, one pixel per clock:
+// From materials and faces to colours, exact to the last bit, one pixel per RayClocks clocks:
 //   colour = round half up (c * part / whole)
 //   by face             the face's brightness / 255; flat: 255 / 255
 //   by angle            d_a**2 / |d|**2, a the axis crossed, d the ray's direction: the report's perceptual curve
@@ -14,7 +14,8 @@
 module voxrt_shader
   import voxrt_pkg::*;
 #(
-  parameter bit Given = 1'b0
+  parameter bit          Given     = 1'b0,
+  parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
@@ -64,9 +65,19 @@ module voxrt_shader
   // Credits: places in the FIFO that are not reserved for a pixel under way.
   localparam int unsigned CountBits = $clog2(FifoDepth) + 1;
   logic [CountBits-1:0] credits_q;
-  logic                  leaves, ready_q;
+  logic                 leaves, ready_q, advance;
+  logic [1:0]           turn;
 
-  assign ready_o = ready_q && direction_valid;
+  voxrt_turns #(
+    .RayClocks(RayClocks)
+  ) u_turns (
+    .clk_i,
+    .rst_ni,
+    .turn_o   (turn),
+    .advance_o(advance)
+  );
+
+  assign ready_o = ready_q && direction_valid && advance;
   assign enters  = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
@@ -79,13 +90,17 @@ module voxrt_shader
     end
   end
 
-  logic [Stages:1] valid_q;
-  info_t          info_q[1:Stages];
+  // The pipeline moves when `advance` is high; `moves`: a stage that holds a pixel does.
+  logic [Stages:1] valid_q, moves;
+  info_t           info_q[1:Stages];
+
+  assign moves = advance ? valid_q : '0;
 
   always_ff @(posedge clk_i) begin
-    valid_q    <= rst_ni ? {valid_q[Stages-1:1], enters} : '0;
-    info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
-    for (int unsigned s = 2; s <= Stages; s++) if (valid_q[s-1]) info_q[s] <= info_q[s-1];
+    if (advance) valid_q <= {valid_q[Stages-1:1], enters};
+    if (!rst_ni) valid_q <= '0;
+    if (enters) info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
+    for (int unsigned s = 2; s <= Stages; s++) if (moves[s-1]) info_q[s] <= info_q[s-1];
   end
 
   // 1 direction, material.
@@ -107,12 +122,12 @@ module voxrt_shader
       brightness_q[1] <= Given ? brightness_i : '0;
       direction1_q    <= direction;
     end
-    if (valid_q[1]) begin
+    if (moves[1]) begin
       channel_q[2] <= {ChannelBits'(colour1_q.blue), ChannelBits'(colour1_q.green), ChannelBits'(colour1_q.red)};
       if (Given && brightness_q[1].sum_given) channel_q[2] <= $bits(channel_q[2])'(brightness_q[1].sum);
     end
-    for (int unsigned s = 3; s <= 5; s++) if (valid_q[s-1]) channel_q[s] <= channel_q[s-1];
-    for (int unsigned s = 2; s <= 4; s++) if (valid_q[s-1]) brightness_q[s] <= brightness_q[s-1];
+    for (int unsigned s = 3; s <= 5; s++) if (moves[s-1]) channel_q[s] <= channel_q[s-1];
+    for (int unsigned s = 2; s <= 4; s++) if (moves[s-1]) brightness_q[s] <= brightness_q[s-1];
   end
 
   // 2 sizes, 3 and 4 squares, 5 sums; on the way the brightness of the face, where it does not depend on the angle.
@@ -123,21 +138,22 @@ module voxrt_shader
   logic [7:0]               face3_q, face4_q;
   face_e                    angle4_q;  // The axis whose square it is; FaceNone: the face's brightness.
 
-  for (genvar a = 0; a < 3; a++) begin : gen_square
-    voxrt_multiply #(
-      .ABits    (DirectionBits),
-      .BBits    (DirectionBits),
-      .LogicBits(DirectionBits - MultiplierSide)
-    ) u_square (
-      .clk_i,
-      .a_i      (size2_q[a]),
-      .b_i      (size2_q[a]),
-      .product_o(square4[a])
-    );
-  end
+  voxrt_three_products #(
+    .RayClocks(RayClocks),
+    .ABits    (DirectionBits),
+    .BBits    (DirectionBits),
+    .LogicBits({3{8'(DirectionBits - MultiplierSide)}})
+  ) u_squares (
+    .clk_i,
+    .turn_i   (turn),
+    .advance_i(advance),
+    .a_i      (size2_q),
+    .b_i      (size2_q),
+    .product_o(square4)
+  );
 
   always_ff @(posedge clk_i) begin
-    if (valid_q[1]) begin
+    if (moves[1]) begin
       for (int unsigned a = 0; a < 3; a++) begin
         size2_q[a] <= DirectionBits'(direction1_q[a] < 0 ? -direction1_q[a] : direction1_q[a]);
       end
@@ -147,15 +163,15 @@ module voxrt_shader
         default: upper2_q <= direction1_q[2] < 0;
       endcase
     end
-    if (valid_q[2]) begin
+    if (moves[2]) begin
       face3_q <= face_brightness(shading_i.brightness, shading_i.flat, info_q[2].pixel.face, upper2_q);
       if (Given) face3_q <= 8'(FaceUnit);  // Without a face; of others voxrt_brightness has it.
     end
-    if (valid_q[3]) begin
+    if (moves[3]) begin
       face4_q  <= face3_q;
       angle4_q <= shading_i.flat || shading_i.faces ? FaceNone : info_q[3].pixel.face;
     end
-    if (valid_q[4]) begin
+    if (moves[4]) begin
       sum5_q <= SumBits'(square4[0]) + SumBits'(square4[1]) + SumBits'(square4[2]);
       unique case (angle4_q)
         FaceX:   square5_q <= square4[0];
@@ -171,32 +187,45 @@ module voxrt_shader
         sum5_q    <= brightness_q[4].whole;
       end
     end
-    if (valid_q[5]) sum6_q <= sum5_q;
-    if (valid_q[6]) sum7_q <= sum6_q;
-    if (valid_q[7]) sum8_q <= sum7_q;
+    if (moves[5]) sum6_q <= sum5_q;
+    if (moves[6]) sum7_q <= sum6_q;
+    if (moves[7]) sum8_q <= sum7_q;
   end
 
   // 6 and 7 colour x square, 8 dividend, then the bits of (2 c d_a**2 + |d|**2) / (2 |d|**2).
-  logic [7:0] quotient[3];
+  localparam logic [7:0] ProductLogicBits = 8'(SquareBits - (MultiplierBits - 1));
+  logic [            SquareBits-1:0] square5[3];
+  logic [           ChannelBits-1:0] channel5[3];
+  logic [SquareBits+ChannelBits-1:0] product7[3];
+  logic [                       7:0] quotient[3];
+
+  always_comb begin
+    for (int unsigned c = 0; c < 3; c++) begin
+      square5[c]  = square5_q;
+      channel5[c] = channel_q[5][c];
+    end
+  end
+
+  // One DSP slice, and one for the bits that it leaves; in two channels of three, logic for those.
+  voxrt_three_products #(
+    .RayClocks(RayClocks),
+    .ABits    (SquareBits),
+    .BBits    (ChannelBits),
+    .LogicBits({8'd0, ProductLogicBits, ProductLogicBits})
+  ) u_products (
+    .clk_i,
+    .turn_i   (turn),
+    .advance_i(advance),
+    .a_i      (square5),
+    .b_i      (channel5),
+    .product_o(product7)
+  );
 
   for (genvar c = 0; c < 3; c++) begin : gen_channel
-    logic [SquareBits+ChannelBits-1:0] product7;
-    logic [SumBits+8:0]                dividend8_q;
-
-    // One DSP slice, and one for the bits that it leaves; in two channels of three, logic for those.
-    voxrt_multiply #(
-      .ABits    (SquareBits),
-      .BBits    (ChannelBits),
-      .LogicBits(c == 2 ? 0 : SquareBits - (MultiplierBits - 1))
-    ) u_product (
-      .clk_i,
-      .a_i      (square5_q),
-      .b_i      (channel_q[5][c]),
-      .product_o(product7)
-    );
+    logic [SumBits+8:0] dividend8_q;
 
     always_ff @(posedge clk_i) begin
-      if (valid_q[7]) dividend8_q <= (SumBits + 9)'({product7, 1'b0}) + (SumBits + 9)'(sum7_q);
+      if (moves[7]) dividend8_q <= (SumBits + 9)'({product7[c], 1'b0}) + (SumBits + 9)'(sum7_q);
     end
 
     voxrt_divide #(
@@ -204,7 +233,7 @@ module voxrt_shader
       .QuotientBits(8)
     ) u_divide (
       .clk_i,
-      .valid_i   (valid_q[Stages-1:Setup]),
+      .valid_i   (moves[Stages-1:Setup]),
       .dividend_i(dividend8_q),
       .divisor_i ({sum8_q, 1'b0}),
       .quotient_o(quotient[c])
@@ -229,7 +258,7 @@ module voxrt_shader
   ) u_out (
     .clk_i,
     .rst_ni,
-    .valid_i(valid_q[Stages]),
+    .valid_i(moves[Stages]),
     .ready_o(fifo_ready),
     .data_i (shaded),
     .valid_o(pixel_valid_o),
@@ -246,7 +275,7 @@ module voxrt_shader
 
   always_ff @(posedge clk_i) begin
     if (rst_ni && reset_seen_q) begin
-      assert (!valid_q[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
+      assert (!moves[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
       assert (credits_q <= CountBits'(FifoDepth)) else $error("more credits than places");
     end
   end

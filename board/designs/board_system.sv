@@ -9,6 +9,7 @@ module board_system
   parameter int unsigned MemoryForm       = 0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
+  parameter int unsigned RayClocks    = 1,
   parameter int unsigned ClockHz      = 75_000_000,
   parameter int unsigned LineBits     = 4,
   parameter int unsigned GapBits      = 22,
@@ -64,6 +65,7 @@ module board_system
     .MemoryForm  (MemoryForm),
     .Light       (Light),
     .Mirrors     (Mirrors),
+    .RayClocks   (RayClocks),
     .OctreeFile  (OctreeFile)
   ) u_core (
     .clk_i,

@@ -5,8 +5,8 @@ import random
 import cocotb
 import numpy as np
 from axi_memory import DECERR, SLVERR, AxiMemory, PinPort
-from bench_core import CAMERA, COLOURS, Core, scene
 from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
+from core_driver import CAMERA, COLOURS, Core, scene
 from oracles.memory import words_of
 from oracles.ray import render
 

@@ -161,6 +161,7 @@ async def reset_at_any_clock(dut):
             assert not int(dut.access_valid_o.value)
             assert not int(dut.ack_o.value)
         await memory.read(100, "random", "random")
+        await ClockCycles(dut.clk_i, memory.clocks + 1)  # The next questions are not to meet these answers.
 
 
 @cocotb.test()

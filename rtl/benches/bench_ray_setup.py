@@ -8,7 +8,7 @@ from rays import FACE_NONE, ray_of, some_direction
 from streams import drive, pace, reset, start
 from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, signed, unpacked_array
 
-LANES, LATENCY = 3, 40
+LANES, LATENCY = 3, 60
 KEY_BITS = 52  # voxrt_pkg::key_bits(6, 1).
 
 
@@ -73,6 +73,13 @@ def expected(ray, lane, tag, shadow):
     }
 
 
+async def taken(dut):
+    """Wait for the clock edge at which the ray is taken."""
+    await RisingEdge(dut.clk_i)
+    while not int(dut.ready_o.value):
+        await RisingEdge(dut.clk_i)
+
+
 async def frame(dut, count, kind):
     """Send rays of one frame, and compare."""
     depth = random.randint(1, 6)
@@ -91,7 +98,7 @@ async def frame(dut, count, kind):
         wanted.append(expected(ray, lane, tag, shadow))
         drive(dut, valid_i=1, lane_i=lane, direction_i=direction, shadow_i=shadow, tag_i=tag)
         drive(dut, point_i=packed_array(point if shadow else [0, 0, 0], SHADOW_POINT))
-        await RisingEdge(dut.clk_i)
+        await taken(dut)
     drive(dut, valid_i=0)
     await ClockCycles(dut.clk_i, LATENCY)
     collector.cancel()
@@ -118,7 +125,7 @@ async def a_world_of_one_leaf_is_answered(dut):
     cocotb.start_soon(collect(dut, got))
     for direction in ([9, 1, 1], [-9, 1, 1]):
         drive(dut, valid_i=1, direction_i=direction)
-        await RisingEdge(dut.clk_i)
+        await taken(dut)
     drive(dut, valid_i=0)
     await ClockCycles(dut.clk_i, LATENCY)
     assert [(ray["resolved"], ray["pixel"]) for ray in got] == [(1, 7 << 2), (1, FACE_NONE)]

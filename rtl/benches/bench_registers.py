@@ -4,9 +4,9 @@ import random
 import re
 
 import cocotb
-from bench_core import Core
 from cocotb.triggers import ClockCycles
 from cocotbext.axi import AxiResp
+from core_driver import Core
 from run import GENERATED
 from voxrt_registers import MATERIALS, REGISTERS
 

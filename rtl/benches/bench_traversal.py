@@ -9,8 +9,8 @@ import itertools
 import random
 
 import cocotb
-from bench_core import COLOURS, Core
 from cocotb.triggers import RisingEdge
+from core_driver import COLOURS, Core
 from oracles.ray import FACE_NONE, shade
 
 DEPTH = 10

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import cocotb
 import numpy as np
-from bench_core import CAMERA, Core, scene
 from cocotb.triggers import ClockCycles, RisingEdge
+from core_driver import CAMERA, Core, scene
 from oracles.memory import words_of
 
 WRITTEN = Path("waveforms.txt")
