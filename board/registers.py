@@ -19,6 +19,7 @@ REGISTERS = {
         {
             "lanes": (0, 8),
             "max_depth": (8, 5),
+            "ray_clocks": (13, 3),
             "position_bits": (16, 6),
             "block_bits": (24, 5),
             "cached": (30, 1),

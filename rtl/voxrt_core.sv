@@ -269,6 +269,7 @@ module voxrt_core
 
   assign status.configuration.lanes.next         = 8'(Lanes);
   assign status.configuration.max_depth.next     = 5'(MaxDepth);
+  assign status.configuration.ray_clocks.next    = 3'(RayClocks);
   assign status.configuration.position_bits.next = 6'(PositionBits);
   assign status.configuration.block_bits.next    = 5'(BlockBits);
   assign status.configuration.banked.next        = MemoryForm == BankedForm;

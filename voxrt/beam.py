@@ -71,6 +71,7 @@ def fit_beam(
     lighting: Lighting,
     *,
     lanes: int,
+    ray_clocks: int = 1,
     clock_hz: int,
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> BeamFit:
@@ -86,8 +87,8 @@ def fit_beam(
         Of the orbit, for pictures of 640 x 480 pixels.
     lighting
         Of the pictures.
-    lanes
-        Of the board's ray tracer.
+    lanes, ray_clocks
+        Of the board's ray tracer: its parameters ``Lanes`` and ``RayClocks``.
     clock_hz
         Its clock.
     progress
@@ -98,7 +99,7 @@ def fit_beam(
     SimulatorError
         The verilated ray tracer is missing, or has no such lanes, or cannot hold the scene.
     """
-    config = _configuration(lanes, lighting)
+    config = _configuration(lanes, ray_clocks, lighting)
     views = [cameras[i * len(cameras) // _VIEWS] for i in range(min(_VIEWS, len(cameras)))]
     line = clock_hz * LINE_PIXELS / PIXEL_HZ
 
@@ -164,13 +165,15 @@ def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
     return float(lead)
 
 
-def _configuration(lanes: int, lighting: Lighting) -> str:
-    """Name the verilated configuration with so many lanes, a memory of one port per lane, and the features."""
+def _configuration(lanes: int, ray_clocks: int, lighting: Lighting) -> str:
+    """Name the verilated configuration with these lanes, a memory of one port per lane, and the features."""
+    wanted = {"Lanes": lanes, "RayClocks": ray_clocks, "MemoryForm": 0}
     for each in read_configurations().values():
-        built = each.parameters
-        if built["Lanes"] == lanes and built["MemoryForm"] == 0 and not lighting.features - set(each.features):
+        if wanted.items() <= each.parameters.items() and not lighting.features - set(each.features):
             return each.name
-    raise sim.SimulatorError(f"no simulated ray tracer has {lanes} lanes and {', '.join(sorted(lighting.features))}")
+    features = f" and {', '.join(sorted(lighting.features))}" if lighting.features else ""
+    clocks = f", {ray_clocks} clocks per ray" if ray_clocks > 1 else ""
+    raise sim.SimulatorError(f"no simulated ray tracer has {lanes} lanes{clocks}{features}")
 
 
 def _row_cycles(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> list[float]:

@@ -108,6 +108,7 @@ class SerialDevice:
             raise DeviceError(f"{link.name}: design version {version >> 8} is not supported; load a new bitstream")
         configuration = self._core("configuration")
         self.lanes = lanes = configuration["lanes"]
+        self.ray_clocks = configuration["ray_clocks"]
         self.clock_hz = self._board("clock")
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",

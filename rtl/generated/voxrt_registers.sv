@@ -1542,6 +1542,7 @@ module voxrt_registers (
         if(ad_low(rd_mux_addr) == ad_low(11'h8)) begin
             readback_data_var[ad_hi(11'h8)][7:0] = hwif_in.configuration.lanes.next;
             readback_data_var[ad_hi(11'h8)][12:8] = hwif_in.configuration.max_depth.next;
+            readback_data_var[ad_hi(11'h8)][15:13] = hwif_in.configuration.ray_clocks.next;
             readback_data_var[ad_hi(11'h8)][21:16] = hwif_in.configuration.position_bits.next;
             readback_data_var[ad_hi(11'h8)][28:24] = hwif_in.configuration.block_bits.next;
             readback_data_var[ad_hi(11'h8)][30] = hwif_in.configuration.cached.next;

@@ -16,6 +16,10 @@ package voxrt_registers_pkg;
     } voxrt_registers__configuration__max_depth__in_t;
 
     typedef struct {
+        logic [2:0] next;
+    } voxrt_registers__configuration__ray_clocks__in_t;
+
+    typedef struct {
         logic [5:0] next;
     } voxrt_registers__configuration__position_bits__in_t;
 
@@ -34,6 +38,7 @@ package voxrt_registers_pkg;
     typedef struct {
         voxrt_registers__configuration__lanes__in_t lanes;
         voxrt_registers__configuration__max_depth__in_t max_depth;
+        voxrt_registers__configuration__ray_clocks__in_t ray_clocks;
         voxrt_registers__configuration__position_bits__in_t position_bits;
         voxrt_registers__configuration__block_bits__in_t block_bits;
         voxrt_registers__configuration__cached__in_t cached;

@@ -82,6 +82,7 @@ def bitstream(
             cameras,
             lighting,
             lanes=design.core["Lanes"],
+            ray_clocks=design.core["RayClocks"],
             clock_hz=design.clock_hz,
             progress=lambda done, total: progress("count cycles", done, total),
         )

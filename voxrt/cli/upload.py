@@ -125,6 +125,7 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
                     orbit(rom, SCREEN),
                     lighting,
                     lanes=device.lanes,
+                    ray_clocks=device.ray_clocks,
                     clock_hz=device.clock_hz,
                     progress=lambda done, total: progress("count cycles", done, total),
                 )
