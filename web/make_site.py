@@ -108,6 +108,7 @@ def add_three(folder: Path) -> None:
     shutil.copyfile(package / "LICENSE", folder / "LICENSE")
     core = (package / "build" / "three.core.js").read_text(encoding="utf-8")
     (folder / "three.core.js").write_text(without_manual(core), encoding="utf-8")
+    add_draco(package / "examples" / "jsm" / "libs" / "draco" / "gltf", folder / "draco")
     waiting = list(ADDONS)
     while waiting:
         name = waiting.pop()
@@ -121,6 +122,15 @@ def add_three(folder: Path) -> None:
         waiting += [resolved(name, path) for path in imported if path.startswith(".")]
         text = IMPORT.sub(lambda m, core=core: f"{m[1]}'{core}'" if m[3] == "three" else m[0], text)
         target.write_text(without_manual(text), encoding="utf-8")
+
+
+def add_draco(source: Path, folder: Path) -> None:
+    """Copy the decoder of Draco; its script becomes a module that does not look for Node."""
+    folder.mkdir()
+    shutil.copyfile(source / "draco_decoder.wasm", folder / "draco_decoder.wasm")
+    script = (source / "draco_wasm_wrapper.js").read_text(encoding="utf-8")
+    head = "// Draco by Google, Apache License 2.0: https://github.com/google/draco\nconst process = undefined;\n"
+    (folder / "draco_decoder.js").write_text(f"{head}{script}\nexport default DracoDecoderModule;\n", encoding="utf-8")
 
 
 def without_manual(text: str) -> str:

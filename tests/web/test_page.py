@@ -134,6 +134,22 @@ def test_a_magicavoxel_scene_is_shown_exactly(browser: Browser, tmp_path: Path) 
     assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
 
 
+def test_draco_is_decoded_as_natively(browser: Browser) -> None:
+    pytest.importorskip("DracoPy")
+    for name in ("draco/Box/glTF_Binary/Box_Draco.glb", "glTF-Transform/functions/test/in/DenseSphere.glb"):
+        path = asset(f"gltf/{name}")
+        opened(browser)
+        assert browser.until(shown("courtyard", 7))
+        drop(browser, path)
+        assert browser.until(shown(path.stem, 7)), notice(browser)
+        camera, size, colours = frame_of(browser)
+        rom = voxrt.build(path, depth=7).rom
+        registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+        assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+        assert f"{len(rom.octree.words):,}" in browser.run("return document.querySelector('#facts').innerText")
+        assert browser.faults() == []
+
+
 def test_malformed_assets_never_end_the_page(browser: Browser) -> None:
     """Each is refused or shown; the page stays."""
     opened(browser)

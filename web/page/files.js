@@ -84,6 +84,8 @@ async function readGltf(main, folder, voxrt) {
   const loader = new GLTFLoader(await folder.manager());
   const { MeshoptDecoder } = await addon("libs/meshopt_decoder.module");
   loader.setMeshoptDecoder(MeshoptDecoder);
+  const { DracoDecoder } = await import("./draco.js");
+  loader.setDRACOLoader(new DracoDecoder());
   const looks = new GltfLooks(folder);
   const { Texture } = await import("./three/three.core.js");
   for (const name of GltfLooks.loaders) loader.register((parser) => ({ name, loadTexture: (index) => looks.placeholder(parser, index, new Texture()) }));
@@ -92,7 +94,6 @@ async function readGltf(main, folder, voxrt) {
     gltf = await loader.parseAsync(main.bytes.buffer, "");
   } catch (error) {
     folder.close();
-    if (/draco/i.test(error.message)) throw new FileError("is compressed by Draco, which this page does not read; voxrt build does");
     throw error;
   }
   folder.close();
