@@ -175,17 +175,26 @@ def test_broken_images_are_refused_in_one_line(tmp_path: Path) -> None:
         assert "\n" not in one["problem"]
 
 
-COLOURED = (
-    *("gltf/bevy/PalmTree/PalmTree.gltf", "gltf/bevy/animated/MorphStressTest.gltf"),
-    *("gltf/manifold/mengerSponge3.glb", "gltf/trimesh/CesiumMilkTruck.glb", "gltf/bevy/animated/Fox.glb"),
-    *("gltf/draco/VertexColorTest/glTF/VertexColorTest.gltf", "obj/assimp/cube_with_vertexcolors.obj"),
-    *("ply/USD-Fileformat-plugins/colors.ply", "ply/USD-Fileformat-plugins/gargo.ply"),
+ASSETS = (
+    *(f"gltf/bevy/{name}" for name in ("PalmTree/PalmTree.gltf", "animated/MorphStressTest.gltf", "animated/Fox.glb")),
+    *("gltf/manifold/mengerSponge3.glb", "gltf/trimesh/CesiumMilkTruck.glb", "gltf/trimesh/BoxInterleaved.glb"),
+    *("gltf/draco/VertexColorTest/glTF/VertexColorTest.gltf", "gltf/trimesh/nested.glb", "gltf/3d-demo-data/scene.glb"),
+    *("gltf/Vulkan-Assets/retroufo.glb", "gltf/bevy/AlienCake/alien.glb", "gltf/bevy/AlienCake/cakeBirthday.glb"),
+    *("gltf/bevy/CornellBox/CornellBox.glb", "gltf/meshoptimizer/pirate.glb", "gltf/cesium-native/0.gltf"),
+    *("gltf/glTF-Blender-IO/24_gpu_instancing.gltf", "gltf/glTF-Transform/functions/test/in/ShapeCollection.glb"),
+    *(f"gltf/gltf-pipeline/{name}/{name}.gltf" for name in ("meshopt-fallback", "meshopt-no-fallback")),
+    *("obj/assimp/cube_with_vertexcolors.obj", "obj/assimp/number_formats.obj", "obj/kaolin/amsterdam.obj"),
+    *("obj/assimp/box_UTF16BE.obj", "obj/tinyobjloader/cornell_box_multimaterial.obj", "obj/trimesh/rabbit.obj"),
+    *("obj/trimesh/quadknot.obj", "obj/trimesh/negative_indices.obj", "ply/trimesh/cube_blender_uv.ply"),
+    *(f"ply/USD-Fileformat-plugins/{name}.ply" for name in ("colors", "gargo")),
+    *("ply/assimp/cube_uv.ply", "ply/assimp/float-color.ply", "stl/trimesh/soup.stl"),
+    *(f"stl/USD-Fileformat-plugins/{name}.stl" for name in ("ascii", "car", "suzanne")),
 )
-"""Textures of PNG, or vertex colours."""
+"""Files of all kinds, with textures of PNG, with vertex colours and without either."""
 
 
-@pytest.mark.parametrize("name", COLOURED)
-def test_coloured_assets_have_the_words_of_the_native_module(name: str) -> None:
+@pytest.mark.parametrize("name", ASSETS)
+def test_shared_assets_have_the_words_of_the_native_module(name: str) -> None:
     path = asset(name)
     beside = [one for one in sorted(path.parent.rglob("*")) if one.suffix in {".bin", ".png", ".mtl"}]
     ((native, found),) = build_both([[path, *beside]], 7)

@@ -129,14 +129,20 @@ async function readGltf(main, folder, voxrt) {
   return scene;
 }
 
+// Text of UTF-8, or of UTF-16 where it begins with its mark.
+function textOf(bytes) {
+  const mark = (bytes[0] << 8) | bytes[1];
+  return new TextDecoder({ 0xfeff: "utf-16be", 0xfffe: "utf-16le" }[mark] ?? "utf-8").decode(bytes);
+}
+
 async function readObj(main, folder, voxrt) {
   const [{ OBJLoader }, { MTLLoader }] = [await addon("loaders/OBJLoader"), await addon("loaders/MTLLoader")];
-  const text = new TextDecoder().decode(main.bytes);
+  const text = textOf(main.bytes);
   const library = new Map();
   for (const [, name] of text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)) {
     const file = folder.find(name);
     if (!file) continue;
-    const { materialsInfo } = new MTLLoader().parse(new TextDecoder().decode(file.bytes), "");
+    const { materialsInfo } = new MTLLoader().parse(textOf(file.bytes), "");
     for (const [key, info] of Object.entries(materialsInfo)) if (!library.has(key)) library.set(key, info);
   }
   const root = new OBJLoader().parse(text);
