@@ -152,7 +152,7 @@ async function readObj(main, folder, voxrt) {
     materialOf: ({ name }) => {
       const { kd } = library.get(name) ?? {};
       if (!name || (!kd && !text.includes("usemtl"))) return null;
-      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200], authored: Boolean(kd) };
+      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200] };
     },
     ...looks.rules,
   });
