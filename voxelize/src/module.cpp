@@ -1,4 +1,5 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
+#include "colour_bindings.h"
 #include "convex_hull.h"
 #include "python.h"
 #include "scene_bindings.h"
@@ -254,5 +255,6 @@ NB_MODULE(_native, m) {
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
           nb::arg("threads"), kVoxelizeManual);
     bind_scene(m);
+    bind_colour(m);
     m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);
 }
