@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 namespace voxrt::voxelize {
 namespace {
@@ -150,8 +152,64 @@ bool find_gradient(const CapWinding::Cap& cap, const Point& q, double radius, do
 } // namespace
 
 CapWinding::CapWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
-    if (!caps_.empty())
-        build(0, uint32_t(caps_.size()));
+    if (caps_.empty())
+        return;
+    build(0, uint32_t(caps_.size()));
+    find_vertices();
+    pair_edges();
+}
+
+void CapWinding::find_vertices() {
+    std::vector<uint32_t> order(3 * caps_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto at = [this](uint32_t corner) -> const Point& { return caps_[corner / 3][corner % 3]; };
+    WorkCounter& work = WorkCounter::current();
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        work.count(1);
+        const Point &p = at(a), &q = at(b);
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    });
+    corners_.resize(order.size());
+    for (const uint32_t corner : order) {
+        if (vertices_.empty() || !(vertices_.back() == at(corner)))
+            vertices_.push_back(at(corner));
+        corners_[corner] = uint32_t(vertices_.size() - 1);
+    }
+}
+
+void CapWinding::pair_edges() {
+    struct Edge {
+        uint32_t low, high;
+        uint32_t number; // 3 * cap + corner
+        bool forward;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(corners_.size());
+    for (uint32_t number = 0; number < corners_.size(); ++number) {
+        const uint32_t a = corners_[number], b = corners_[number % 3 == 2 ? number - 2 : number + 1];
+        edges.push_back({std::min(a, b), std::max(a, b), number, a < b});
+    }
+    WorkCounter& work = WorkCounter::current();
+    std::sort(edges.begin(), edges.end(), [&work](const Edge& a, const Edge& b) {
+        work.count(1);
+        return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
+    });
+    across_.assign(edges.size(), kNoCap);
+    std::vector<uint32_t> open; // edges of one direction that have no partner yet
+    bool forward = false;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const Edge& edge = edges[i];
+        if (i > 0 && (edge.low != edges[i - 1].low || edge.high != edges[i - 1].high))
+            open.clear();
+        if (open.empty() || forward == edge.forward) {
+            forward = edge.forward;
+            open.push_back(edge.number);
+            continue;
+        }
+        across_[open.back()] = edge.number / 3;
+        across_[edge.number] = open.back() / 3;
+        open.pop_back();
+    }
 }
 
 int32_t CapWinding::build(uint32_t first, uint32_t last) {
@@ -294,6 +352,36 @@ void CapWinding::expand(const LocalExpansion& from, const Point& centre, double 
     count_work(2 * visited);
     to.far.angle += far.over_4_pi();
     to.near.angle += near.over_4_pi();
+}
+
+void CapWinding::split(const Point& centre, double radius, double far_error, LinearExpansion& far,
+                       std::vector<uint32_t>& near) const {
+    int32_t stack[64];
+    int depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
+    uint32_t visited = 0;
+    while (depth > 0) {
+        ++visited;
+        const Node& node = nodes_[stack[--depth]];
+        const Point d = minus(node.centre, centre);
+        const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
+        if (spread < kFarthestEnd * distance) {
+            const double error = node.area * dipole_error(spread / distance) / square;
+            if (error <= far_error) {
+                add_dipole(node, d, square, far);
+                far.error_bound += error;
+                continue;
+            }
+        }
+        if (node.left >= 0) {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+        } else {
+            near.push_back(node.first);
+        }
+    }
+    count_work(2 * visited);
 }
 
 double CapWinding::at(const Point& q, double tolerance) const {

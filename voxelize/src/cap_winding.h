@@ -62,6 +62,22 @@ public:
     /// far, and exact apart from what `from` had resolved; `centre` must then be a sample point of a voxel.
     void expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const;
 
+    /// The caps for points in the ball of `radius` about `centre`, from the root: nodes whose error is at most
+    /// `far_error` each go into `far`, an expansion about `centre`; the caps of all others are appended to `near`.
+    void split(const Point& centre, double radius, double far_error, LinearExpansion& far,
+               std::vector<uint32_t>& near) const;
+
+    static constexpr uint32_t kNoCap = 0xFFFF'FFFF;
+    size_t count() const { return caps_.size(); }
+    size_t vertex_count() const { return vertices_.size(); }
+    const Point& vertex(uint32_t number) const { return vertices_[number]; }
+    /// Corner i of a cap: the number of its vertex. Vertices at one position are one.
+    uint32_t corner(uint32_t cap, int i) const { return corners_[3 * size_t{cap} + i]; }
+    /// The cap that has the edge from corner i to the next the other way round, or kNoCap.
+    uint32_t across(uint32_t cap, int i) const { return across_[3 * size_t{cap} + i]; }
+    /// A length that all caps lie within.
+    double radius() const { return nodes_.empty() ? 0 : nodes_[0].radius; }
+
     /// The solid angle over 4 pi at q, with an error of at most `tolerance`. On a cap, q counts as just below it, as in
     /// the column sweep.
     double at(const Point& q, double tolerance) const;
@@ -75,11 +91,16 @@ private:
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
+    void find_vertices();
+    void pair_edges();
     static double dipole_angle(const Node& node, const Point& d, double square);
     static void add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum);
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;
+    std::vector<Point> vertices_;
+    std::vector<uint32_t> corners_; // 3 per cap
+    std::vector<uint32_t> across_;  // 3 per cap
 };
 
 } // namespace voxrt::voxelize
