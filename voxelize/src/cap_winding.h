@@ -33,18 +33,6 @@ struct LinearExpansion {
     double error_bound = 0;
 };
 
-/// The solid angle of all caps over 4 pi inside a ball.
-struct LocalExpansion {
-    Point centre{0, 0, 0};
-    LinearExpansion far;
-    LinearExpansion near;             // of caps that smaller balls inside this one approximate better
-    std::vector<uint32_t> unresolved; // nodes of all caps that are not in `far`
-    double remainder_bound = 0;       // bound of what the caps in neither add
-    /// Caps pass through the ball. `near` takes them as seen from the centre. A point beyond such a cap keeps that
-    /// angle; together with the winding number of the capped surface at the centre it stays correct.
-    bool crossed = false;
-};
-
 /// Caps in a tree of dipoles. Building takes n log n.
 class CapWinding {
 public:
@@ -55,16 +43,10 @@ public:
 
     bool empty() const { return caps_.empty(); }
 
-    /// The expansion to start from, in which nothing is resolved.
-    LocalExpansion unresolved() const;
-
-    /// Expands about `centre`, for a ball of radius `radius` that lies inside the ball of `from`. With radius 0 all is
-    /// far, and exact apart from what `from` had resolved; `centre` must then be a sample point of a voxel.
-    void expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const;
-
     /// The caps for points in the ball of `radius` about `centre`, from the root: nodes whose error is at most
     /// `far_error` each go into `far`, an expansion about `centre`; the caps of all others are appended to `near`.
-    void split(const Point& centre, double radius, double far_error, LinearExpansion& far,
+    /// Gives up, and returns false, where these become more than `most`.
+    bool split(const Point& centre, double radius, double far_error, size_t most, LinearExpansion& far,
                std::vector<uint32_t>& near) const;
 
     static constexpr uint32_t kNoCap = 0xFFFF'FFFF;
@@ -75,9 +57,6 @@ public:
     uint32_t corner(uint32_t cap, int i) const { return corners_[3 * size_t{cap} + i]; }
     /// The cap that has the edge from corner i to the next the other way round, or kNoCap.
     uint32_t across(uint32_t cap, int i) const { return across_[3 * size_t{cap} + i]; }
-    /// A length that all caps lie within.
-    double radius() const { return nodes_.empty() ? 0 : nodes_[0].radius; }
-
     /// The solid angle over 4 pi at q, with an error of at most `tolerance`. On a cap, q counts as just below it, as in
     /// the column sweep.
     double at(const Point& q, double tolerance) const;

@@ -24,8 +24,9 @@ namespace voxrt::voxelize {
 class GeneralizedInside {
 public:
     /// Of a brick. `capped`: inside where the winding number of the capped surface is not zero. `mixed`: voxel by
-    /// voxel.
-    enum class Class : uint8_t { outside, inside, capped, mixed };
+    /// voxel. `rough`: likewise, and near the boundary of a hole.
+    enum class Class : uint8_t { outside, inside, capped, mixed, rough };
+    static bool is_mixed(Class c) { return c == Class::mixed || c == Class::rough; }
 
     /// What the classification needs to know of a brick: the capped surface's winding number at two of its voxels.
     struct Brick {
@@ -54,9 +55,8 @@ public:
 
     /// Classifies all bricks.
     void classify() {
-        const LocalExpansion all = caps_->unresolved();
         for (int k = 0; k < height_; k += kTileBricks)
-            classify_cube(0, 0, k, kTileBricks, all, 0);
+            classify_cube(0, 0, k, kTileBricks);
     }
 
     Class class_of(int column, int k) const { return classes_[size_t(column) * height_ + k]; }
@@ -90,17 +90,23 @@ public:
         for (int z = 0; z < kBrickSide; ++z)
             undecided_[z] &= ~surface[z];
         const Cell brick{0, 0, 0, std::min(side_, kBrickSide)};
-        // Most voxels are far from 1/2: few caps are near enough to matter for them.
-        for (double far_error = kCoarsest; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner) {
-            const bool first = far_error == kCoarsest;
+        // Most voxels near a boundary are far from 1/2: few caps are near enough to matter for them.
+        double far_error = class_of(column, k) == Class::rough ? kCoarsest : kFine;
+        for (bool first = true; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner, first = false) {
             const Ball ball = first ? Ball{centre_of(brick), radius_of(brick)} : around_undecided();
-            near_.gather(*caps_, ball.centre, ball.radius, far_error);
-            if (first)
+            near_.gather(*caps_, ball.centre, ball.radius, far_error, NearCaps::kAll);
+            if (first || count_undecided(brick) > kFewVoxels) {
+                rough_ = {};
                 classify_cell(brick);
-            classify_one_by_one();
+                classify_one_by_one(rough_);
+            } else {
+                classify_one_by_one(undecided_);
+            }
             if (near_.error_bound() < kRounding)
                 break;
         }
+        if (!is_empty(undecided_))
+            classify_one_by_one(undecided_);
         for (int z = 0; z < kBrickSide; ++z)
             for (; undecided_[z] != 0; undecided_[z] &= undecided_[z] - 1) {
                 const int bit = std::countr_zero(undecided_[z]);
@@ -114,8 +120,10 @@ private:
     static constexpr double kSqrt3 = 1.7320508075688772;
     static constexpr double kTie = 0.5 + 1e-6;          // above 1/2 by more than rounding
     static constexpr double kSample = 0.5 + 1.0 / 8192; // the sample point of a voxel is on its column's ray
-    static constexpr double kCoarsest = 1.0 / 64, kFinest = 1.0 / (1 << 17); // errors of one node of caps
-    static constexpr double kFiner = 32;
+    // Errors of one node of caps: for cubes; for voxels near a boundary; for others; where all else is exact.
+    static constexpr double kCubeError = 1.0 / 256, kCoarsest = 1.0 / 64, kFine = 1.0 / (1 << 13);
+    static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 128;
+    static constexpr size_t kManyCaps = 64; // near a cube: its parts are asked instead
     static constexpr double kRounding = 1e-7;           // of an angle, but for doubtful ones
     static constexpr double kRoundable = 0.375;         // error from which a whole number can be told
     static constexpr int kFewVoxels = 16;               // are decided one by one
@@ -123,46 +131,25 @@ private:
     struct Cell {
         int x, y, z, side; // in a brick
     };
+    struct Ball {
+        Point centre;
+        double radius;
+    };
+
     bool outside_box(int x, int y, int z, int side) const {
         return x > high_[0] || y > high_[1] || z > high_[2] || x + side <= low_[0] || y + side <= low_[1] ||
                z + side <= low_[2];
     }
 
-    /// Expands about a cube whose lowest corner is (x, y, z); returns the largest distance of its sample points from
-    /// the centre. Where caps pass a clear cube, one without surface, the centre is the sample point of a voxel, where
-    /// the capped surface's winding number is known.
-    double expand(const LocalExpansion& from, int x, int y, int z, int side, bool clear, LocalExpansion& to) const {
-        double middle = (side - 1) / 2.0;
-        caps_->expand(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kSqrt3, to);
-        if (!to.crossed || !clear)
-            return middle * kSqrt3;
-        middle = side / 2;
-        caps_->expand(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kSqrt3, to);
-        return middle * kSqrt3;
-    }
-
-    static Point gradient(const LocalExpansion& e) {
-        const Point &f = e.far.gradient, &n = e.near.gradient;
-        return {f.x + n.x, f.y + n.y, f.z + n.z};
-    }
-    static double error_bound(const LocalExpansion& e) {
-        return e.far.error_bound + e.near.error_bound + e.remainder_bound;
-    }
-
-    void classify_cube(int bx, int by, int k, int bricks, const LocalExpansion& from, int level) {
+    void classify_cube(int bx, int by, int k, int bricks) {
         const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
         if (outside_box(x, y, z, side))
             return;
-        const bool within = x + side <= side_ && y + side <= side_ && z + side <= side_;
-        const bool clear = within && !any_surface(bx, by, k, bricks);
-        LocalExpansion& expansion = levels_[level];
-        const double radius = expand(from, x, y, z, side, clear, expansion);
-        const Class result = class_from(expansion, radius, bx, by, k, bricks, clear);
-        if (result == Class::mixed && bricks > 1) {
+        const Class result = class_of_cube(bx, by, k, bricks);
+        if (is_mixed(result) && bricks > 1) {
             const int step = bricks / 2;
             for (int i = 0; i < 8; ++i)
-                classify_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step, expansion,
-                              level + 1);
+                classify_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step);
             return;
         }
         for (int v = by; v < by + bricks; ++v)
@@ -181,19 +168,32 @@ private:
         return false;
     }
 
-    Class class_from(const LocalExpansion& expansion, double radius, int bx, int by, int k, int bricks,
-                     bool clear) const {
-        const Point g = gradient(expansion);
-        const double error = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * radius + error_bound(expansion);
-        const double angle = expansion.far.angle + expansion.near.angle;
-        if (!expansion.crossed && std::abs(angle) + error < 0.5)
+    Class class_of_cube(int bx, int by, int k, int bricks) {
+        const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
+        const bool clear =
+            x + side <= side_ && y + side <= side_ && z + side <= side_ && !any_surface(bx, by, k, bricks);
+        const double middle = (side - 1) / 2.0 + kSample, radius = (side - 1) / 2.0 * kSqrt3;
+        const Point centre{x + middle, y + middle, z + middle};
+        if (!near_.gather(*caps_, centre, radius, kCubeError, bricks > 1 ? kManyCaps : NearCaps::kAll))
+            return Class::rough;
+        const NearCaps::Change change = near_.find_change(centre, radius, 0.5);
+        const double error = 2 * change.error_bound + near_.error_bound() + kRounding;
+        if (!(error < 0.5) || (change.crossed && !clear))
+            return Class::rough;
+        // From the sample point of a voxel, where the winding number of the capped surface is known.
+        const Brick& brick = bricks_[slot(bx + bricks / 2, by + bricks / 2, k + bricks / 2)];
+        const double half = side / 2 + kSample, off = half - middle;
+        bool doubtful;
+        const double angle = near_.find_angle({x + half, y + half, z + half}, doubtful);
+        const double spread = change.most(radius) + std::abs(change.at({off, off, off})) + error;
+        if (doubtful)
+            return Class::rough;
+        if (!change.crossed && std::abs(angle) + spread < 0.5)
             return Class::capped;
         if (!clear)
             return Class::mixed;
-        const int half = bricks / 2;
-        const Brick& middle = bricks_[slot(bx + half, by + half, k + half)];
-        const double there = std::abs((bricks > 1 ? middle.corner : middle.middle) - angle);
-        return there - error > kTie ? Class::inside : there + error < 0.5 ? Class::outside : Class::mixed;
+        const double there = std::abs((bricks > 1 ? brick.corner : brick.middle) - angle);
+        return there - spread > kTie ? Class::inside : there + spread < 0.5 ? Class::outside : Class::mixed;
     }
 
     static uint64_t square_of(const Cell& cell) {
@@ -215,10 +215,6 @@ private:
         return count;
     }
 
-    struct Ball {
-        Point centre;
-        double radius;
-    };
     /// Holds the undecided voxels, of which there are some.
     Ball around_undecided() const {
         uint64_t columns = 0;
@@ -253,42 +249,49 @@ private:
         return std::abs(number - caps_->at(q, 0)) > kTie;
     }
 
-    /// What is known of the angle in a cell: `gradient`, and its value at the centre.
-    struct Linear {
+    /// What is known of the angle in a cell: its value at the centre, and how it changes.
+    struct Expansion {
         Point centre;
-        double angle;
-        NearCaps::Gradient change;
-        double at(const Point& q) const {
-            const Point& g = change.gradient;
-            return angle + g.x * (q.x - centre.x) + g.y * (q.y - centre.y) + g.z * (q.z - centre.z);
-        }
+        NearCaps::Change change;
         double error_bound; // of the value and of its change
+        double angle = 0;
+        double at(const Point& q) const {
+            return angle + change.at({q.x - centre.x, q.y - centre.y, q.z - centre.z});
+        }
     };
 
-    /// Decides what an expansion about the centre of the cell can, then of its parts.
+    /// Decides what an expansion about the centre of the cell can, then of its parts. Parts where the angle is not
+    /// smooth are left to classify_one_by_one.
     void classify_cell(const Cell& cell) {
-        if (count_undecided(cell) <= kFewVoxels)
+        if (count_undecided(cell) == 0)
             return;
-        Linear linear{centre_of(cell), 0, near_.find_gradient(centre_of(cell), radius_of(cell), kRoundable), 0};
-        linear.error_bound = linear.change.error_bound + near_.error_bound() + kRounding;
-        if (linear.error_bound < kRoundable) {
+        const Ball ball{centre_of(cell), radius_of(cell)};
+        Expansion expansion{ball.centre, near_.find_change(ball.centre, ball.radius, kRoundable), 0};
+        expansion.error_bound = expansion.change.error_bound + near_.error_bound() + kRounding;
+        if (expansion.error_bound < kRoundable) {
             bool doubtful;
-            linear.angle = near_.find_angle(linear.centre, doubtful);
-            if (linear.change.crossed)
-                classify_regions(cell, linear);
+            expansion.angle = near_.find_angle(expansion.centre, doubtful);
+            if (expansion.change.crossed)
+                classify_regions(cell, expansion);
             else if (!doubtful)
                 for (int z = cell.z; z < cell.z + cell.side; ++z)
                     for (uint64_t left = undecided_[z] & square_of(cell); left != 0; left &= left - 1) {
                         const int bit = std::countr_zero(left);
-                        decide(z, bit, std::abs(numbers_[z * 64 + bit] - linear.at(sample(z, bit))),
-                               linear.error_bound);
+                        decide(z, bit, std::abs(numbers_[z * 64 + bit] - expansion.at(sample(z, bit))),
+                               expansion.error_bound);
                     }
+            if (expansion.change.error_bound < near_.error_bound())
+                return; // the next gathering knows more
         }
-        if (cell.side > kBrickSide / 2)
+        if (cell.side > kBrickSide / 2) {
             for (int i = 0; i < 8; ++i) {
                 const int half = cell.side / 2;
                 classify_cell({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half});
             }
+            return;
+        }
+        for (int z = cell.z; z < cell.z + cell.side; ++z)
+            rough_[z] |= undecided_[z] & square_of(cell);
     }
 
     /// Decides a voxel where a winding number leaves no doubt.
@@ -301,7 +304,7 @@ private:
     }
 
     /// Decides voxels with an angle of their own each.
-    void classify_one_by_one() {
+    void classify_one_by_one(const Slices& voxels) {
         NearCaps::Batch batch;
         int slices[NearCaps::kBatch], bits[NearCaps::kBatch];
         const double error = near_.error_bound() + kRounding;
@@ -315,7 +318,7 @@ private:
             batch.clear();
         };
         for (int z = 0; z < kBrickSide; ++z)
-            for (uint64_t left = undecided_[z]; left != 0; left &= left - 1) {
+            for (uint64_t left = undecided_[z] & voxels[z]; left != 0; left &= left - 1) {
                 const int bit = std::countr_zero(left);
                 slices[batch.count] = z;
                 bits[batch.count] = bit;
@@ -328,7 +331,7 @@ private:
 
     /// Decides where caps pass the cell. In a region of voxels that no surface separates, the number of the surface
     /// changes smoothly, whatever caps pass it. So one voxel tells by which whole number the expansion is off.
-    void classify_regions(const Cell& cell, const Linear& linear) {
+    void classify_regions(const Cell& cell, const Expansion& expansion) {
         const uint64_t square = square_of(cell);
         Slices left{};
         for (int z = cell.z; z < cell.z + cell.side; ++z)
@@ -350,11 +353,11 @@ private:
                 const double angle = near_.find_angle(sample(z, first), doubtful);
                 if (doubtful)
                     continue;
-                const double whole = numbers_[z * 64 + first] - std::round(angle - linear.at(sample(z, first)));
+                const double whole = numbers_[z * 64 + first] - std::round(angle - expansion.at(sample(z, first)));
                 for (int w = cell.z; w < cell.z + cell.side; ++w)
                     for (uint64_t some = region[w] & undecided_[w]; some != 0; some &= some - 1) {
                         const int bit = std::countr_zero(some);
-                        decide(w, bit, std::abs(whole - linear.at(sample(w, bit))), linear.error_bound);
+                        decide(w, bit, std::abs(whole - expansion.at(sample(w, bit))), expansion.error_bound);
                     }
             }
     }
@@ -392,14 +395,12 @@ private:
     int low_[3] = {}, high_[3] = {};
     std::vector<Brick> bricks_;
     std::vector<Class> classes_;
-    LocalExpansion levels_[4]; // of the cubes around the current one
-
 
     // The current mixed brick.
     int x_ = 0, y_ = 0, z_ = 0;
     const int* numbers_ = nullptr;
     const Slices* surface_ = nullptr;
-    Slices undecided_{}, within_{};
+    Slices undecided_{}, within_{}, rough_{}; // rough_: where expansions do not help
     NearCaps near_;
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
 constexpr double kDoubt = 1e-6;    // of the product of distances: where rounding may tell the wrong side of a cap
+constexpr double kLineSum = std::numbers::pi / 2; // of 1 / d^4 along a line, times its distance^3
 constexpr int kCapsPerScaling = 6; // products of so many tangents stay in the range of float64
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -123,7 +124,7 @@ uint32_t NearCaps::local_vertex(const CapWinding& caps, uint32_t vertex) {
     return mark.local;
 }
 
-void NearCaps::gather(const CapWinding& caps, const Point& centre, double radius, double far_error) {
+bool NearCaps::gather(const CapWinding& caps, const Point& centre, double radius, double far_error, size_t most) {
     centre_ = centre;
     far_ = {};
     numbers_.clear();
@@ -137,7 +138,8 @@ void NearCaps::gather(const CapWinding& caps, const Point& centre, double radius
         std::fill(cap_marks_.begin(), cap_marks_.end(), 0);
         gathering_ = 1;
     }
-    caps.split(centre, radius, far_error, far_, numbers_);
+    if (!caps.split(centre, radius, far_error, most, far_, numbers_))
+        return false;
     for (const uint32_t number : numbers_)
         cap_marks_[number] = gathering_;
     for (const uint32_t number : numbers_) {
@@ -160,6 +162,7 @@ void NearCaps::gather(const CapWinding& caps, const Point& centre, double radius
     }
     distances_.resize(std::max(distances_.size(), vertices_.size() * kBatch));
     count_work(8 * uint32_t(caps_.size()));
+    return true;
 }
 
 void NearCaps::find_angles(Batch& batch) {
@@ -191,27 +194,39 @@ double NearCaps::find_angle(const Point& point, bool& doubtful) {
     return batch.angle[0];
 }
 
-NearCaps::Gradient NearCaps::find_gradient(const Point& centre, double radius, double limit) const {
-    Gradient found{far_.gradient, 0, false};
+NearCaps::Change NearCaps::find_change(const Point& centre, double radius, double limit) const {
+    Change found;
+    found.gradient = far_.gradient;
     const Point q = minus(centre, centre_);
-    count_work(uint32_t(edges_.size() * 2 + caps_.size()));
+    count_work(uint32_t(edges_.size() * 3 + caps_.size()));
     for (const Edge& edge : edges_) {
-        // The field of a short wire, direction x d / d^3, changes by at most 2 length / d^3 per distance. Summed along
-        // the edge or, where that is less, along the whole line.
+        // The field of a short wire is direction x d / d^3. It is a derivative of 1 / d, so that its second derivatives
+        // are at most 6 / d^4 in any directions. Summed along the edge or, where that is less, along the whole line.
         const Point a = minus(vertices_[edge.from], q), b = minus(vertices_[edge.to], q), ab = minus(b, a);
-        const double square = dot(ab, ab), gap = distance_from(a, ab, square) - radius;
+        const double square = dot(ab, ab), gap = distance_from(a, ab, square) - radius, part = radius / gap;
         if (gap > 0)
-            found.error_bound += kInverse4Pi * radius * radius * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
+            found.error_bound += kInverse4Pi * part * part * part * std::min(std::sqrt(square) / gap, kLineSum);
         if (gap <= 0 || found.error_bound > limit) {
             found.error_bound = std::numeric_limits<double>::infinity();
             return found;
         }
+        // The field of the edge: scale * along. Its derivatives: of the scale, then of the direction.
         const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), product = la * lb;
-        const double scale = kInverse4Pi * (la + lb) / (product * (product + dot(a, b)));
+        const double turned = product + dot(a, b), scale = kInverse4Pi * (la + lb) / (product * turned);
         const Point along = cross(a, b);
+        const double of_a = (1 / la + lb / turned - 1 / (la + lb)) / la + 1 / turned;
+        const double of_b = (1 / lb + la / turned - 1 / (la + lb)) / lb + 1 / turned;
+        const Point change{of_a * a.x + of_b * b.x, of_a * a.y + of_b * b.y, of_a * a.z + of_b * b.z};
         found.gradient.x += scale * along.x;
         found.gradient.y += scale * along.y;
         found.gradient.z += scale * along.z;
+        // Only the symmetric part matters, and a cross product has none.
+        found.second[0] += scale * along.x * change.x;
+        found.second[1] += scale * along.y * change.y;
+        found.second[2] += scale * along.z * change.z;
+        found.second[3] += scale * (along.x * change.y + along.y * change.x) / 2;
+        found.second[4] += scale * (along.y * change.z + along.z * change.y) / 2;
+        found.second[5] += scale * (along.z * change.x + along.x * change.z) / 2;
     }
     for (const Cap& cap : caps_) {
         const double height = cap.height - dot(cap.normal, q);

@@ -10,15 +10,18 @@
 
 #include "cap_winding.h"
 
+#include <cmath>
 #include <vector>
 
 namespace voxrt::voxelize {
 
 class NearCaps {
 public:
+    static constexpr size_t kAll = ~size_t{0};
+
     /// Gathers the caps for points in the ball of `radius` about `centre`. Nodes of caps are taken as far where each
-    /// has an error of at most `far_error`.
-    void gather(const CapWinding& caps, const Point& centre, double radius, double far_error);
+    /// has an error of at most `far_error`. Gives up, and returns false, where more than `most` caps are near.
+    bool gather(const CapWinding& caps, const Point& centre, double radius, double far_error, size_t most);
 
     size_t count() const { return caps_.size(); }
     /// Largest error of an angle.
@@ -43,13 +46,29 @@ public:
     /// Of one point alone.
     double find_angle(const Point& point, bool& doubtful);
 
-    /// How the angle changes inside a ball.
-    struct Gradient {
+    /// How the angle changes inside a ball: to second order in the distance from its centre.
+    struct Change {
         Point gradient{0, 0, 0};
+        double second[6] = {};  // derivatives xx yy zz xy yz zx
         double error_bound = 0; // infinite where a boundary passes the ball
         bool crossed = false;   // caps may pass the ball
+        /// By how much the angle at the centre + d exceeds that at the centre.
+        double at(const Point& d) const {
+            return d.x * (gradient.x + second[0] * d.x / 2 + second[3] * d.y) +
+                   d.y * (gradient.y + second[1] * d.y / 2 + second[4] * d.z) +
+                   d.z * (gradient.z + second[2] * d.z / 2 + second[5] * d.x);
+        }
+        /// The most that it may be at a distance of `radius`, but for the error.
+        double most(double radius) const {
+            const Point& g = gradient;
+            const double* h = second;
+            const double squares =
+                h[0] * h[0] + h[1] * h[1] + h[2] * h[2] + 2 * (h[3] * h[3] + h[4] * h[4] + h[5] * h[5]);
+            return radius * std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) + radius * radius / 2 * std::sqrt(squares);
+        }
     };
-    Gradient find_gradient(const Point& centre, double radius, double limit) const;
+    /// Gives up where the error exceeds `limit`: it is infinite then.
+    Change find_change(const Point& centre, double radius, double limit) const;
 
     /// What the kernel of find_angles works on: caps, and distances of each vertex from each point.
     struct Cap {
