@@ -11,7 +11,7 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kFarthestEnd = 0.5;     // largest distance of a dipole's ends from its centre, of its distance
+constexpr double kFarthestEnd = 0.5; // largest distance of a dipole's ends from its centre, of its distance
 constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
 
 Point plus(const Point& a, double s, const Point& b) { return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }

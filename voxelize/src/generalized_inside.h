@@ -93,11 +93,15 @@ public:
         // Most voxels near a boundary are far from 1/2: few caps are near enough to matter for them.
         double far_error = class_of(column, k) == Class::rough ? kCoarsest : kFine;
         for (bool first = true; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner, first = false) {
-            const Ball ball = first ? Ball{centre_of(brick), radius_of(brick)} : around_undecided();
+            const bool by_cells = first || count_undecided(brick) > kFewVoxels;
+            const Ball ball = by_cells ? Ball{centre_of(brick), radius_of(brick)} : around_undecided();
             near_.gather(*caps_, ball.centre, ball.radius, far_error, NearCaps::kAll);
-            if (first || count_undecided(brick) > kFewVoxels) {
+            if (by_cells) {
                 rough_ = {};
-                classify_cell(brick);
+                if (class_of(column, k) == Class::rough)
+                    classify_parts(brick);
+                else
+                    classify_cell(brick);
                 classify_one_by_one(rough_);
             } else {
                 classify_one_by_one(undecided_);
@@ -123,10 +127,10 @@ private:
     // Errors of one node of caps: for cubes; for voxels near a boundary; for others; where all else is exact.
     static constexpr double kCubeError = 1.0 / 256, kCoarsest = 1.0 / 64, kFine = 1.0 / (1 << 13);
     static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 128;
-    static constexpr size_t kManyCaps = 64; // near a cube: its parts are asked instead
-    static constexpr double kRounding = 1e-7;           // of an angle, but for doubtful ones
-    static constexpr double kRoundable = 0.375;         // error from which a whole number can be told
-    static constexpr int kFewVoxels = 16;               // are decided one by one
+    static constexpr size_t kManyCaps = 64;     // near a cube: its parts are asked instead
+    static constexpr double kRounding = 1e-7;   // of an angle, but for doubtful ones
+    static constexpr double kRoundable = 0.375; // error from which a whole number can be told
+    static constexpr int kFewVoxels = 16;       // are decided one by one
 
     struct Cell {
         int x, y, z, side; // in a brick
@@ -255,9 +259,7 @@ private:
         NearCaps::Change change;
         double error_bound; // of the value and of its change
         double angle = 0;
-        double at(const Point& q) const {
-            return angle + change.at({q.x - centre.x, q.y - centre.y, q.z - centre.z});
-        }
+        double at(const Point& q) const { return angle + change.at({q.x - centre.x, q.y - centre.y, q.z - centre.z}); }
     };
 
     /// Decides what an expansion about the centre of the cell can, then of its parts. Parts where the angle is not
@@ -283,15 +285,17 @@ private:
             if (expansion.change.error_bound < near_.error_bound())
                 return; // the next gathering knows more
         }
-        if (cell.side > kBrickSide / 2) {
-            for (int i = 0; i < 8; ++i) {
-                const int half = cell.side / 2;
+        classify_parts(cell);
+    }
+
+    void classify_parts(const Cell& cell) {
+        const int half = cell.side / 2;
+        if (cell.side > kBrickSide / 2)
+            for (int i = 0; i < 8; ++i)
                 classify_cell({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half});
-            }
-            return;
-        }
-        for (int z = cell.z; z < cell.z + cell.side; ++z)
-            rough_[z] |= undecided_[z] & square_of(cell);
+        else
+            for (int z = cell.z; z < cell.z + cell.side; ++z)
+                rough_[z] |= undecided_[z] & square_of(cell);
     }
 
     /// Decides a voxel where a winding number leaves no doubt.

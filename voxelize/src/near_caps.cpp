@@ -11,9 +11,9 @@ namespace voxrt::voxelize {
 namespace {
 
 constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
-constexpr double kDoubt = 1e-6;    // of the product of distances: where rounding may tell the wrong side of a cap
+constexpr double kDoubt = 1e-6; // of the product of distances: where rounding may tell the wrong side of a cap
 constexpr double kLineSum = std::numbers::pi / 2; // of 1 / d^4 along a line, times its distance^3
-constexpr int kCapsPerScaling = 6; // products of so many tangents stay in the range of float64
+constexpr int kCapsPerScaling = 6;                // products of so many tangents stay in the range of float64
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -98,7 +98,8 @@ inline __attribute__((always_inline)) void sum_tangents(const std::vector<NearCa
 constexpr int kFew = 4;
 
 // Wider vectors where the processor has them. They round alike, since products and sums are not fused.
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
+    !defined(__SANITIZE_ADDRESS__)
 #define VOXRT_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define VOXRT_WIDE
@@ -157,7 +158,7 @@ bool NearCaps::gather(const CapWinding& caps, const Point& centre, double radius
         for (int i = 0; i < 3; ++i) {
             const uint32_t across = caps.across(number, i);
             if (cap.sides[i] > 0 && (across == CapWinding::kNoCap || cap_marks_[across] != gathering_))
-                edges_.push_back({cap.corners[i], cap.corners[i == 2 ? 0 : i + 1]});
+                edges_.push_back({cap.corners[i], cap.corners[i == 2 ? 0 : i + 1], std::sqrt(cap.sides[i])});
         }
     }
     distances_.resize(std::max(distances_.size(), vertices_.size() * kBatch));
@@ -202,14 +203,17 @@ NearCaps::Change NearCaps::find_change(const Point& centre, double radius, doubl
     for (const Edge& edge : edges_) {
         // The field of a short wire is direction x d / d^3. It is a derivative of 1 / d, so that its second derivatives
         // are at most 6 / d^4 in any directions. Summed along the edge or, where that is less, along the whole line.
-        const Point a = minus(vertices_[edge.from], q), b = minus(vertices_[edge.to], q), ab = minus(b, a);
-        const double square = dot(ab, ab), gap = distance_from(a, ab, square) - radius, part = radius / gap;
+        const Point a = minus(vertices_[edge.from], q), ab = minus(vertices_[edge.to], vertices_[edge.from]);
+        const double gap = distance_from(a, ab, edge.length * edge.length) - radius, part = radius / gap;
         if (gap > 0)
-            found.error_bound += kInverse4Pi * part * part * part * std::min(std::sqrt(square) / gap, kLineSum);
+            found.error_bound += kInverse4Pi * part * part * part * std::min(edge.length / gap, kLineSum);
         if (gap <= 0 || found.error_bound > limit) {
             found.error_bound = std::numeric_limits<double>::infinity();
             return found;
         }
+    }
+    for (const Edge& edge : edges_) {
+        const Point a = minus(vertices_[edge.from], q), b = minus(vertices_[edge.to], q);
         // The field of the edge: scale * along. Its derivatives: of the scale, then of the direction.
         const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), product = la * lb;
         const double turned = product + dot(a, b), scale = kInverse4Pi * (la + lb) / (product * turned);

@@ -73,14 +73,15 @@ public:
     /// What the kernel of find_angles works on: caps, and distances of each vertex from each point.
     struct Cap {
         uint32_t corners[3];
-        Point normal;   // twice its area
-        double height;  // of its plane above the centre of all, times the length of `normal`
+        Point normal;    // twice its area
+        double height;   // of its plane above the centre of all, times the length of `normal`
         double sides[3]; // squares of |ab|, |bc|, |ca|
     };
 
 private:
     struct Edge {
         uint32_t from, to;
+        double length;
     };
     uint32_t local_vertex(const CapWinding& caps, uint32_t vertex);
 
@@ -88,8 +89,8 @@ private:
     LinearExpansion far_;
     std::vector<uint32_t> numbers_; // of the caps, in CapWinding
     std::vector<Cap> caps_;
-    std::vector<Edge> edges_;     // the boundary
-    std::vector<Point> vertices_; // relative to the centre
+    std::vector<Edge> edges_;       // the boundary
+    std::vector<Point> vertices_;   // relative to the centre
     std::vector<double> distances_; // by vertex and point
     // By vertex and cap of CapWinding: the gathering that met it last, and as which vertex.
     struct Mark {
