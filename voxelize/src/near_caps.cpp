@@ -13,6 +13,7 @@ namespace {
 constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
 constexpr double kDoubt = 1e-6; // of the product of distances: where rounding may tell the wrong side of a cap
 constexpr double kLineSum = std::numbers::pi / 2; // of 1 / d^4 along a line, times its distance^3
+constexpr double kUnderflow = 1e-250;             // of a product that has lost digits
 constexpr int kCapsPerScaling = 6;                // products of so many tangents stay in the range of float64
 
 Point minus(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -182,7 +183,8 @@ void NearCaps::find_angles(Batch& batch) {
         const double half = std::atan2(points.im[i], points.re[i]) + 2 * std::numbers::pi * points.wraps[i];
         batch.angle[i] = 2 * kInverse4Pi * half + far_.angle + far_.gradient.x * points.x[i] +
                          far_.gradient.y * points.y[i] + far_.gradient.z * points.z[i];
-        batch.doubtful[i] = points.doubt[i] > 0 || !std::isfinite(half);
+        batch.doubtful[i] = points.doubt[i] > 0 || !std::isfinite(half) ||
+                            !(std::abs(points.re[i]) + std::abs(points.im[i]) > kUnderflow);
     }
     count_work(uint32_t(2 + caps_.size() * (few ? 2 : 6)));
 }
