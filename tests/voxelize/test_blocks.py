@@ -23,7 +23,7 @@ def scenes():
     high = box_mesh((3, 3, 3), (250, 90, 17))
     yield one_object(joined(high, icosphere(2, (200.0, 190.0, 60.0), 50.0)))
     yield one_object(open_ball())
-    yield scene_of([SceneObject("one", high), SceneObject("other", open_ball())])
+    yield scene_of(SceneObject("one", high), SceneObject("other", open_ball()))
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -39,7 +39,7 @@ def test_blocks_give_the_bytes_and_the_reports_of_the_whole(number, side, fill):
 
 
 def test_a_build_with_little_memory_is_the_same(tmp_path):
-    scene = scene_of([SceneObject("ball", icosphere(3, (0.0, 0.0, 0.0), 1.0))])
+    scene = scene_of(SceneObject("ball", icosphere(3, (0.0, 0.0, 0.0), 1.0)))
     small = voxrt.build(scene, tmp_path / "small", depth=11, memory=1 << 26)
     large = voxrt.build(scene, tmp_path / "large", depth=11, memory=1 << 40)
     assert bytes(small.octree.words) == bytes(large.octree.words)
