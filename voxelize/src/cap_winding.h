@@ -6,11 +6,10 @@
 // its cost grows with the holes and not with the surface.
 //
 // Far caps are taken together as dipoles with their first moments (Barill, Dickson, Schmidt, Levin and Jacobson, "Fast
-// Winding Numbers for Soups and Clouds", 2018). The expansion about a cube is handed down to its parts, which expand
-// what was too near for it alone (Greengard and Rokhlin, "A Fast Algorithm for Particle Simulations", 1987). Every
-// approximation carries a proven error bound: 1 / distance is harmonic, so that its derivative of order n is at most
-// n! / distance^(n + 1) in any directions. A dipole of area A whose ends lie within t D of D has an error of at most
-// A / (4 pi D^2) times the sum over k >= 2 of (k + 1) t^k.
+// Winding Numbers for Soups and Clouds", 2018); near ones are summed (near_caps.h). Every approximation carries a
+// proven error bound: 1 / distance is harmonic, so that its derivative of order n is at most n! / distance^(n + 1) in
+// any directions. A dipole of area A whose ends lie within t D of D has an error of at most A / (4 pi D^2) times the
+// sum over k >= 2 of (k + 1) t^k.
 #pragma once
 
 #include "fixed_point.h"

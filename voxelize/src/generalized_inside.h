@@ -1,12 +1,15 @@
 // Which voxels of a tile lie inside a surface with holes: those where its generalized winding number exceeds 1/2
 // (Jacobson, Kavan and Sorkine-Hornung 2013; cap_winding.h).
 //
-// That number is the winding number of the capped surface, known for every voxel, less what the caps add. Cubes are
-// classified from large to small, each with the expansion that its parent handed down. Where no surface passes a cube,
-// the number changes smoothly, and one voxel may decide all; where the caps add less than 1/2, the capped surface
-// decides; else the cube is split. A voxel within the rounding error of 1/2 counts as outside.
+// That number is the winding number of the capped surface, known for every voxel, less what the caps add. Where no
+// boundary of a hole is near, what they add changes smoothly and is expanded to second order (near_caps.h). Cubes are
+// classified from large to small. Where the caps add less than 1/2, the capped surface decides; where no surface passes
+// a cube, one voxel may decide all; else the cube is split. In bricks that stay mixed, cells of 8 and 4 voxels are
+// expanded, and each region of voxels that no surface separates takes its whole number from one voxel. What is left,
+// at the boundaries and close to 1/2, is summed voxel by voxel, with smaller and smaller errors. A voxel within the
+// rounding error of 1/2 counts as outside.
 //
-// Cost: bricks with surface, and voxels near holes.
+// Cost: bricks near boundaries, and bricks that the surface of 1/2 passes; fourfold per level.
 #pragma once
 
 #include "cap_winding.h"

@@ -164,7 +164,7 @@ def size_in_bytes(_type: type, tokens: Sequence[Token]) -> int:
         raise ValueError(f"{text!r} is not a size such as 4G or 512M")
     size = int(Decimal(found[1]) * (1 << 10 * " KMGT".index(found[2].upper() or " ")))
     if not _LEAST_MEMORY <= size < 1 << 62:
-        raise ValueError(f"{text} is not 64M or more")
+        raise ValueError(f"{text} is not 64M to 4194303T")
     return size
 
 
