@@ -99,8 +99,9 @@ inline __attribute__((always_inline)) void sum_tangents(const std::vector<NearCa
 constexpr int kFew = 4;
 
 // Wider vectors where the processor has them. They round alike, since products and sums are not fused.
+// Sanitizers cannot resolve such functions before they start.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define VOXRT_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define VOXRT_WIDE
