@@ -1,5 +1,5 @@
 # The manual of these functions is their docstrings, in src/module.cpp, src/scene_bindings.cpp, src/colour_bindings.cpp.
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -63,6 +63,8 @@ def voxelize(
     objects: int,
     fill: str,
     threads: int,
+    block_side: int = 0,
+    take_block: Callable[..., None] | None = None,
 ) -> Voxelized: ...
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...
 def scene_bounds(clouds: Sequence[Cloud], hidden: int) -> tuple[Corner, Corner]: ...
