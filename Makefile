@@ -137,7 +137,7 @@ RUNS := 1000000
 fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
 	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
-covered = $(CXX) -std=c++20 -O1 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
+covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
 COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp %_bindings.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
 build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	@mkdir -p $(@D)

@@ -13,6 +13,7 @@ __all__ = [
     "MAX_DEPTH",
     "Animation",
     "AnimationFrame",
+    "Assembly",
     "Census",
     "Dialect",
     "Difference",
@@ -67,6 +68,7 @@ _HOMES = {
         "frames_as_octants",
         "join_frames",
     ),
+    "voxrt.octree.assembly": ("Assembly",),
     "voxrt.octree.budget": ("BOARDS", "Fit", "coarsen", "fit", "share"),
     "voxrt.octree.construct": ("build", "from_dense", "from_points"),
     "voxrt.octree.decoding": ("decode",),
@@ -97,6 +99,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
         frames_as_octants,
         join_frames,
     )
+    from voxrt.octree.assembly import Assembly
     from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
     from voxrt.octree.construct import build, from_dense, from_points
     from voxrt.octree.decoding import decode

@@ -50,12 +50,14 @@ __all__ = [
     "Texture",
     "Viewpoint",
     "Voxelization",
+    "VoxelizationReport",
     "Voxels",
     "assign_colours",
     "fit_grid",
     "join_scenes",
     "load",
     "voxelize",
+    "voxelize_in_blocks",
 ]
 
 # What works on scenes is imported when it is first used: a process that only makes a scene does not wait for it.
@@ -64,8 +66,8 @@ _HOMES = {
     "voxrt.voxelize.colour.voxel_colours": ("DEFAULT_COLOURS", "assign_colours"),
     "voxrt.voxelize.grid_fitting": ("fit_grid",),
     "voxrt.voxelize.scene_frames": ("SceneFrames", "join_scenes"),
-    "voxrt.voxelize.voxelizer": ("voxelize",),
-    "voxrt.voxelize.voxels": ("ObjectMode", "ObjectReport", "Voxelization", "Voxels"),
+    "voxrt.voxelize.voxelizer": ("voxelize", "voxelize_in_blocks"),
+    "voxrt.voxelize.voxels": ("ObjectMode", "ObjectReport", "Voxelization", "VoxelizationReport", "Voxels"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -74,8 +76,8 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
     from voxrt.voxelize.grid_fitting import fit_grid
     from voxrt.voxelize.scene_frames import SceneFrames, join_scenes
-    from voxrt.voxelize.voxelizer import voxelize
-    from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
+    from voxrt.voxelize.voxelizer import voxelize, voxelize_in_blocks
+    from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, VoxelizationReport, Voxels
 else:
 
     def __getattr__(name: str) -> object:

@@ -1,5 +1,5 @@
-# The manual of these functions is their docstrings, in src/module.cpp and src/scene_bindings.cpp.
-from collections.abc import Sequence
+# The manual of these functions is their docstrings, in src/module.cpp, src/scene_bindings.cpp, src/colour_bindings.cpp.
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,13 +10,24 @@ OBJECT_MODES: tuple[str, ...]
 Corner: TypeAlias = tuple[float, float, float]
 Cloud: TypeAlias = tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.float64]]
 
+MaterialFields: TypeAlias = tuple[str, tuple[int, int, int], bool, bool]
+TextureArrays: TypeAlias = tuple[NDArray[np.uint8], int, int, bool]
+AppearanceFields: TypeAlias = tuple[str, tuple[float, float, float, float], TextureArrays | None, float, bool]
+SurfaceArrays: TypeAlias = tuple[
+    Sequence[AppearanceFields], NDArray[np.int32], NDArray[np.floating], NDArray[np.floating]
+]
+FileMeshArrays: TypeAlias = tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8], SurfaceArrays | None]
+VariedMeshArrays: TypeAlias = tuple[NDArray[np.floating], NDArray[np.int32], NDArray[np.uint8], SurfaceArrays]
+RasterArrays: TypeAlias = tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint8], NDArray[np.uint8]]
+
 class OutOfRangeError(ValueError): ...
 class UnfitSceneError(ValueError): ...
 class TooManyMaterialsError(ValueError): ...
 
 class MaterialTable:
     def __init__(self, name: str, colour: tuple[int, int, int]) -> None: ...
-    def add(self, name: str, colour: tuple[int, int, int], mirror: bool, authored: bool) -> tuple[int, str]: ...
+    def add(self, name: str, colour: tuple[int, int, int], mirror: bool, authored: bool) -> int: ...
+    def entries(self) -> list[MaterialFields]: ...
 
 class MeshArrays(NamedTuple):
     positions: NDArray[np.float64]
@@ -52,6 +63,8 @@ def voxelize(
     objects: int,
     fill: str,
     threads: int,
+    block_side: int = 0,
+    take_block: Callable[..., None] | None = None,
 ) -> Voxelized: ...
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...
 def scene_bounds(clouds: Sequence[Cloud], hidden: int) -> tuple[Corner, Corner]: ...
@@ -66,3 +79,24 @@ def object_warnings(
     names: Sequence[str],
     reported: Sequence[bool],
 ) -> list[tuple[str, str, int]]: ...
+def sample_surface(
+    surface: SurfaceArrays, triangles: NDArray[np.int64], weights: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def visible_triangles(surface: SurfaceArrays) -> NDArray[np.uint8]: ...
+def halved_image(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]: ...
+def assign_materials(
+    meshes: Sequence[FileMeshArrays], table: MaterialTable
+) -> list[tuple[NDArray[np.uint8], NDArray[np.int32], int]]: ...
+def assign_colours(
+    meshes: Sequence[VariedMeshArrays],
+    objects: Sequence[tuple[int, NDArray[np.float64]]],
+    materials: Sequence[MaterialFields],
+    used: Sequence[bool],
+    voxel_size: float,
+    colours: int,
+) -> tuple[list[MaterialFields], list[RasterArrays]]: ...
+def quantize(
+    colours: NDArray[np.uint8], weights: NDArray[np.float64], count: int
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]: ...
+def srgb_from_linear(linear: NDArray[np.float64]) -> NDArray[np.uint8]: ...
+def linear_of_srgb() -> NDArray[np.float64]: ...

@@ -11,7 +11,7 @@ bounds the inside; voxels that only such a surface covers are empty.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -23,9 +23,11 @@ from voxrt.voxelize.grid import Grid
 from voxrt.voxelize.mesh import MaterialMap
 from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
 from voxrt.voxelize.scene import Scene
-from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, Voxels
+from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, VoxelizationReport, Voxels
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from voxrt.voxelize.box_rounding import Pow2
@@ -92,18 +94,115 @@ def voxelize(
     >>> [(one.name, str(one.mode), one.voxels) for one in result.objects]
     [('block', 'exact', 64)]
     """
+    parts, reports = _parts_of(scene, grid, fill, geometry, pow2)
+    result = _native_result(scene, parts, fill=fill, threads=arguments.whole("threads", threads, 0, _MOST_THREADS))
+    objects, warnings = _told(scene, parts, reports, result, geometry)
+    return Voxelization(_voxels_of(grid.depth, result), objects, warnings, result.seconds)
+
+
+def voxelize_in_blocks(
+    scene: Scene,
+    grid: Grid,
+    take: Callable[[Voxels], None],
+    *,
+    block_side: int,
+    fill: Literal["solid", "surface", "auto"] = "solid",
+    geometry: Geometry = "auto",
+    pow2: Pow2 = "box",
+    threads: int = 0,
+) -> VoxelizationReport:
+    """Voxelize a scene whose voxels do not fit the memory at once, square by square of columns.
+
+    Parameters
+    ----------
+    scene, grid, fill, geometry, pow2, threads
+        As :func:`voxelize` takes them.
+    take
+        Called with the voxels of each square that has geometry, in Morton order. Squares are disjoint, so the octrees
+        of their voxels are joined by :class:`voxrt.octree.Assembly`.
+    block_side
+        Columns per side of a square, a multiple of 64. It reaches over the whole height of the grid.
+
+    Returns
+    -------
+    VoxelizationReport
+        What :func:`voxelize` returns besides the voxels.
+
+    Raises
+    ------
+    TypeError, ValueError, AssetError, DoesNotFitError
+        As :func:`voxelize` does.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import fit_grid, load, voxelize_in_blocks
+    >>> scene = load("examples/house.obj")
+    >>> blocks = []
+    >>> report = voxelize_in_blocks(scene, fit_grid(scene, depth=7), blocks.append, block_side=64)
+    >>> len(blocks), sum(one.voxels for one in report.objects)
+    (4, 903648)
+    """
+    parts, reports = _parts_of(scene, grid, fill, geometry, pow2)
+
+    def take_block(*arrays: Any) -> None:  # noqa: ANN401 - the arrays of Voxels, in order
+        take(Voxels(grid.depth, *arrays))
+
+    result = _native_result(
+        scene,
+        parts,
+        fill=fill,
+        threads=arguments.whole("threads", threads, 0, _MOST_THREADS),
+        block_side=arguments.whole("block_side", block_side, 64, 1 << 16),
+        take_block=take_block,
+    )
+    return VoxelizationReport(*_told(scene, parts, reports, result, geometry), result.seconds)
+
+
+def _parts_of(scene: Scene, grid: Grid, fill: str, geometry: Geometry, pow2: Pow2) -> tuple[_Parts, list[_Report]]:
     arguments.instance("scene", scene, Scene)
     arguments.instance("grid", grid, Grid)
     arguments.choice("fill", fill, ("solid", "surface", "auto"))
     arguments.choice("geometry", geometry, GEOMETRIES)
     arguments.choice("pow2", pow2, POW2_CHOICES)
-    threads = arguments.whole("threads", threads, 0, _MOST_THREADS)
     parts = _Parts(grid)
-    reports = [_add_object(parts, item, geometry, pow2) for item in scene.objects]
+    return parts, [_add_object(parts, item, geometry, pow2) for item in scene.objects]
+
+
+def _native_result(
+    scene: Scene,
+    parts: _Parts,
+    *,
+    fill: str,
+    threads: int,
+    block_side: int = 0,
+    take_block: Callable[..., None] | None = None,
+) -> _native.Voxelized:
     try:
-        result = parts.voxelize(fill=fill, threads=threads, objects=len(scene.objects))
+        return parts.voxelize(
+            fill=fill, threads=threads, objects=len(scene.objects), block_side=block_side, take_block=take_block
+        )
     except _native.OutOfRangeError as error:
         raise _unreachable(scene, int(error.args[0])) from None
+
+
+def _voxels_of(depth: int, result: _native.Voxelized) -> Voxels:
+    return Voxels(
+        depth=depth,
+        brick_codes=result.brick_codes,
+        brick_masks=result.brick_masks,
+        brick_materials=result.brick_materials,
+        brick_rows=result.brick_rows,
+        cells=result.cells,
+        octant_codes=result.octant_codes,
+        octant_levels=result.octant_levels,
+        octant_materials=result.octant_materials,
+    )
+
+
+def _told(
+    scene: Scene, parts: _Parts, reports: list[_Report], result: _native.Voxelized, geometry: Geometry
+) -> tuple[tuple[ObjectReport, ...], tuple[SceneWarning, ...]]:
+    """Return the report of each object, and the warnings."""
     objects = tuple(
         ObjectReport(item.name, source, ObjectMode(_native.OBJECT_MODES[mode]), int(count), moved, grown)
         for item, (source, moved, grown), mode, count in zip(
@@ -120,18 +219,7 @@ def voxelize(
         [geometry == "collider" or not item.hidden for item in scene.objects],
     ):
         parts.warn(kind, message, count)
-    voxels = Voxels(
-        depth=grid.depth,
-        brick_codes=result.brick_codes,
-        brick_masks=result.brick_masks,
-        brick_materials=result.brick_materials,
-        brick_rows=result.brick_rows,
-        cells=result.cells,
-        octant_codes=result.octant_codes,
-        octant_levels=result.octant_levels,
-        octant_materials=result.octant_materials,
-    )
-    return Voxelization(voxels, objects, tuple(parts.warnings()), result.seconds)
+    return objects, tuple(parts.warnings())
 
 
 class _Parts:
@@ -196,7 +284,9 @@ class _Parts:
             )
         self.add(_MESH, self.to_grid(transform), material, self._mesh_index[id(key)])
 
-    def voxelize(self, *, fill: str, threads: int, objects: int) -> _native.Voxelized:
+    def voxelize(
+        self, *, fill: str, threads: int, objects: int, block_side: int, take_block: Callable[..., None] | None
+    ) -> _native.Voxelized:
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
         return _native.voxelize(
             self.grid.depth,
@@ -209,6 +299,8 @@ class _Parts:
             objects,
             fill,
             threads,
+            block_side,
+            take_block,
         )
 
 

@@ -140,3 +140,18 @@ class Voxelization:
 
     def __repr__(self) -> str:
         return f"Voxelization(voxels={self.voxels!r}, objects={len(self.objects)}, warnings={len(self.warnings)})"
+
+
+@dataclass(frozen=True, slots=True)
+class VoxelizationReport:
+    """How each object was voxelized: a :class:`Voxelization` whose voxels were handed on block by block.
+
+    Attributes
+    ----------
+    objects, warnings, seconds
+        As in :class:`Voxelization`.
+    """
+
+    objects: tuple[ObjectReport, ...]
+    warnings: tuple[SceneWarning, ...] = ()
+    seconds: dict[str, float] = field(default_factory=dict)

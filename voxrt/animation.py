@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Unpack
 from voxrt import export, octree, voxelize
 from voxrt.animation_takes import takes_of
 from voxrt.asset_source import as_text, asset_label, load_asset, refuse_warnings
+from voxrt.blockwise import build_octree
 from voxrt.build_grid import build_grid
 from voxrt.build_options import DEFAULT_DEPTH, merge_options
 from voxrt.build_result import BuildResult
@@ -216,19 +217,11 @@ class _Frames:
         """
         options, solid = self._options, False
         for number in range(len(self._scenes.counts)):
-            with self._clock.stage("voxelize"):
-                made = voxelize.voxelize(
-                    self._scenes.scene(number),
-                    self._grid,
-                    fill=options.fill,
-                    geometry=options.geometry,
-                    pow2=options.pow2,
-                    threads=options.threads,
-                )
+            tree, made = build_octree(self._scenes.scene(number), self._grid, options, self._clock)
             self.reports = made.objects if number == 0 else self.reports
             self.warnings += made.warnings
             solid = solid or any(report.voxels for report in made.objects)
-            tree = self._with_interior(octree.build(made.voxels, threads=options.threads))
+            tree = self._with_interior(tree)
             self.words.append(len(tree.words))
             yield tree
         if not solid and not options.allow_empty:

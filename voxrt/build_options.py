@@ -31,6 +31,7 @@ PREVIEW_SIZE = (640, 480)
 
 _WIDEST = 1 << 14
 _MOST_THREADS = 1024
+_LEAST_MEMORY = 1 << 26
 _BRIGHTEST = 16
 
 
@@ -119,6 +120,10 @@ class BuildOptions:
         Refuse an asset that would otherwise cause a warning.
     threads
         Threads of the native stages; 0 takes one per core. The result does not depend on it.
+    memory
+        Bytes that voxels may take, such as ``4G`` on the command line; the default is half of what is free. Larger
+        scenes are voxelized in squares of columns, one after another, to the same result. The octree itself is not
+        counted.
 
     Raises
     ------
@@ -168,6 +173,7 @@ class BuildOptions:
     engine: Engine = "rtl"
     strict: bool = False
     threads: int = 0
+    memory: int | None = None
 
     def __post_init__(self) -> None:
         for name, value in _checked(self).items():
@@ -207,6 +213,7 @@ class BuildKeywords(TypedDict, total=False):
     engine: Engine
     strict: bool
     threads: int
+    memory: int | None
 
 
 def merge_options(function: str, options: BuildOptions | None, keywords: BuildKeywords) -> BuildOptions:
@@ -286,6 +293,7 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "engine": lambda name, value: choice(name, value, get_args(Engine)),
         "strict": flag,
         "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
+        "memory": lambda name, value: whole(name, value, _LEAST_MEMORY, 1 << 62),
     }
     optional = {option.name for option in fields(BuildOptions) if option.default is None}
     values = {name: getattr(given, name) for name in checks}

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from voxrt.build_options import BuildOptions
-    from voxrt.voxelize import Grid, Scene, Voxelization
+    from voxrt.voxelize import Grid, Scene, Voxelization, VoxelizationReport
 
 
 def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
@@ -73,7 +73,7 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
     return (SceneWarning("dominant-object", message, len(names)),)
 
 
-def refuse_empty(label: str, grid: Grid, voxelization: Voxelization) -> None:
+def refuse_empty(label: str, grid: Grid, voxelization: Voxelization | VoxelizationReport) -> None:
     """Refuse a scene of which no object got a voxel.
 
     Raises

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
+from voxrt.blockwise import build_octree
 from voxrt.build_grid import build_grid
 from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
@@ -32,9 +33,9 @@ if TYPE_CHECKING:
     from voxrt.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.octree import Rom
+    from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera
-    from voxrt.voxelize import Grid, Scene, Voxelization
+    from voxrt.voxelize import Grid, Scene, VoxelizationReport
 
 
 _MUCH = 10
@@ -111,12 +112,10 @@ def build(
             viewpoint = named_camera(asset_label(asset), loaded, options.camera)
             loaded = replace(loaded, viewpoint=viewpoint)
     refuse_warnings(asset, loaded.warnings, options)
-    scene, grid, voxelization = _voxelize(loaded, options, clock, estimated)
+    scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
         refuse_empty(asset_label(asset), grid, voxelization)
-    with clock.stage("octree"):
-        tree = octree.build(voxelization.voxels, threads=options.threads)
-        rom = octree.Rom(files.name, tree, scene.materials, grid)
+    rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
     view, lighting, unseen = authored_view(scene, rom, options)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
@@ -206,19 +205,15 @@ def voxelize_mesh(
 
 def _voxelize(
     scene: Scene, options: BuildOptions, clock: StageClock, estimated: Callable[[BuildEstimate], None] | None
-) -> tuple[Scene, Grid, Voxelization]:
-    """Fit a grid, reduce colours to materials, voxelize."""
+) -> tuple[Scene, Grid, Octree, VoxelizationReport]:
+    """Fit a grid, reduce colours to materials, voxelize, build the octree."""
     with clock.stage("fit"):
         grid = build_grid(scene, options)
     if estimated is not None:
         estimated(estimate_build(scene, grid, options))
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
-    with clock.stage("voxelize"):
-        voxelization = voxelize.voxelize(
-            scene, grid, fill=options.fill, geometry=options.geometry, pow2=options.pow2, threads=options.threads
-        )
-    return scene, grid, voxelization
+    return scene, grid, *build_octree(scene, grid, options, clock)
 
 
 def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:

@@ -22,7 +22,7 @@ BUILD = ROOT / "build" / "web"
 WASM = BUILD / "voxrt.wasm"
 
 ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model"}
-LEFT_OUT = {"module.cpp", "scene_bindings.cpp", "frame_tile_avx2.cpp", "frame_tile_avx512.cpp"}
+LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp", "frame_tile_avx2.cpp", "frame_tile_avx512.cpp"}
 
 EXCEPTIONS = ("-fwasm-exceptions", "-mexception-handling", "-fexceptions")
 TARGET = ("-target", "wasm32-wasi")
@@ -96,7 +96,7 @@ def compiled(unit: Unit) -> Unit:
 def our_units() -> list[Unit]:
     """Return the native sources, and those of the C interface."""
     flags = (*zig("c++"), *COMPILED, "-I", str(BUILD / "include"))
-    folders = [ROOT / folder for folder in (*ROOMS.values(), "web/src")]
+    folders = [ROOT / folder for folder in (*ROOMS.values(), "voxelize/src/colour", "web/src")]
     sources = [path for folder in folders for path in sorted(folder.glob("*.cpp")) if path.name not in LEFT_OUT]
     return [Unit(source, flags) for source in sources]
 

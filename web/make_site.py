@@ -1,7 +1,7 @@
 """Put the static page together: build/site, which any web server can serve, from any path.
 
 It holds the page (web/page), what it shares with the server's page (serve/page), the npm package (web/package) with the
-module of web/build.py, the loaders of three.js as they come from npm, and example scenes. Nothing is bundled.
+module of web/build.py, the loaders of three.js from npm without their manuals, and example scenes. Nothing is bundled.
 
     python web/make_site.py            # needs the package voxrt, npm, and the group `web` of pyproject.toml
     python -m http.server -d build/site
@@ -32,6 +32,7 @@ AXE = ("axe-core@4.14.1", "FHfa+lmNjQZfJz1q8wKqIDwC6DExcHt/pkjNQb09a3NPjCKg2rhu5
 """Packages of npm and their hashes. axe-core, which checks pages for accessibility, is for tests alone."""
 LOADERS = ("GLTFLoader", "OBJLoader", "MTLLoader", "STLLoader", "PLYLoader", "USDLoader")
 ADDONS = (*(f"loaders/{name}.js" for name in LOADERS), "libs/meshopt_decoder.module.js")
+MANUAL = re.compile(r"^[ \t]*/\*\*\n(?:[ \t]*\*(?!/).*\n)*[ \t]*\*/\n", re.MULTILINE)
 IMPORT = re.compile(r"""(from\s+)(['"])([^'"]+)\2""")
 
 SHARED = (
@@ -105,7 +106,9 @@ def add_three(folder: Path) -> None:
     package = npm_package(*THREE)
     folder.mkdir()
     shutil.copyfile(package / "LICENSE", folder / "LICENSE")
-    shutil.copyfile(package / "build" / "three.core.js", folder / "three.core.js")
+    core = (package / "build" / "three.core.js").read_text(encoding="utf-8")
+    (folder / "three.core.js").write_text(without_manual(core), encoding="utf-8")
+    add_draco(package / "examples" / "jsm" / "libs" / "draco" / "gltf", folder / "draco")
     waiting = list(ADDONS)
     while waiting:
         name = waiting.pop()
@@ -117,9 +120,22 @@ def add_three(folder: Path) -> None:
         text = (package / "examples" / "jsm" / name).read_text(encoding="utf-8")
         imported = [found[2] for found in IMPORT.findall(text)]
         waiting += [resolved(name, path) for path in imported if path.startswith(".")]
-        target.write_text(
-            IMPORT.sub(lambda m, core=core: f"{m[1]}'{core}'" if m[3] == "three" else m[0], text), encoding="utf-8"
-        )
+        text = IMPORT.sub(lambda m, core=core: f"{m[1]}'{core}'" if m[3] == "three" else m[0], text)
+        target.write_text(without_manual(text), encoding="utf-8")
+
+
+def add_draco(source: Path, folder: Path) -> None:
+    """Copy the decoder of Draco; its script becomes a module that does not look for Node."""
+    folder.mkdir()
+    shutil.copyfile(source / "draco_decoder.wasm", folder / "draco_decoder.wasm")
+    script = (source / "draco_wasm_wrapper.js").read_text(encoding="utf-8")
+    head = "// Draco by Google, Apache License 2.0: https://github.com/google/draco\nconst process = undefined;\n"
+    (folder / "draco_decoder.js").write_text(f"{head}{script}\nexport default DracoDecoderModule;\n", encoding="utf-8")
+
+
+def without_manual(text: str) -> str:
+    """Return a script without its comments of documentation, which are most of it; licences stay."""
+    return MANUAL.sub(lambda m: m[0] if "@license" in m[0] else "", text)
 
 
 def resolved(name: str, path: str) -> str:

@@ -1,4 +1,5 @@
 // voxrt.octree._native: the octree for Python. The headers are the manual; here arrays are checked and handed over.
+#include "assembly.h"
 #include "breadth_first.h"
 #include "budget.h"
 #include "build.h"
@@ -288,6 +289,14 @@ nb::object bind_read_mem_text(const nb::bytes& text) {
     return to_numpy(std::move(words), {count});
 }
 
+void bind_assembly_add(Assembly& assembly, const Vector<Word>& words) {
+    run([&] { assembly.add(words.data(), words.shape(0)); });
+}
+
+nb::object bind_assembly_words(const Assembly& assembly) {
+    return words_to_numpy(run([&] { return assembly.words(); }));
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -355,6 +364,14 @@ NB_MODULE(_native, m) {
     m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);
     m.def("share_hidden", &bind_share_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a);
+    nb::class_<Assembly>(m, "Assembly")
+        .def(nb::new_([](unsigned depth) {
+                 require_depth(depth);
+                 return new Assembly(depth);
+             }),
+             "depth"_a)
+        .def("add", &bind_assembly_add, "words"_a.noconvert())
+        .def("words", &bind_assembly_words);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

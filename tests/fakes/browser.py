@@ -47,6 +47,10 @@ class Browser:
         """Run the body of a JavaScript function; return its value."""
         return self._call("POST", f"{self._session}/execute/sync", {"script": script, "args": list(arguments)})
 
+    def run_async(self, script: str, *arguments: object) -> object:
+        """The same for a function whose last argument is called with its value."""
+        return self._call("POST", f"{self._session}/execute/async", {"script": script, "args": list(arguments)})
+
     def until(self, condition: str, seconds: float = 30) -> object:
         """Wait in the page until a JavaScript expression is true; return its value."""
         # The condition is part of the script: the security policy of the page forbids eval().

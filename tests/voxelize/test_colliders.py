@@ -175,6 +175,8 @@ entry = st.integers(-6, 6) | st.integers(-6 * UNIT, 6 * UNIT).map(lambda units: 
 
 
 @settings(max_examples=25)
+@hypothesis.example([[0.25, 0, 0], [0, 0.25, 0], [0, 0, 200000]], (1, 2, 2))  # far longer than the grid
+@hypothesis.example([[0.25, 0, 3], [0, 0.5, 1], [0, 0, 200000]], (2, 2, 0))
 @given(st.lists(st.lists(entry, min_size=3, max_size=3), min_size=3, max_size=3), st.tuples(*[st.integers(0, 4)] * 3))
 def test_ellipsoid_is_exact(linear, centre):
     """Voxels around the surface, by rational arithmetic: touching does not count."""

@@ -69,6 +69,45 @@ def test_voxels_of_a_scan_with_very_many_holes():
     assert wrong == 0
 
 
+def patches(rng, side, gap):
+    """Give the sides of a box as squares that do not meet, their corners a little off its planes."""
+    box = box_mesh([side * 0.1] * 3, [side * 0.85, side * 0.9, side * 0.8])
+    corners = box.positions[box.triangles.reshape(6, 6)]  # two triangles per side
+    middles = (corners.min(axis=1, keepdims=True) + corners.max(axis=1, keepdims=True)) / 2
+    corners = middles + (corners - middles) * (1 - gap)
+    positions, welded = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    positions += rng.uniform(-0.1, 0.1, positions.shape)
+    return Mesh(positions, welded.reshape(-1, 3).astype(np.int32), np.ones(12, np.uint8))
+
+
+@settings(max_examples=5)
+@given(st.integers(0, 10**6), st.booleans())
+def test_caps_that_lie_on_the_surface(seed, with_ball):
+    """Each loose side is closed by a cap that lies on it: caps and surface pass the same voxels."""
+    rng = np.random.default_rng(seed)
+    mesh = patches(rng, 32, rng.uniform(0.002, 0.01))
+    if with_ball:
+        ball = icosphere(2, rng.uniform(12, 20, 3), rng.uniform(7, 11))
+        mesh = joined(mesh, without(ball, rng.choice(320, 9, replace=False)))
+    wrong, looked_at = disagreements(mesh, 5, rng.integers(0, 32, (4000, 3)))
+    assert wrong == 0
+    assert looked_at > 1000
+
+
+@settings(max_examples=5)
+@given(st.integers(0, 10**6), st.sampled_from([0.02, 0.06, 0.12]))
+def test_one_hole_of_any_size_is_cut_where_the_sum_says(seed, share):
+    """The number passes 1/2 across the hole, smoothly: expansions decide there, and sums at its edge."""
+    rng = np.random.default_rng(seed)
+    ball = icosphere(2, rng.uniform(29, 35, 3), rng.uniform(22, 28))
+    towards = rng.normal(size=3)
+    heights = ball.positions[ball.triangles].mean(axis=1) @ towards
+    mesh = without(ball, np.argsort(heights)[-round(share * len(heights)) :])
+    wrong, looked_at = disagreements(mesh, 6, rng.integers(0, 64, (10_000, 3)))
+    assert wrong == 0
+    assert looked_at > 2000
+
+
 def test_a_scan_with_very_many_holes_keeps_its_volume():
     grid = Grid(7, (-64.0, -64.0, -64.0), 1.0)
     ball = icosphere(5, radius=60)

@@ -3,6 +3,7 @@ from __future__ import annotations
 import threading
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from typing import ClassVar
 
 import pytest
 from fakes.browser import chromium
@@ -10,10 +11,12 @@ from fakes.site import site
 
 
 class QuietHandler(SimpleHTTPRequestHandler):
-    """Python's own file server, which keeps what was asked for to itself."""
+    """Python's own file server, which lists what was asked for instead of printing it."""
+
+    asked: ClassVar[list[str]] = []
 
     def log_message(self, *_: object) -> None:
-        pass
+        self.asked.append(self.path)
 
 
 @pytest.fixture(scope="session")
@@ -24,6 +27,13 @@ def address():
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}/site/"
         server.shutdown()
+
+
+@pytest.fixture
+def asked():
+    """The paths that the page asks for, from the start of the test."""
+    QuietHandler.asked.clear()
+    return QuietHandler.asked
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import json
 import re
@@ -12,8 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from assets import asset
+from fakes.site import site
+from PIL import Image
 
 import voxrt
+from voxrt.export.vox import read_vox, write_vox
 from voxrt.octree.camera import Camera
 from voxrt.sim import render
 
@@ -87,6 +92,80 @@ def test_dropped_files_are_shown_exactly(browser: Browser, files: list[str]) -> 
     registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
     assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
     assert browser.faults() == []
+
+
+def textured_square(folder: Path, image: str, pixels: np.ndarray) -> list[Path]:
+    """A square with a texture, as OBJ."""
+    Image.fromarray(pixels).save(folder / image)
+    (folder / "square.mtl").write_text(f"newmtl look\nmap_Kd {image}\n")
+    corners = ["v 0 0 0", "v 4 0 0", "v 4 3 1", "v 0 3 1", "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1"]
+    faces = ["usemtl look", "f 1/1 2/2 3/3", "f 1/1 3/3 4/4"]
+    (folder / "square.obj").write_text("\n".join(["mtllib square.mtl", *corners, *faces]) + "\n")
+    return [folder / name for name in ("square.obj", "square.mtl", image)]
+
+
+@pytest.mark.parametrize(("image", "most"), [("map.png", 0), ("map.jpg", 3)])
+def test_textures_are_shown_as_natively(browser: Browser, tmp_path: Path, image: str, most: int) -> None:
+    """PNG exactly; JPEG, which the browser decodes, within rounding."""
+    pixels = np.random.default_rng(4).integers(0, 256, (6, 5, 3), np.uint8).repeat(16, axis=0).repeat(16, axis=1)
+    files = textured_square(tmp_path, image, pixels)
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    drop(browser, *files)
+    assert browser.until(shown("square", 7)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    rom = voxrt.build(files[0], depth=7).rom
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    native = render(rom, registers, tuple(size), engine="model").colour
+    assert len(np.unique(native.reshape(-1, 3), axis=0)) > 15
+    assert np.abs(colours.astype(int) - native).mean() <= most
+    assert browser.faults() == []
+
+
+def test_a_magicavoxel_scene_is_shown_exactly(browser: Browser, tmp_path: Path) -> None:
+    write_vox(tmp_path / "yard.vox", voxrt.build(EXAMPLES / "courtyard.glb", depth=6).rom)
+    rom, _ = read_vox(tmp_path / "yard.vox")
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    drop(browser, tmp_path / "yard.vox")
+    assert browser.until(shown("yard", rom.octree.depth)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+
+
+def test_draco_is_decoded_as_natively(browser: Browser) -> None:
+    pytest.importorskip("DracoPy")
+    for name in ("draco/Box/glTF_Binary/Box_Draco.glb", "glTF-Transform/functions/test/in/DenseSphere.glb"):
+        path = asset(f"gltf/{name}")
+        opened(browser)
+        assert browser.until(shown("courtyard", 7))
+        drop(browser, path)
+        assert browser.until(shown(path.stem, 7)), notice(browser)
+        camera, size, colours = frame_of(browser)
+        rom = voxrt.build(path, depth=7).rom
+        registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+        assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+        assert f"{len(rom.octree.words):,}" in browser.run("return document.querySelector('#facts').innerText")
+        assert browser.faults() == []
+
+
+def test_malformed_assets_never_end_the_page(browser: Browser) -> None:
+    """Each is refused or shown; the page stays."""
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    kinds = {".glb", ".gltf", ".obj", ".stl", ".ply", ".usdz", ".usda", ".usdc", ".vox", ".mem"}
+    files = [path for path in sorted(asset("malformed").rglob("*")) if path.suffix.lower() in kinds]
+    for path in files[:: max(1, len(files) // 40)]:
+        browser.run("document.querySelector('#close').click(); document.querySelector('#stage').dataset.scene = ''")
+        drop(browser, path)
+        assert browser.until(
+            "(document.querySelector('#notice').dataset.kind === 'error' && !document.querySelector('#notice').hidden)"
+            f" || document.querySelector('#stage').dataset.scene.startsWith({path.stem!r})"
+        ), path
+    browser.run("document.querySelector('#close').click()")
+    drop(browser, EXAMPLES / "planet.glb")
+    assert browser.until(shown("planet", 7)), notice(browser)
 
 
 def stl_of_a_tetrahedron() -> bytes:
@@ -252,6 +331,16 @@ def test_nothing_is_asked_of_other_servers(browser: Browser) -> None:
     names = browser.run("return performance.getEntriesByType('resource').map(one => one.name)")
     assert names
     assert all(name.startswith((browser.address, "blob:")) for name in names)
+
+
+def test_little_is_transferred_before_the_first_picture(browser: Browser, asked: list[str]) -> None:
+    """Below 600 kB where the server compresses, as most do."""
+    browser.cdp("Network.clearBrowserCache")
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    files = {site().parent / path.split("?")[0].strip("/") for path in asked if not path.endswith("/")}
+    assert any(path.name == "voxrt.wasm" for path in files)
+    assert sum(len(gzip.compress(path.read_bytes())) for path in files if path.is_file()) < 600_000
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844), (844, 390)])

@@ -5,20 +5,16 @@ Colours multiply in linear light. Alpha is coverage.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize import arguments
-from voxrt.voxelize.colour.texture import Texture, look_up
+from voxrt.voxelize import _native, arguments
+from voxrt.voxelize.colour.texture import Texture
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-_FINEST = 32
-_MOST_SAMPLES = 1 << 21
-_CHUNK = 1 << 16
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,6 +114,15 @@ class SurfaceAppearance:
     def __repr__(self) -> str:
         return f"SurfaceAppearance(triangles={len(self.rows)}, entries={len(self.entries)})"
 
+    def arrays(self) -> _native.SurfaceArrays:
+        """Return the appearance as native code takes it."""
+        entries = [
+            (one.name, one.factor, one.texture.arrays() if one.texture else None, one.cutoff, one.mirror)
+            for one in self.entries
+        ]
+        rows, uv, colours = (np.ascontiguousarray(one) for one in (self.rows, self.uv, self.colours))
+        return entries, rows, uv, colours
+
 
 def sample(
     surface: SurfaceAppearance, triangles: NDArray[np.intp], weights: NDArray[np.float64]
@@ -138,83 +143,6 @@ def sample(
     colours
         float64, shape (N, 4): linear red, green, blue and alpha.
     """
-    found = np.empty((len(triangles), 4))
-    rows = surface.rows[triangles]
-    for row in np.unique(rows).tolist():
-        here = np.flatnonzero(rows == row)
-        uv = np.einsum("nk,nkc->nc", weights[here], surface.uv[triangles[here]])
-        colours = np.einsum("nk,nkc->nc", weights[here], surface.colours[triangles[here]].astype(np.float64))
-        found[here] = shade(surface.entries[row], surface.entries[row].texture, uv, colours)
-    return found
-
-
-def shade(
-    appearance: Appearance, texture: Texture | None, uv: NDArray[np.float64], colours: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the linear colour and alpha of points, float64, shape (N, 4).
-
-    Parameters
-    ----------
-    appearance, texture
-        The appearance of the surface, and the texture to look up: its own, or a reduced copy.
-    uv
-        float64, shape (N, 2): texture coordinates.
-    colours
-        float64, shape (N, 4) or (4,): linear colour and alpha, interpolated between the vertices.
-    """
-    own = np.asarray(colours * appearance.factor)
-    if texture is None:
-        return np.broadcast_to(own, (len(uv), 4))
-    found = look_up(texture, uv)
-    found *= own
-    return found
-
-
-def visible_triangles(surface: SurfaceAppearance) -> NDArray[np.bool_]:
-    """Tell which triangles have an appearance and are not fully transparent: bool, shape (T,).
-
-    Triangles that may be cut away are sampled at the centroids of n² equal parts. n grows with the triangle's size in
-    the texture.
-    """
-    solid = np.zeros(len(surface.rows), np.bool_)
-    for row, appearance in enumerate(surface.entries):
-        members = np.flatnonzero(surface.rows == row)
-        # Nearest pixels suffice to find whether any surface is left.
-        texture = replace(appearance.texture, nearest=True) if appearance.texture is not None else None
-        least = float(texture.pixels[:, :, 3].min()) / 255 if texture is not None and appearance.cutoff > 0 else 1.0
-        own = surface.colours[members, :, 3].min(axis=1) * appearance.factor[3]
-        solid[members] = own * least >= appearance.cutoff
-        undecided = members[~solid[members]]
-        parts = _parts(surface, texture, undecided)
-        for n in np.unique(parts).tolist():
-            weights = centroids(n)
-            of_size = undecided[parts == n]
-            for some in np.array_split(of_size, -(-len(of_size) * n * n // _CHUNK)):
-                uv, mixed = (
-                    weights @ surface.uv[some],
-                    weights @ surface.colours[some].astype(np.float64),
-                )
-                found = shade(appearance, texture, uv.reshape(-1, 2), mixed.reshape(-1, 4))
-                solid[some] = (found[:, 3].reshape(len(some), n * n) >= appearance.cutoff).any(axis=1)
-    return solid
-
-
-def _parts(surface: SurfaceAppearance, texture: Texture | None, triangles: NDArray[np.intp]) -> NDArray[np.int32]:
-    """Return the number of parts per side to sample of each triangle: about one per pixel, a power of two."""
-    across = np.full(len(triangles), 2.0)
-    if texture is not None:
-        height, width = texture.pixels.shape[:2]
-        across = np.maximum(across, (np.ptp(surface.uv[triangles], axis=1) * (width, height)).max(axis=1, initial=0.0))
-    parts: NDArray[np.int32] = 1 << np.ceil(np.log2(np.clip(across, 1, _FINEST))).astype(np.int32)
-    while int((parts.astype(np.int64) ** 2).sum()) > _MOST_SAMPLES and parts.max() > 1:
-        parts = np.minimum(parts, parts.max() // 2)
-    return parts
-
-
-def centroids(n: int) -> NDArray[np.float64]:
-    """Return the centroids of a triangle's n² equal parts: barycentric coordinates, float64, shape (n², 3)."""
-    i, j = np.divmod(np.arange(n * n), n)
-    upward = np.stack([i, j], axis=1)[i + j < n] + 1 / 3
-    downward = np.stack([i, j], axis=1)[i + j < n - 1] + 2 / 3
-    two = np.concatenate([upward, downward]) / n
-    return np.column_stack([two, 1 - two.sum(axis=1)])
+    return _native.sample_surface(
+        surface.arrays(), np.ascontiguousarray(triangles, np.int64), np.ascontiguousarray(weights, np.float64)
+    )

@@ -1,4 +1,4 @@
-"""Conversion between linear light and sRGB, by the exact curve.
+"""Conversion between linear light and sRGB, by the exact curve, in native code (src/colour/srgb.h).
 
 Source: IEC 61966-2-1:1999, with its amendment's thresholds 0.0031308 and 0.04045.
 """
@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from voxrt.voxelize import _native
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,9 +33,8 @@ def srgb_from_linear(linear: ArrayLike) -> NDArray[np.uint8]:
     >>> srgb_from_linear([0.0, 0.5, 1.0])
     array([  0, 188, 255], dtype=uint8)
     """
-    light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
-    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.power(light, 1 / 2.4) - 0.055)
-    return np.floor(encoded * 255.0 + 0.5).astype(np.uint8)
+    light = np.asarray(linear, np.float64)
+    return _native.srgb_from_linear(np.ascontiguousarray(light).reshape(-1)).reshape(light.shape)
 
 
 def linear_from_srgb(srgb: ArrayLike) -> NDArray[np.float64]:
@@ -61,9 +62,5 @@ def linear_from_hex(name: str, value: str) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _decode(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.where(encoded <= 0.04045, encoded / 12.92, np.power((encoded + 0.055) / 1.055, 2.4))
-
-
-LINEAR_OF_SRGB8: NDArray[np.float64] = _decode(np.arange(256) / 255.0)
+LINEAR_OF_SRGB8: NDArray[np.float64] = _native.linear_of_srgb()
 """float64, shape (256,): the linear light of each 8-bit sRGB value."""

@@ -17,11 +17,16 @@ _DEFAULT_KEY = object()
 
 
 class MaterialTable:
-    """The materials of a scene under construction; entry 0 is empty space."""
+    """The materials of a scene under construction; entry 0 is empty space.
+
+    Attributes
+    ----------
+    native
+        The table itself.
+    """
 
     def __init__(self) -> None:
-        self._table = _native.MaterialTable(EMPTY.name, EMPTY.colour)
-        self._entries = [EMPTY]
+        self.native = _native.MaterialTable(EMPTY.name, EMPTY.colour)
         self._ids: dict[Hashable, int] = {}
 
     def id_of(
@@ -56,10 +61,9 @@ class MaterialTable:
         if key in self._ids:
             return self._ids[key]
         try:
-            self._ids[key], unique = self._table.add(name, colour, mirror, authored)
+            self._ids[key] = self.native.add(name, colour, mirror, authored)
         except _native.TooManyMaterialsError as error:
             raise DoesNotFitError(str(error)) from None
-        self._entries.append(Material(unique, colour, mirror, authored))
         return self._ids[key]
 
     def default(self, log: WarningLog, faces: int = 1) -> int:
@@ -68,8 +72,8 @@ class MaterialTable:
         return self.id_of(_DEFAULT_KEY, "default", DEFAULT_COLOUR, authored=False)
 
     def __len__(self) -> int:
-        return len(self._entries)
+        return len(self.native.entries())
 
     def materials(self) -> tuple[Material, ...]:
         """Return the table so far, indexed by id."""
-        return tuple(self._entries)
+        return tuple(Material(*one) for one in self.native.entries())

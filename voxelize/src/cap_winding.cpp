@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kFarError = 1.0 / 1024; // largest error of a node or cap that is taken as far
-constexpr double kNegligible = 1.0 / 64; // what one cap may add without a gradient of its own
-constexpr double kFarthestEnd = 0.5;     // largest distance of a dipole's ends from its centre, of its distance
+constexpr double kFarthestEnd = 0.5; // largest distance of a dipole's ends from its centre, of its distance
 constexpr double kInverse4Pi = 1 / (4 * std::numbers::pi);
 
 Point plus(const Point& a, double s, const Point& b) { return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }
@@ -105,53 +105,67 @@ void add_solid_angle(AngleSum& sum, const CapWinding::Cap& cap, const Point& q) 
     sum.add(over, under);
 }
 
-/// How the solid angle of a cap changes inside a ball.
-struct CapGradient {
-    Point gradient{0, 0, 0};
-    double error_bound = 0;
-    bool crosses = false; // the cap passes through the ball
-};
-
-/// The gradient of the solid angle depends on the edges of the cap alone, like the magnetic field of a current in a
-/// wire (law of Biot and Savart). The field of a short wire, direction x d / d^3, changes by at most 2 length / d^3 per
-/// distance. Returns false where the error bound for a ball of `radius` about q would not be below `limit`.
-bool find_gradient(const CapWinding::Cap& cap, const Point& q, double radius, double limit, CapGradient& found) {
-    Point corners[3];
-    double lengths[3];
-    for (int i = 0; i < 3; ++i) {
-        corners[i] = minus(cap[i], q);
-        lengths[i] = length(corners[i]);
-    }
-    const Point n = normal(cap);
-    bool outside = false;
-    for (int i = 0; i < 3; ++i) {
-        const int j = i == 2 ? 0 : i + 1;
-        const Point &a = corners[i], &b = corners[j], edge = minus(b, a);
-        const double square = dot(edge, edge);
-        if (square == 0)
-            continue;
-        const double gap = length(plus(a, std::clamp(-dot(a, edge) / square, 0.0, 1.0), edge)) - radius;
-        if (gap <= 0)
-            return false;
-        // Summed along the edge or, where that is less, along the whole line.
-        found.error_bound += kInverse4Pi * radius * radius * std::min(std::sqrt(square) / gap, 2.0) / (gap * gap);
-        if (found.error_bound >= limit)
-            return false;
-        const double product = lengths[i] * lengths[j];
-        found.gradient = plus(found.gradient,
-                              kInverse4Pi * (lengths[i] + lengths[j]) / (product * (product + dot(a, b))), cross(a, b));
-        outside = outside || dot(cross(n, edge), a) > 0;
-    }
-    const double height = dot(corners[0], n);
-    found.crosses = !outside && height * height <= radius * radius * dot(n, n);
-    return true;
-}
-
 } // namespace
 
 CapWinding::CapWinding(std::vector<Cap> caps) : caps_(std::move(caps)) {
-    if (!caps_.empty())
-        build(0, uint32_t(caps_.size()));
+    if (caps_.empty())
+        return;
+    build(0, uint32_t(caps_.size()));
+    find_vertices();
+    pair_edges();
+}
+
+void CapWinding::find_vertices() {
+    std::vector<uint32_t> order(3 * caps_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto at = [this](uint32_t corner) -> const Point& { return caps_[corner / 3][corner % 3]; };
+    WorkCounter& work = WorkCounter::current();
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        work.count(1);
+        const Point &p = at(a), &q = at(b);
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    });
+    corners_.resize(order.size());
+    for (const uint32_t corner : order) {
+        if (vertices_.empty() || !(vertices_.back() == at(corner)))
+            vertices_.push_back(at(corner));
+        corners_[corner] = uint32_t(vertices_.size() - 1);
+    }
+}
+
+void CapWinding::pair_edges() {
+    struct Edge {
+        uint32_t low, high;
+        uint32_t number; // 3 * cap + corner
+        bool forward;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(corners_.size());
+    for (uint32_t number = 0; number < corners_.size(); ++number) {
+        const uint32_t a = corners_[number], b = corners_[number % 3 == 2 ? number - 2 : number + 1];
+        edges.push_back({std::min(a, b), std::max(a, b), number, a < b});
+    }
+    WorkCounter& work = WorkCounter::current();
+    std::sort(edges.begin(), edges.end(), [&work](const Edge& a, const Edge& b) {
+        work.count(1);
+        return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
+    });
+    across_.assign(edges.size(), kNoCap);
+    std::vector<uint32_t> open; // edges of one direction that have no partner yet
+    bool forward = false;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const Edge& edge = edges[i];
+        if (i > 0 && (edge.low != edges[i - 1].low || edge.high != edges[i - 1].high))
+            open.clear();
+        if (open.empty() || forward == edge.forward) {
+            forward = edge.forward;
+            open.push_back(edge.number);
+            continue;
+        }
+        across_[open.back()] = edge.number / 3;
+        across_[edge.number] = open.back() / 3;
+        open.pop_back();
+    }
 }
 
 int32_t CapWinding::build(uint32_t first, uint32_t last) {
@@ -203,13 +217,6 @@ int32_t CapWinding::build(uint32_t first, uint32_t last) {
     return index;
 }
 
-LocalExpansion CapWinding::unresolved() const {
-    LocalExpansion expansion;
-    if (!nodes_.empty())
-        expansion.unresolved.push_back(0);
-    return expansion;
-}
-
 double CapWinding::dipole_angle(const Node& node, const Point& d, double square) {
     const double* m = node.moment;
     const double quadrupole = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
@@ -224,76 +231,37 @@ void CapWinding::add_dipole(const Node& node, const Point& d, double square, Lin
     sum.gradient = plus(plus(sum.gradient, -cube, node.dipole), 3 * cube * dot(node.dipole, d) / square, d);
 }
 
-void CapWinding::expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const {
-    to.centre = centre;
-    to.far = from.far;
-    to.far.angle += dot(from.far.gradient, minus(centre, from.centre));
-    to.near = {};
-    to.unresolved.clear();
-    to.remainder_bound = 0;
-    to.crossed = false;
-    AngleSum far, near;
+bool CapWinding::split(const Point& centre, double radius, double far_error, size_t most, LinearExpansion& far,
+                       std::vector<uint32_t>& near) const {
     int32_t stack[64];
+    int depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
     uint32_t visited = 0;
-    for (const uint32_t root : from.unresolved) {
-        int depth = 0;
-        stack[depth++] = int32_t(root);
-        while (depth > 0) {
-            ++visited;
-            const int32_t index = stack[--depth];
-            const Node& node = nodes_[index];
-            const Point d = minus(node.centre, centre);
-            const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
-            double error = 1;
-            if (spread < kFarthestEnd * distance)
-                error = node.area * dipole_error(spread / distance) / square;
-            if (error <= kFarError) {
-                add_dipole(node, d, square, to.far);
-                to.far.error_bound += error;
+    while (depth > 0) {
+        ++visited;
+        const Node& node = nodes_[stack[--depth]];
+        const Point d = minus(node.centre, centre);
+        const double square = dot(d, d), distance = std::sqrt(square), spread = node.radius + radius;
+        if (spread < kFarthestEnd * distance) {
+            const double error = node.area * dipole_error(spread / distance) / square;
+            if (error <= far_error) {
+                add_dipole(node, d, square, far);
+                far.error_bound += error;
                 continue;
             }
-            const bool is_cap = node.left < 0;
-            if (!is_cap && node.radius > radius) {
-                stack[depth++] = node.left;
-                stack[depth++] = node.right;
-                continue;
-            }
-            const double gap = distance - spread;
-            if (is_cap) {
-                const Cap& cap = caps_[node.first];
-                if (radius == 0) {
-                    add_solid_angle(far, cap, centre);
-                    continue;
-                }
-                const double most = gap > 0 ? std::min({0.5, error, kInverse4Pi * node.area / (gap * gap)}) : 0.5;
-                CapGradient gradient;
-                if (most > kNegligible && find_gradient(cap, centre, radius, most, gradient)) {
-                    const bool is_near = gradient.crosses || gradient.error_bound > kFarError;
-                    add_solid_angle(is_near ? near : far, cap, centre);
-                    LinearExpansion& sum = is_near ? to.near : to.far;
-                    sum.gradient = plus(sum.gradient, 1, gradient.gradient);
-                    sum.error_bound += gradient.error_bound;
-                    to.crossed = to.crossed || gradient.crosses;
-                    if (is_near)
-                        to.unresolved.push_back(uint32_t(index));
-                    continue;
-                }
-            }
-            to.unresolved.push_back(uint32_t(index));
-            // Caps that may pass through the ball jump by a whole number there.
-            const double most =
-                gap > 0 ? std::min((node.last - node.first) / 2.0, kInverse4Pi * node.area / (gap * gap)) : 1;
-            if (error < most) {
-                add_dipole(node, d, square, to.near);
-                to.near.error_bound += error;
-            } else {
-                to.remainder_bound += most;
-            }
+        }
+        if (node.left >= 0) {
+            stack[depth++] = node.left;
+            stack[depth++] = node.right;
+        } else {
+            if (near.size() == most)
+                return false;
+            near.push_back(node.first);
         }
     }
     count_work(2 * visited);
-    to.far.angle += far.over_4_pi();
-    to.near.angle += near.over_4_pi();
+    return true;
 }
 
 double CapWinding::at(const Point& q, double tolerance) const {

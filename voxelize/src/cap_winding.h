@@ -6,11 +6,10 @@
 // its cost grows with the holes and not with the surface.
 //
 // Far caps are taken together as dipoles with their first moments (Barill, Dickson, Schmidt, Levin and Jacobson, "Fast
-// Winding Numbers for Soups and Clouds", 2018). The expansion about a cube is handed down to its parts, which expand
-// what was too near for it alone (Greengard and Rokhlin, "A Fast Algorithm for Particle Simulations", 1987). Every
-// approximation carries a proven error bound: 1 / distance is harmonic, so that its derivative of order n is at most
-// n! / distance^(n + 1) in any directions. A dipole of area A whose ends lie within t D of D has an error of at most
-// A / (4 pi D^2) times the sum over k >= 2 of (k + 1) t^k.
+// Winding Numbers for Soups and Clouds", 2018); near ones are summed (near_caps.h). Every approximation carries a
+// proven error bound: 1 / distance is harmonic, so that its derivative of order n is at most n! / distance^(n + 1) in
+// any directions. A dipole of area A whose ends lie within t D of D has an error of at most A / (4 pi D^2) times the
+// sum over k >= 2 of (k + 1) t^k.
 #pragma once
 
 #include "fixed_point.h"
@@ -33,18 +32,6 @@ struct LinearExpansion {
     double error_bound = 0;
 };
 
-/// The solid angle of all caps over 4 pi inside a ball.
-struct LocalExpansion {
-    Point centre{0, 0, 0};
-    LinearExpansion far;
-    LinearExpansion near;             // of caps that smaller balls inside this one approximate better
-    std::vector<uint32_t> unresolved; // nodes of all caps that are not in `far`
-    double remainder_bound = 0;       // bound of what the caps in neither add
-    /// Caps pass through the ball. `near` takes them as seen from the centre. A point beyond such a cap keeps that
-    /// angle; together with the winding number of the capped surface at the centre it stays correct.
-    bool crossed = false;
-};
-
 /// Caps in a tree of dipoles. Building takes n log n.
 class CapWinding {
 public:
@@ -55,13 +42,20 @@ public:
 
     bool empty() const { return caps_.empty(); }
 
-    /// The expansion to start from, in which nothing is resolved.
-    LocalExpansion unresolved() const;
+    /// The caps for points in the ball of `radius` about `centre`, from the root: nodes whose error is at most
+    /// `far_error` each go into `far`, an expansion about `centre`; the caps of all others are appended to `near`.
+    /// Gives up, and returns false, where these become more than `most`.
+    bool split(const Point& centre, double radius, double far_error, size_t most, LinearExpansion& far,
+               std::vector<uint32_t>& near) const;
 
-    /// Expands about `centre`, for a ball of radius `radius` that lies inside the ball of `from`. With radius 0 all is
-    /// far, and exact apart from what `from` had resolved; `centre` must then be a sample point of a voxel.
-    void expand(const LocalExpansion& from, const Point& centre, double radius, LocalExpansion& to) const;
-
+    static constexpr uint32_t kNoCap = 0xFFFF'FFFF;
+    size_t count() const { return caps_.size(); }
+    size_t vertex_count() const { return vertices_.size(); }
+    const Point& vertex(uint32_t number) const { return vertices_[number]; }
+    /// Corner i of a cap: the number of its vertex. Vertices at one position are one.
+    uint32_t corner(uint32_t cap, int i) const { return corners_[3 * size_t{cap} + i]; }
+    /// The cap that has the edge from corner i to the next the other way round, or kNoCap.
+    uint32_t across(uint32_t cap, int i) const { return across_[3 * size_t{cap} + i]; }
     /// The solid angle over 4 pi at q, with an error of at most `tolerance`. On a cap, q counts as just below it, as in
     /// the column sweep.
     double at(const Point& q, double tolerance) const;
@@ -75,11 +69,16 @@ private:
         int32_t left = -1, right = -1;
     };
     int32_t build(uint32_t first, uint32_t last);
+    void find_vertices();
+    void pair_edges();
     static double dipole_angle(const Node& node, const Point& d, double square);
     static void add_dipole(const Node& node, const Point& d, double square, LinearExpansion& sum);
 
     std::vector<Cap> caps_;
     std::vector<Node> nodes_;
+    std::vector<Point> vertices_;
+    std::vector<uint32_t> corners_; // 3 per cap
+    std::vector<uint32_t> across_;  // 3 per cap
 };
 
 } // namespace voxrt::voxelize

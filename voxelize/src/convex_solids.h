@@ -17,7 +17,7 @@ struct AxisBox {
     int first(int axis) const { return voxel_floor(min[axis]); }
     int last(int axis) const { return std::max(voxel_below(max[axis]), first(axis)); }
 
-    ColumnSpan column(int x, int y) const {
+    ColumnSpan column(int x, int y, int /*top*/) const {
         if (x < first(0) || x > last(0) || y < first(1) || y > last(1))
             return {};
         ColumnSpan span{first(2), last(2), 0, -1};
@@ -37,7 +37,7 @@ struct Ball {
     int last(int axis) const { return voxel_below(centre[axis] + radius); }
 
     /// Overlap: the voxel's nearest point is nearer than the radius. Within: its farthest corner is not farther.
-    ColumnSpan column(int x, int y) const {
+    ColumnSpan column(int x, int y, int /*top*/) const {
         int64_t near_square = 0, far_square = 0;
         bool far_within = true;
         const int cell[2] = {x, y};
@@ -94,7 +94,7 @@ int64_t claim_convex(TileVoxels& tile, const Window& w, const Solid& solid, bool
             const int x = cx + column_x(bit), y = cy + column_y(bit);
             ColumnSpan& span = spans[bit];
             if (x <= w.x1 && y <= w.y1)
-                span = solid.column(x, y);
+                span = solid.column(x, y, w.top);
             span.lo = std::max(span.lo, 0);
             span.hi = std::min(span.hi, w.top);
             if (span.lo <= span.hi) {

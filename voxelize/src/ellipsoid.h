@@ -35,8 +35,11 @@ public:
     int first(int axis) const { return int(std::floor(centre(axis) - extent(axis) - kSlack)); }
     int last(int axis) const { return int(std::floor(centre(axis) + extent(axis) + kSlack)); }
 
-    ColumnSpan column(int x, int y) const {
+    /// Of the voxels 0 … `top`: a needle may be far longer than the grid.
+    ColumnSpan column(int x, int y, int top) const {
         ColumnSpan span = bracket(x, y);
+        span.lo = std::max(span.lo, 0);
+        span.hi = std::min(span.hi, top);
         bool sure_lo = false, sure_hi = false;
         if (span.lo <= span.hi && is_round_) {
             const std::optional<double> top = extreme(x, y, 1), bottom = extreme(x, y, -1);
@@ -53,7 +56,7 @@ public:
         while (!sure_hi && span.lo <= span.hi && !overlaps(x, y, span.hi))
             --span.hi;
         if (span.lo <= span.hi)
-            find_inner(x, y, span);
+            find_inner(x, y, top, span);
         return span;
     }
 
@@ -88,8 +91,9 @@ private:
     }
 
     /// Narrows inner_lo … inner_hi to the voxels whose eight corners are within.
-    void find_inner(int x, int y, ColumnSpan& span) const {
-        int lo = span.lo + 1, hi = span.hi - 1; // a strictly convex solid holds no end of its interval whole
+    void find_inner(int x, int y, int top, ColumnSpan& span) const {
+        // A strictly convex solid holds no end of its interval whole. It may go on beyond the grid.
+        int lo = span.lo > 0 ? span.lo + 1 : 0, hi = span.hi < top ? span.hi - 1 : top;
         bool sure_lo = false, sure_hi = false;
         if (is_round_) {
             double low = -1e300, high = 1e300;

@@ -2,11 +2,12 @@
 //
 // With its caps a surface closes, and its winding number is a sum of crossings along the vertical lines of the lattice.
 // Less what the caps add (cap_winding.h), it is the generalized winding number. Cost: the triangles, and 512 sums over
-// the tree of caps.
+// the caps.
 #pragma once
 
 #include "cap_winding.h"
 #include "interrupt.h"
+#include "near_caps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,7 @@ public:
     /// `caps`: those that were added.
     Enclosure measure(const CapWinding& caps) const {
         constexpr double kTolerance = 1e-3;
+        const std::vector<double> angles = angles_of(caps, kTolerance);
         Enclosure found;
         int inside = 0;
         for (int j = 0; j < kSide; ++j)
@@ -44,7 +46,7 @@ public:
                 int number = 0;
                 for (int k = 0; k < kSide; ++k) {
                     number += changes_[j][i][k];
-                    const double enclosed = std::min(1.0, std::abs(number - caps.at(at(i, j, k), kTolerance)));
+                    const double enclosed = std::min(1.0, std::abs(number - angles[(j * kSide + i) * kSide + k]));
                     if (enclosed < 0.5 + kTolerance)
                         continue;
                     found.mean += enclosed;
@@ -59,6 +61,32 @@ public:
 private:
     static constexpr int kSide = 8;
     static constexpr double kOffset = 0.41421356; // in a cell of the lattice: on no plane of symmetry
+
+    static constexpr size_t kManyCaps = 1 << 15; // to be summed one by one
+
+    /// The solid angle of the caps over 4 pi at each point of the lattice.
+    std::vector<double> angles_of(const CapWinding& caps, double tolerance) const {
+        std::vector<double> angles(kSide * kSide * kSide);
+        const auto point = [this](size_t n) {
+            return at(int(n / kSide % kSide), int(n / kSide / kSide), int(n % kSide));
+        };
+        if (caps.count() > kManyCaps) {
+            for (size_t n = 0; n < angles.size(); ++n)
+                angles[n] = caps.at(point(n), tolerance);
+            return angles;
+        }
+        NearCaps near;
+        near.gather(caps, at(kSide / 2, kSide / 2, kSide / 2), 0, 0, NearCaps::kAll);
+        for (size_t n = 0; n < angles.size(); n += NearCaps::kBatch) {
+            NearCaps::Batch batch;
+            for (size_t i = 0; i < NearCaps::kBatch; ++i)
+                batch.add(point(n + i));
+            near.find_angles(batch);
+            for (size_t i = 0; i < NearCaps::kBatch; ++i)
+                angles[n + i] = batch.doubtful[i] ? caps.at(point(n + i), tolerance) : batch.angle[i];
+        }
+        return angles;
+    }
 
     struct Lines {
         int first, last;

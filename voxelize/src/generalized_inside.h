@@ -1,16 +1,20 @@
 // Which voxels of a tile lie inside a surface with holes: those where its generalized winding number exceeds 1/2
 // (Jacobson, Kavan and Sorkine-Hornung 2013; cap_winding.h).
 //
-// That number is the winding number of the capped surface, known for every voxel, less what the caps add. Cubes are
-// classified from large to small, each with the expansion that its parent handed down. Where no surface passes a cube,
-// the number changes smoothly, and one voxel may decide all; where the caps add less than 1/2, the capped surface
-// decides; else the cube is split. A voxel within the rounding error of 1/2 counts as outside.
+// That number is the winding number of the capped surface, known for every voxel, less what the caps add. Where no
+// boundary of a hole is near, what they add changes smoothly and is expanded to second order (near_caps.h). Cubes are
+// classified from large to small. Where the caps add less than 1/2, the capped surface decides; where no surface passes
+// a cube, one voxel may decide all; else the cube is split. In bricks that stay mixed, cells of 8 and 4 voxels are
+// expanded, and each region of voxels that no surface separates takes its whole number from one voxel. What is left,
+// at the boundaries and close to 1/2, is summed voxel by voxel, with smaller and smaller errors. A voxel within the
+// rounding error of 1/2 counts as outside.
 //
-// Cost: bricks with surface, and voxels near holes.
+// Cost: bricks near boundaries, and bricks that the surface of 1/2 passes; fourfold per level.
 #pragma once
 
 #include "cap_winding.h"
 #include "mesh_analysis.h"
+#include "near_caps.h"
 #include "tile_surface.h"
 #include "tile_voxels.h"
 
@@ -23,8 +27,9 @@ namespace voxrt::voxelize {
 class GeneralizedInside {
 public:
     /// Of a brick. `capped`: inside where the winding number of the capped surface is not zero. `mixed`: voxel by
-    /// voxel.
-    enum class Class : uint8_t { outside, inside, capped, mixed };
+    /// voxel. `rough`: likewise, and near the boundary of a hole.
+    enum class Class : uint8_t { outside, inside, capped, mixed, rough };
+    static bool is_mixed(Class c) { return c == Class::mixed || c == Class::rough; }
 
     /// What the classification needs to know of a brick: the capped surface's winding number at two of its voxels.
     struct Brick {
@@ -47,17 +52,14 @@ public:
         }
         bricks_.resize(size_t(kTileColumns) * height_);
         classes_.assign(bricks_.size(), Class::outside);
-        mixed_.resize(bricks_.size());
-        expansions_.clear();
     }
 
     Brick& brick(int column, int k) { return bricks_[size_t(column) * height_ + k]; }
 
     /// Classifies all bricks.
     void classify() {
-        const LocalExpansion all = caps_->unresolved();
         for (int k = 0; k < height_; k += kTileBricks)
-            classify_cube(0, 0, k, kTileBricks, all, 0);
+            classify_cube(0, 0, k, kTileBricks);
     }
 
     Class class_of(int column, int k) const { return classes_[size_t(column) * height_ + k]; }
@@ -86,71 +88,80 @@ public:
         z_ = k * kBrickSide;
         numbers_ = numbers.data();
         surface_ = &surface;
-        Slices undecided = box_of(column, k), within{};
+        undecided_ = box_of(column, k);
+        within_ = {};
         for (int z = 0; z < kBrickSide; ++z)
-            undecided[z] &= ~surface[z];
-        classify_cell({0, 0, 0, std::min(side_, kBrickSide)}, expansions_[mixed_[size_t(column) * height_ + k]], 0,
-                      undecided, within);
-        return within;
+            undecided_[z] &= ~surface[z];
+        const Cell brick{0, 0, 0, std::min(side_, kBrickSide)};
+        // Most voxels near a boundary are far from 1/2: few caps are near enough to matter for them.
+        double far_error = class_of(column, k) == Class::rough ? kCoarsest : kFine;
+        for (bool first = true; far_error >= kFinest && !is_empty(undecided_); far_error /= kFiner, first = false) {
+            const bool by_cells = first || count_undecided(brick) > kFewVoxels;
+            const Ball ball = by_cells ? Ball{centre_of(brick), radius_of(brick)} : around_undecided();
+            near_.gather(*caps_, ball.centre, ball.radius, far_error, NearCaps::kAll);
+            if (by_cells) {
+                rough_ = {};
+                if (class_of(column, k) == Class::rough)
+                    classify_parts(brick);
+                else
+                    classify_cell(brick);
+                classify_one_by_one(rough_);
+            } else {
+                classify_one_by_one(undecided_);
+            }
+            if (near_.error_bound() < kRounding)
+                break;
+        }
+        if (!is_empty(undecided_))
+            classify_one_by_one(undecided_);
+        for (int z = 0; z < kBrickSide; ++z)
+            for (; undecided_[z] != 0; undecided_[z] &= undecided_[z] - 1) {
+                const int bit = std::countr_zero(undecided_[z]);
+                if (is_inside(sample(z, bit), numbers_[z * 64 + bit]))
+                    within_[z] |= uint64_t{1} << bit;
+            }
+        return within_;
     }
 
 private:
     static constexpr double kSqrt3 = 1.7320508075688772;
     static constexpr double kTie = 0.5 + 1e-6;          // above 1/2 by more than rounding
     static constexpr double kSample = 0.5 + 1.0 / 8192; // the sample point of a voxel is on its column's ray
+    // Errors of one node of caps: for cubes; for voxels near a boundary; for others; where all else is exact.
+    static constexpr double kCubeError = 1.0 / 256, kCoarsest = 1.0 / 64, kFine = 1.0 / (1 << 13);
+    static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 128;
+    static constexpr size_t kManyCaps = 64;     // near a cube: its parts are asked instead
+    static constexpr double kRounding = 1e-7;   // of an angle, but for doubtful ones
+    static constexpr double kRoundable = 0.375; // error from which a whole number can be told
+    static constexpr int kFewVoxels = 16;       // are decided one by one
 
     struct Cell {
         int x, y, z, side; // in a brick
     };
+    struct Ball {
+        Point centre;
+        double radius;
+    };
+
     bool outside_box(int x, int y, int z, int side) const {
         return x > high_[0] || y > high_[1] || z > high_[2] || x + side <= low_[0] || y + side <= low_[1] ||
                z + side <= low_[2];
     }
 
-    /// Expands about a cube whose lowest corner is (x, y, z); returns the largest distance of its sample points from
-    /// the centre. Where caps pass a clear cube, one without surface, the centre is the sample point of a voxel, where
-    /// the capped surface's winding number is known.
-    double expand(const LocalExpansion& from, int x, int y, int z, int side, bool clear, LocalExpansion& to) const {
-        double middle = (side - 1) / 2.0;
-        caps_->expand(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kSqrt3, to);
-        if (!to.crossed || !clear)
-            return middle * kSqrt3;
-        middle = side / 2;
-        caps_->expand(from, {x + middle + kSample, y + middle + kSample, z + middle + kSample}, middle * kSqrt3, to);
-        return middle * kSqrt3;
-    }
-
-    static Point gradient(const LocalExpansion& e) {
-        const Point &f = e.far.gradient, &n = e.near.gradient;
-        return {f.x + n.x, f.y + n.y, f.z + n.z};
-    }
-    static double error_bound(const LocalExpansion& e) {
-        return e.far.error_bound + e.near.error_bound + e.remainder_bound;
-    }
-
-    void classify_cube(int bx, int by, int k, int bricks, const LocalExpansion& from, int level) {
+    void classify_cube(int bx, int by, int k, int bricks) {
         const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
         if (outside_box(x, y, z, side))
             return;
-        const bool within = x + side <= side_ && y + side <= side_ && z + side <= side_;
-        const bool clear = within && !any_surface(bx, by, k, bricks);
-        LocalExpansion& expansion = levels_[level];
-        const double radius = expand(from, x, y, z, side, clear, expansion);
-        const Class result = class_from(expansion, radius, bx, by, k, bricks, clear);
-        if (result == Class::mixed && bricks > 1) {
+        const Class result = class_of_cube(bx, by, k, bricks);
+        if (is_mixed(result) && bricks > 1) {
             const int step = bricks / 2;
             for (int i = 0; i < 8; ++i)
-                classify_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step, expansion,
-                              level + 1);
+                classify_cube(bx + (i & 1) * step, by + (i >> 1 & 1) * step, k + (i >> 2) * step, step);
             return;
         }
         for (int v = by; v < by + bricks; ++v)
             for (int u = bx; u < bx + bricks; ++u)
                 std::fill_n(classes_.begin() + slot(u, v, k), std::min(bricks, height_ - k), result);
-        if (result == Class::mixed) {
-            mixed_[slot(bx, by, k)] = uint32_t(expansions_.size());
-            expansions_.push_back(expansion);
-        }
     }
 
     ptrdiff_t slot(int bx, int by, int k) const { return ptrdiff_t(by * kTileBricks + bx) * height_ + k; }
@@ -164,84 +175,80 @@ private:
         return false;
     }
 
-    Class class_from(const LocalExpansion& expansion, double radius, int bx, int by, int k, int bricks,
-                     bool clear) const {
-        const Point g = gradient(expansion);
-        const double error = std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z) * radius + error_bound(expansion);
-        const double angle = expansion.far.angle + expansion.near.angle;
-        if (!expansion.crossed && std::abs(angle) + error < 0.5)
+    Class class_of_cube(int bx, int by, int k, int bricks) {
+        const int x = x0_ + bx * kBrickSide, y = y0_ + by * kBrickSide, z = k * kBrickSide, side = bricks * kBrickSide;
+        const bool clear =
+            x + side <= side_ && y + side <= side_ && z + side <= side_ && !any_surface(bx, by, k, bricks);
+        const double middle = (side - 1) / 2.0 + kSample, radius = (side - 1) / 2.0 * kSqrt3;
+        const Point centre{x + middle, y + middle, z + middle};
+        if (!near_.gather(*caps_, centre, radius, kCubeError, bricks > 1 ? kManyCaps : NearCaps::kAll))
+            return Class::rough;
+        const NearCaps::Change change = near_.find_change(centre, radius, 0.5);
+        const double error = 2 * change.error_bound + near_.error_bound() + kRounding;
+        if (!(error < 0.5) || (change.crossed && !clear))
+            return Class::rough;
+        // From the sample point of a voxel, where the winding number of the capped surface is known.
+        const Brick& brick = bricks_[slot(bx + bricks / 2, by + bricks / 2, k + bricks / 2)];
+        const double half = side / 2 + kSample, off = half - middle;
+        bool doubtful;
+        const double angle = near_.find_angle({x + half, y + half, z + half}, doubtful);
+        const double spread = change.most(radius) + std::abs(change.at({off, off, off})) + error;
+        if (doubtful)
+            return Class::rough;
+        if (!change.crossed && std::abs(angle) + spread < 0.5)
             return Class::capped;
         if (!clear)
             return Class::mixed;
-        const int half = bricks / 2;
-        const Brick& middle = bricks_[slot(bx + half, by + half, k + half)];
-        const double there = std::abs((bricks > 1 ? middle.corner : middle.middle) - angle);
-        return there - error > kTie ? Class::inside : there + error < 0.5 ? Class::outside : Class::mixed;
+        const double there = std::abs((bricks > 1 ? brick.corner : brick.middle) - angle);
+        return there - spread > kTie ? Class::inside : there + spread < 0.5 ? Class::outside : Class::mixed;
     }
 
     static uint64_t square_of(const Cell& cell) {
         return cell.side == kBrickSide ? ~uint64_t{0}
                                        : ((uint64_t{1} << cell.side * cell.side) - 1) << column_bit(cell.x, cell.y);
     }
-    bool is_clear(const Cell& cell) const {
-        uint64_t any = 0;
+    Point centre_of(const Cell& cell) const {
+        const double middle = (cell.side - 1) / 2.0 + kSample;
+        return {x_ + cell.x + middle, y_ + cell.y + middle, z_ + cell.z + middle};
+    }
+    static double radius_of(const Cell& cell) { return (cell.side - 1) / 2.0 * kSqrt3; }
+    Point sample(int z, int bit) const {
+        return {x_ + column_x(bit) + kSample, y_ + column_y(bit) + kSample, z_ + z + kSample};
+    }
+    int count_undecided(const Cell& cell) const {
+        int count = 0;
         for (int z = cell.z; z < cell.z + cell.side; ++z)
-            any |= (*surface_)[z] & square_of(cell);
-        return any == 0;
+            count += std::popcount(undecided_[z] & square_of(cell));
+        return count;
     }
 
-    /// Classifies the undecided voxels of a cell, none of which has surface.
-    void classify_cell(const Cell& cell, const LocalExpansion& expansion, int level, Slices& undecided,
-                       Slices& within) {
-        const double error = error_bound(expansion);
-        if (error < 0.5 && (!expansion.crossed || is_clear(cell))) {
-            const Point g = gradient(expansion);
-            const double angle = expansion.far.angle + expansion.near.angle;
-            const int half = cell.side / 2;
-            const int at_centre = numbers_[(cell.z + half) * 64 + column_bit(cell.x + half, cell.y + half)];
-            for (int z = cell.z; z < cell.z + cell.side; ++z)
-                for (uint64_t left = undecided[z] & square_of(cell); left != 0; left &= left - 1) {
-                    const int bit = std::countr_zero(left);
-                    const int number = expansion.crossed ? at_centre : numbers_[z * 64 + bit];
-                    const double there =
-                        std::abs(number - angle - g.x * (x_ + column_x(bit) + kSample - expansion.centre.x) -
-                                 g.y * (y_ + column_y(bit) + kSample - expansion.centre.y) -
-                                 g.z * (z_ + z + kSample - expansion.centre.z));
-                    if (there - error > kTie)
-                        within[z] |= uint64_t{1} << bit;
-                    else if (!(there + error < (error == 0 ? kTie : 0.5)))
-                        continue;
-                    undecided[z] &= ~(uint64_t{1} << bit);
-                }
+    /// Holds the undecided voxels, of which there are some.
+    Ball around_undecided() const {
+        uint64_t columns = 0;
+        int low[3] = {kBrickSide, kBrickSide, kBrickSide}, high[3] = {0, 0, 0};
+        for (int z = 0; z < kBrickSide; ++z)
+            if (undecided_[z] != 0) {
+                columns |= undecided_[z];
+                low[2] = std::min(low[2], z);
+                high[2] = z;
+            }
+        for (; columns != 0; columns &= columns - 1) {
+            const int at[2] = {column_x(std::countr_zero(columns)), column_y(std::countr_zero(columns))};
+            for (int i = 0; i < 2; ++i) {
+                low[i] = std::min(low[i], at[i]);
+                high[i] = std::max(high[i], at[i]);
+            }
         }
-        uint64_t left = 0;
-        for (int z = cell.z; z < cell.z + cell.side; ++z)
-            left |= undecided[z] & square_of(cell);
-        if (left == 0)
-            return;
-        if (cell.side == 1) {
-            if (is_inside(cell))
-                within[cell.z] |= left;
-            return;
-        }
-        const int half = cell.side / 2;
-        for (int i = 0; i < 8; ++i) {
-            const Cell part{cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half};
-            uint64_t some = 0;
-            for (int z = part.z; z < part.z + half; ++z)
-                some |= undecided[z] & square_of(part);
-            if (some == 0)
-                continue;
-            expand(expansion, x_ + part.x, y_ + part.y, z_ + part.z, half, is_clear(part), levels_[level]);
-            classify_cell(part, levels_[level], level + 1, undecided, within);
-        }
+        double half[3];
+        for (int i = 0; i < 3; ++i)
+            half[i] = (high[i] - low[i]) / 2.0;
+        return {{x_ + low[0] + half[0] + kSample, y_ + low[1] + half[1] + kSample, z_ + low[2] + half[2] + kSample},
+                std::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])};
     }
 
     /// Whether a voxel is inside, with as small an error as the decision takes.
-    bool is_inside(const Cell& cell) const {
-        const Point q{x_ + cell.x + kSample, y_ + cell.y + kSample, z_ + cell.z + kSample};
-        const int number = numbers_[cell.z * 64 + column_bit(cell.x, cell.y)];
-        for (const double tolerance : {1e-2, 1e-4}) {
+    bool is_inside(const Point& q, int number) const {
+        for (const double tolerance : {1e-3, 1e-5}) {
             const double there = std::abs(number - caps_->at(q, tolerance));
             if (there - tolerance > kTie || there + tolerance < 0.5)
                 return there > 0.5;
@@ -249,19 +256,159 @@ private:
         return std::abs(number - caps_->at(q, 0)) > kTie;
     }
 
+    /// What is known of the angle in a cell: its value at the centre, and how it changes.
+    struct Expansion {
+        Point centre;
+        NearCaps::Change change;
+        double error_bound; // of the value and of its change
+        double angle = 0;
+        double at(const Point& q) const { return angle + change.at({q.x - centre.x, q.y - centre.y, q.z - centre.z}); }
+    };
+
+    /// Decides what an expansion about the centre of the cell can, then of its parts. Parts where the angle is not
+    /// smooth are left to classify_one_by_one.
+    void classify_cell(const Cell& cell) {
+        if (count_undecided(cell) == 0)
+            return;
+        const Ball ball{centre_of(cell), radius_of(cell)};
+        Expansion expansion{ball.centre, near_.find_change(ball.centre, ball.radius, kRoundable), 0};
+        expansion.error_bound = expansion.change.error_bound + near_.error_bound() + kRounding;
+        if (expansion.error_bound < kRoundable) {
+            bool doubtful;
+            expansion.angle = near_.find_angle(expansion.centre, doubtful);
+            if (expansion.change.crossed)
+                classify_regions(cell, expansion);
+            else if (!doubtful)
+                for (int z = cell.z; z < cell.z + cell.side; ++z)
+                    for (uint64_t left = undecided_[z] & square_of(cell); left != 0; left &= left - 1) {
+                        const int bit = std::countr_zero(left);
+                        decide(z, bit, std::abs(numbers_[z * 64 + bit] - expansion.at(sample(z, bit))),
+                               expansion.error_bound);
+                    }
+            if (expansion.change.error_bound < near_.error_bound())
+                return; // the next gathering knows more
+        }
+        classify_parts(cell);
+    }
+
+    void classify_parts(const Cell& cell) {
+        const int half = cell.side / 2;
+        if (cell.side > kBrickSide / 2)
+            for (int i = 0; i < 8; ++i)
+                classify_cell({cell.x + (i & 1) * half, cell.y + (i >> 1 & 1) * half, cell.z + (i >> 2) * half, half});
+        else
+            for (int z = cell.z; z < cell.z + cell.side; ++z)
+                rough_[z] |= undecided_[z] & square_of(cell);
+    }
+
+    /// Decides a voxel where a winding number leaves no doubt.
+    void decide(int z, int bit, double number, double error) {
+        if (number - error > kTie)
+            within_[z] |= uint64_t{1} << bit;
+        else if (!(number + error < 0.5))
+            return;
+        undecided_[z] &= ~(uint64_t{1} << bit);
+    }
+
+    /// Decides voxels with an angle of their own each.
+    void classify_one_by_one(const Slices& voxels) {
+        NearCaps::Batch batch;
+        int slices[NearCaps::kBatch], bits[NearCaps::kBatch];
+        const double error = near_.error_bound() + kRounding;
+        const auto finish = [&] {
+            if (batch.count == 0)
+                return;
+            near_.find_angles(batch);
+            for (int i = 0; i < batch.count; ++i)
+                if (!batch.doubtful[i])
+                    decide(slices[i], bits[i], std::abs(numbers_[slices[i] * 64 + bits[i]] - batch.angle[i]), error);
+            batch.clear();
+        };
+        for (int z = 0; z < kBrickSide; ++z)
+            for (uint64_t left = undecided_[z] & voxels[z]; left != 0; left &= left - 1) {
+                const int bit = std::countr_zero(left);
+                slices[batch.count] = z;
+                bits[batch.count] = bit;
+                batch.add(sample(z, bit));
+                if (batch.count == NearCaps::kBatch)
+                    finish();
+            }
+        finish();
+    }
+
+    /// Decides where caps pass the cell. In a region of voxels that no surface separates, the number of the surface
+    /// changes smoothly, whatever caps pass it. So one voxel tells by which whole number the expansion is off.
+    void classify_regions(const Cell& cell, const Expansion& expansion) {
+        const uint64_t square = square_of(cell);
+        Slices left{};
+        for (int z = cell.z; z < cell.z + cell.side; ++z)
+            left[z] = ~(*surface_)[z] & square;
+        for (int z = cell.z; z < cell.z + cell.side; ++z)
+            while (left[z] != 0) {
+                Slices region{};
+                region[z] = left[z] & (~left[z] + 1);
+                const int first = std::countr_zero(region[z]);
+                grow(region, left, cell);
+                uint64_t wanted = 0;
+                for (int w = cell.z; w < cell.z + cell.side; ++w) {
+                    left[w] &= ~region[w];
+                    wanted |= region[w] & undecided_[w];
+                }
+                if (wanted == 0)
+                    continue;
+                bool doubtful;
+                const double angle = near_.find_angle(sample(z, first), doubtful);
+                if (doubtful)
+                    continue;
+                const double whole = numbers_[z * 64 + first] - std::round(angle - expansion.at(sample(z, first)));
+                for (int w = cell.z; w < cell.z + cell.side; ++w)
+                    for (uint64_t some = region[w] & undecided_[w]; some != 0; some &= some - 1) {
+                        const int bit = std::countr_zero(some);
+                        decide(w, bit, std::abs(whole - expansion.at(sample(w, bit))), expansion.error_bound);
+                    }
+            }
+    }
+
+    /// Adds the voxels of `free` in a cell that are reached from `region` through common sides.
+    static void grow(Slices& region, const Slices& free, const Cell& cell) {
+        for (bool grown = true; grown;) {
+            grown = false;
+            for (int z = cell.z; z < cell.z + cell.side; ++z) {
+                uint64_t next =
+                    region[z] | (z > cell.z ? region[z - 1] : 0) | (z + 1 < cell.z + cell.side ? region[z + 1] : 0);
+                next |= beside(next, 0) | beside(next, 1);
+                next &= free[z];
+                grown = grown || next != region[z];
+                region[z] = next;
+            }
+        }
+    }
+
+    /// The columns of a slice beside those of `columns`, along x (axis 0) or y (axis 1). Their bits are
+    /// {y2,x2,y1,x1,y0,x0}: added to a number whose other bits are all set, one carries from bit to bit.
+    static uint64_t beside(uint64_t columns, int axis) {
+        constexpr uint64_t low[2][3] = {{0x5555'5555'5555'5555, 0x0F0F'0F0F'0F0F'0F0F, 0x0000'FFFF'0000'FFFF},
+                                        {0x3333'3333'3333'3333, 0x00FF'00FF'00FF'00FF, 0x0000'0000'FFFF'FFFF}};
+        const uint64_t* zero = low[axis]; // columns whose coordinate has bit 0, 1, 2 clear
+        const int scale = 1 << axis;
+        const uint64_t up0 = zero[0], up1 = ~zero[0] & zero[1], up2 = ~zero[0] & ~zero[1] & zero[2];
+        const uint64_t up = (columns & up0) << scale | (columns & up1) << 3 * scale | (columns & up2) << 11 * scale;
+        const uint64_t down = (columns >> scale & up0) | (columns >> 3 * scale & up1) | (columns >> 11 * scale & up2);
+        return up | down;
+    }
+
     const CapWinding* caps_ = nullptr;
     int side_ = 0, height_ = 0, x0_ = 0, y0_ = 0;
     int low_[3] = {}, high_[3] = {};
     std::vector<Brick> bricks_;
     std::vector<Class> classes_;
-    std::vector<uint32_t> mixed_;            // by brick: the number of its expansion
-    std::vector<LocalExpansion> expansions_; // of mixed bricks
-    LocalExpansion levels_[4];               // of the cubes, then of the cells around the current one
 
     // The current mixed brick.
     int x_ = 0, y_ = 0, z_ = 0;
     const int* numbers_ = nullptr;
     const Slices* surface_ = nullptr;
+    Slices undecided_{}, within_{}, rough_{}; // rough_: where expansions do not help
+    NearCaps near_;
 };
 
 } // namespace voxrt::voxelize

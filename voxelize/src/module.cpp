@@ -1,7 +1,9 @@
 // voxrt.voxelize._native: the voxelizer for Python. The docstrings are the manual; every array is checked here.
+#include "colour_bindings.h"
 #include "convex_hull.h"
 #include "python.h"
 #include "scene_bindings.h"
+#include "slab_extent.h"
 #include "voxelizer.h"
 
 #include <nanobind/nanobind.h>
@@ -95,10 +97,13 @@ Fill fill_of(const std::string& name) {
 
 nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
                           InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
-                          InputOf<int32_t> objects_of, int objects, const std::string& fill, int threads) {
+                          InputOf<int32_t> objects_of, int objects, const std::string& fill, int threads,
+                          int block_side, const nb::object& take_block) {
     require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
     require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024");
     require(objects >= 0, "objects must not be negative");
+    require(take_block.is_none() || (block_side >= kTileSide && block_side % kTileSide == 0),
+            "block_side must be a multiple of 64");
     const size_t count = kinds.size();
     require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
                 mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
@@ -130,9 +135,18 @@ nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Inpu
     }
 
     SparseVoxels out;
-    {
+    if (take_block.is_none()) {
         const LongCall call;
         out = voxelize(depth, parts, size_t(objects), fill_of(fill), threads);
+    } else {
+        const LongCall call;
+        out = voxelize_in_blocks(
+            depth, parts, size_t(objects), fill_of(fill), threads, block_side, [&](SparseVoxels&& block) {
+                const nb::gil_scoped_acquire acquire;
+                take_block(take(block.brick_codes), take(block.brick_masks), take(block.brick_materials),
+                           take(block.brick_rows), take(block.cells), take(block.octant_codes),
+                           take(block.octant_levels), take(block.octant_materials));
+            });
     }
     nb::dict seconds;
     const StageSeconds& took = out.seconds;
@@ -192,6 +206,9 @@ fill
     "surface", "solid" or "auto": src/fill.h.
 threads
     0 takes as many as the machine has. The result does not depend on it.
+block_side, take_block
+    For grids that do not fit the memory at once: calls take_block(brick_codes, …, octant_materials) for each square of
+    block_side columns (a multiple of 64), in Morton order. The result then has no voxels.
 
 Returns
 -------
@@ -252,7 +269,8 @@ NB_MODULE(_native, m) {
         nullptr);
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
-          nb::arg("threads"), kVoxelizeManual);
+          nb::arg("threads"), nb::arg("block_side") = 0, nb::arg("take_block") = nb::none(), kVoxelizeManual);
     bind_scene(m);
+    bind_colour(m);
     m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);
 }

@@ -133,12 +133,20 @@ void bind_scene(nb::module_& m) {
         .def(
             "add",
             [](MaterialTable& table, std::string name, const std::array<uint8_t, 3>& colour, bool mirror,
-               bool authored) {
-                const uint8_t id = table.add({std::move(name), colour, mirror, authored});
-                return std::make_tuple(int{id}, table.entries()[id].name);
-            },
+               bool authored) { return int{table.add({std::move(name), colour, mirror, authored})}; },
             nb::arg("name"), nb::arg("colour"), nb::arg("mirror"), nb::arg("authored"),
-            "Add a material; returns its id and its name, which is unique. TooManyMaterialsError: there are 255.");
+            "Add a material; returns its id. A number is appended to a name that another material has.\n"
+            "TooManyMaterialsError: there are 255.")
+        .def(
+            "entries",
+            [](const MaterialTable& table) {
+                std::vector<std::tuple<std::string, std::tuple<int, int, int>, bool, bool>> found;
+                for (const auto& [name, colour, mirror, authored] : table.entries())
+                    found.emplace_back(name, std::tuple(int{colour[0]}, int{colour[1]}, int{colour[2]}), mirror,
+                                       authored);
+                return found;
+            },
+            "Name, colour, mirror and authored of each, by id.");
 }
 
 } // namespace voxrt::voxelize

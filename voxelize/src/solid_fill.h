@@ -177,7 +177,7 @@ private:
                 continue;
             const Slices surface = object.all_surface(brick, slices_of(brick.shell));
             const Crossings crossings(brick);
-            const bool mixed = kind == GeneralizedInside::Class::mixed;
+            const bool mixed = GeneralizedInside::is_mixed(kind);
             Slices within{};
             if (mixed)
                 numbers_.resize(kBrickVoxels);

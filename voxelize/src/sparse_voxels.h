@@ -58,6 +58,18 @@ struct SparseVoxels {
     Array<std::uint8_t> object_mostly_filled; // by object: its open parts have more inside than shell
     StageSeconds seconds;
 
+    /// Makes all lists of voxels empty.
+    void clear() {
+        brick_codes.allocate(0);
+        brick_masks.allocate(0);
+        brick_materials.allocate(0);
+        brick_rows.allocate(0);
+        cells.allocate(0);
+        octant_codes.allocate(0);
+        octant_levels.allocate(0);
+        octant_materials.allocate(0);
+    }
+
     /// Borrows the voxels: valid as long as this is.
     VoxelsView view() const {
         return {depth,

@@ -37,7 +37,8 @@ public:
     TileWorker(const std::vector<PartView>& parts, const TriangleBins& bins, int side, Fill fill)
         : parts_(parts), bins_(bins), side_(side), fill_(fill) {}
 
-    void work(uint32_t index, Scratch& s, TileResult& out) const {
+    /// `slot`: the place of `out` among the results of a block.
+    void work(uint32_t index, uint32_t slot, Scratch& s, TileResult& out) const {
         const int tile_x = int(index) % bins_.tiles_per_side, tile_y = int(index) / bins_.tiles_per_side;
         const Window window{tile_x * kTileSide, std::min(tile_x * kTileSide + kTileSide, side_) - 1, tile_y * kTileSide,
                             std::min(tile_y * kTileSide + kTileSide, side_) - 1, side_ - 1};
@@ -59,7 +60,7 @@ public:
         }
         Stopwatch lap;
         if (!s.tile.empty())
-            s.sorter.sort(s.tile, index, tile_x, tile_y, out);
+            s.sorter.sort(s.tile, slot, tile_x, tile_y, out);
         s.seconds.order += lap();
     }
 
@@ -267,6 +268,14 @@ void gather(std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& wo
     });
 }
 
+/// Bits 0, 2, 4 … of a Morton code in two dimensions.
+uint32_t every_other_bit(uint64_t code) {
+    uint32_t result = 0;
+    for (int bit = 0; bit < 16; ++bit)
+        result |= uint32_t(code >> 2 * bit & 1) << bit;
+    return result;
+}
+
 /// Sets the voxels, modes and flipped components of all objects.
 void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fill, const TriangleBins& bins,
                     const std::vector<std::unique_ptr<Scratch>>& scratch, SparseVoxels& out) {
@@ -308,41 +317,81 @@ void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fil
 } // namespace
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
+    SparseVoxels all;
+    const int side = 1 << depth;
+    SparseVoxels found = voxelize_in_blocks(depth, parts, objects, fill, threads, side,
+                                            [&](SparseVoxels&& block) { all = std::move(block); });
+    found.depth = all.depth;
+    found.brick_codes = std::move(all.brick_codes);
+    found.brick_masks = std::move(all.brick_masks);
+    found.brick_materials = std::move(all.brick_materials);
+    found.brick_rows = std::move(all.brick_rows);
+    found.cells = std::move(all.cells);
+    found.octant_codes = std::move(all.octant_codes);
+    found.octant_levels = std::move(all.octant_levels);
+    found.octant_materials = std::move(all.octant_materials);
+    return found;
+}
+
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+                                int block_side, const TakeBlock& take) {
     const int side = 1 << depth;
     const Workers workers(threads);
     Stopwatch lap;
-    SparseVoxels out;
-    out.depth = unsigned(depth);
+    SparseVoxels report;
+    report.depth = unsigned(depth);
+    report.clear();
     TriangleBins bins = bin_triangles(parts, side, fill, workers);
+    report.seconds.bin = bins.seconds;
+    report.seconds.analysis = lap() - bins.seconds;
 
-    out.seconds.bin = bins.seconds;
-    out.seconds.analysis = lap() - bins.seconds;
-
-    std::vector<uint32_t> occupied;
-    for (uint32_t t = 0; t + 1 < bins.starts.size(); ++t)
-        if (bins.starts[t] < bins.starts[t + 1])
-            occupied.push_back(t);
-    std::vector<TileResult> results(bins.starts.size() - 1);
     std::vector<std::unique_ptr<Scratch>> scratch(workers.threads());
     const TileWorker worker(parts, bins, side, fill);
-    workers.run(occupied.size(), [&](size_t job, int thread) {
-        if (!scratch[thread])
-            scratch[thread] = std::make_unique<Scratch>(side, objects, parts.size());
-        worker.work(occupied[job], *scratch[thread], results[occupied[job]]);
-    });
-
-    StageSeconds sum;
-    for (const auto& s : scratch)
-        if (s)
-            sum.add_tiles(s->seconds, 1);
-    if (sum.of_tiles() > 0)
-        out.seconds.add_tiles(sum, lap() / sum.of_tiles());
-    report_objects(parts, objects, fill, bins, scratch, out);
-    scratch.clear();
-    bins = {}; // the peak of memory use is in what follows
-    gather(results, out, workers);
-    out.seconds.gather = lap();
-    return out;
+    const int tiles = bins.tiles_per_side, step = std::clamp((block_side + kTileSide - 1) / kTileSide, 1, tiles);
+    const int blocks = (tiles + step - 1) / step;
+    uint64_t codes = 1; // of blocks, in Morton order
+    while (codes < uint64_t(blocks))
+        codes *= 2;
+    codes *= codes;
+    StageSeconds before;
+    for (uint64_t code = 0; code < codes; ++code) {
+        const int x0 = int(every_other_bit(code)) * step, y0 = int(every_other_bit(code >> 1)) * step;
+        std::vector<uint32_t> occupied;
+        for (int y = y0; y < std::min(y0 + step, tiles); ++y)
+            for (int x = x0; x < std::min(x0 + step, tiles); ++x)
+                if (const auto t = uint32_t(y * tiles + x); bins.starts[t] < bins.starts[t + 1])
+                    occupied.push_back(t);
+        const bool last = code + 1 == codes;
+        if (occupied.empty() && !last)
+            continue;
+        std::vector<TileResult> results(occupied.size());
+        workers.run(occupied.size(), [&](size_t job, int thread) {
+            if (!scratch[thread])
+                scratch[thread] = std::make_unique<Scratch>(side, objects, parts.size());
+            worker.work(occupied[job], uint32_t(job), *scratch[thread], results[job]);
+        });
+        StageSeconds sum, fresh;
+        for (const auto& s : scratch)
+            if (s)
+                sum.add_tiles(s->seconds, 1);
+        fresh = sum;
+        fresh.add_tiles(before, -1);
+        before = sum;
+        if (fresh.of_tiles() > 0)
+            report.seconds.add_tiles(fresh, lap() / fresh.of_tiles());
+        if (last) { // the peak of memory use is in what follows
+            report_objects(parts, objects, fill, bins, scratch, report);
+            scratch.clear();
+            bins = {};
+        }
+        SparseVoxels block;
+        block.depth = unsigned(depth);
+        gather(results, block, workers);
+        report.seconds.gather += lap();
+        take(std::move(block));
+        lap();
+    }
+    return report;
 }
 
 } // namespace voxrt::voxelize

@@ -33,6 +33,7 @@
 #include "parts.h"
 #include "sparse_voxels.h"
 
+#include <functional>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -44,5 +45,14 @@ namespace voxrt::voxelize {
 /// std::length_error where the tiles would list 2^32 triangles or more, and what the caller's interrupt check throws
 /// (interrupt.h).
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads);
+
+/// Receives the voxels of a block, all that no other block has; its lists of objects are empty.
+using TakeBlock = std::function<void(SparseVoxels&&)>;
+
+/// The same block by block: squares of `block_side` columns (a multiple of 64), over the grid's whole height, in Morton
+/// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry and for the last;
+/// octree::Assembly joins their octrees. Returns what became of the objects, without voxels.
+SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
+                                int block_side, const TakeBlock& take);
 
 } // namespace voxrt::voxelize

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cyclopts import Token
 
 SIZE_LIMIT = 1 << 14
+_LEAST_MEMORY = 1 << 26
 BRIGHTEST = 16  # of a sky
 MOST_FRAMES = 4096  # of an animation
 _REGISTER = range(-(1 << 15), 1 << 15)
@@ -153,6 +154,18 @@ def words(kind: type, tokens: Sequence[Token]) -> int:
     if number < 1:
         raise ValueError(f"{number} is not a number of words")
     return number
+
+
+def size_in_bytes(_type: type, tokens: Sequence[Token]) -> int:
+    """Read a size of memory, ``4G``, ``512M`` or a number of bytes."""
+    text = tokens[0].value
+    found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?", text.strip(), re.IGNORECASE)
+    if found is None:
+        raise ValueError(f"{text!r} is not a size such as 4G or 512M")
+    size = int(Decimal(found[1]) * (1 << 10 * " KMGT".index(found[2].upper() or " ")))
+    if not _LEAST_MEMORY <= size < 1 << 62:
+        raise ValueError(f"{text} is not 64M to 4194303T")
+    return size
 
 
 def choice(kind: Any, tokens: Sequence[Token]) -> str:  # noqa: ANN401 - a Literal

@@ -28,6 +28,7 @@ from voxrt.cli.arguments import (
     samples,
     seconds,
     shades,
+    size_in_bytes,
     sky_light,
     words,
 )
@@ -114,6 +115,7 @@ def build(
     ] = None,
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
+    memory: Annotated[int | None, _option("memory", converter=size_in_bytes, metavar="SIZE")] = BuildOptions.memory,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -159,6 +161,7 @@ def build(
         samples=samples,
         background=background,
         engine=engine,
+        memory=memory,
         strict=strict,
     )
     reports = []

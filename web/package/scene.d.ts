@@ -1,4 +1,7 @@
-import type { Scene, Voxrt, Warning } from "./voxrt.js";
+import type { Appearance, Scene, Voxrt, Warning } from "./voxrt.js";
+
+/** Sets numbers of a vertex. */
+export type Setter = (vertex: number, out: { [index: number]: number }) => void;
 
 export interface Rules {
   /** What makes meshes one object. */
@@ -8,7 +11,16 @@ export interface Rules {
   materialOf?(material: object): {
     key: unknown; name: string; order?: number; colour?: number[]; mirror?: boolean; authored?: boolean;
   } | null;
+  /** Null where the material's colour is uniform. `covers`: whether a vertex has a colour; a triangle of which none has is plain. */
+  appearanceOf?(material: object, geometry: object, warn: (kind: string, message: string) => void): {
+    entry: Appearance; uvOf?: Setter | null; colourOf?: Setter | null; covers?(vertex: number): boolean;
+  } | null;
+  /** Whether a material is fully transparent. */
+  isLeftOut?(material: object): boolean;
 }
+
+/** Sets linear colour and alpha from an attribute of three.js. */
+export function colours(attribute: object): Setter;
 
 /** The visible meshes below an object of three.js, at this moment. */
 export function sceneOf(root: object, voxrt: Voxrt, rules?: Rules): Scene & { warnings: Warning[] };

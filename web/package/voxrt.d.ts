@@ -18,8 +18,39 @@ export interface Mesh {
   positions: ArrayLike<number>;
   /** Three vertices per triangle, counter-clockwise seen from outside. */
   triangles: ArrayLike<number>;
-  /** A material per triangle: 1 is the first of the scene. */
+  /** A material per triangle: 1 is the first of the scene; 0 where the surface gives an appearance. */
   materials: ArrayLike<number>;
+  surface?: Surface;
+}
+
+/** Row 0 is at v = 0; 4 bytes per pixel: sRGB and alpha. */
+export interface Image {
+  width: number;
+  height: number;
+  pixels: ArrayLike<number>;
+}
+
+export interface Appearance {
+  name: string;
+  /** Linear red, green, blue and alpha, multiplied with the texture and the vertex colours. */
+  factor?: readonly [number, number, number, number];
+  texture?: { image: Image; wrap?: readonly [Wrap, Wrap]; nearest?: boolean } | null;
+  /** The surface is cut away where its alpha is below this; 0 for opaque ones. */
+  cutoff?: number;
+  mirror?: boolean;
+}
+
+export type Wrap = "repeat" | "mirror" | "clamp";
+
+/** Textures and vertex colours of a mesh. */
+export interface Surface {
+  entries: Appearance[];
+  /** Each triangle's entry, or -1. */
+  rows: ArrayLike<number>;
+  /** u and v of the three corners of each triangle. */
+  uv: ArrayLike<number>;
+  /** Linear colour and alpha of the three corners of each triangle. */
+  colours: ArrayLike<number>;
 }
 
 export interface SceneObject {
@@ -105,7 +136,9 @@ export class Voxrt {
   /** `source`: voxrt.wasm as bytes, as a Response or as a module. */
   static load(source: BufferSource | Response | WebAssembly.Module): Promise<Voxrt>;
   /** Voxelize a scene and build its octree. `depth` 1 … 16 (7), `fill` (auto). */
-  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill }): Built;
+  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill; colours?: number }): Built;
+  /** The words of voxels given one by one: three whole numbers from 0 up to 2 ** depth and a material, 1 … 255, each. */
+  fromPoints(places: ArrayLike<number>, materials: ArrayLike<number>, depth: number): Uint32Array;
   /** Take the words of an octree memory, which are checked. */
   setMemory(words: ArrayLike<number>, depth: number): void;
   /** The least depth of the world that words describe. */
@@ -125,6 +158,8 @@ export class Voxrt {
   outline(): Int32Array;
   /** Linear light, 0 … 1, as sRGB, 0 … 255. */
   srgb(linear: number): number;
+  /** sRGB, 0 … 255, as linear light. */
+  linear(code: number): number;
   /** Bytes of memory in use. */
   readonly bytes: number;
 }

@@ -18,6 +18,8 @@ export const FACES = [189, 189, 140, 255, 219, 219];
 export const FILLS = ["surface", "solid", "auto"];
 export const DEPTH_LIMIT = 16;
 export const BACKGROUND = [24, 28, 36];
+export const WRAPS = ["repeat", "mirror", "clamp"];
+export const COLOURS = 32; // for all textures and vertex colours of a scene
 
 const EXHAUSTED = "takes more memory than a browser gives one page; choose a lesser depth";
 const decoder = new TextDecoder();
@@ -37,37 +39,70 @@ export class Voxrt {
   // Voxelize a scene and build its octree.
   //
   // scene.materials: [{name, colour: [r, g, b] sRGB, mirror, authored}], of id 1, 2, ...
-  // scene.meshes: [{positions, triangles, materials}]: three numbers per vertex, three vertices per triangle, an id per
-  // triangle. scene.objects: [{name, mesh: index, transform: 12 numbers, rows of 3 x 4, to metres with y up}].
-  voxelize(scene, { depth = 7, fill = "auto" } = {}) {
+  // scene.meshes: [{positions, triangles, materials, surface}]: three numbers per vertex, three vertices per triangle, an
+  // id per triangle. Triangles of id 0 have an appearance: surface is {entries: [{name, factor, texture, cutoff,
+  // mirror}], rows, uv, colours}, with the entry of each triangle or -1; u and v, and linear colour and alpha of its three
+  // corners. factor: linear red, green, blue, alpha. texture: {image: {width, height, pixels}, wrap: [along u, along v],
+  // nearest}, 4 bytes per pixel. cutoff: the surface is cut away where its alpha is below it.
+  // scene.objects: [{name, mesh: index, transform: 12 numbers, rows of 3 x 4, to metres with y up}].
+  voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS } = {}) {
     if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT) throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
     if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
+    const { wasm } = this;
     return this.#guard(() => {
-      this.wasm.vx_scene_begin();
-      const materials = [{ name: "empty", colour: BACKGROUND, mirror: false, authored: true }];
-      for (const { name, colour, mirror = false, authored = true } of scene.materials) {
-        const [red, green, blue] = colour;
-        const id = this.#text(name, (at) => this.wasm.vx_material(at, (red << 16) | (green << 8) | blue, mirror, authored));
-        materials[this.#checked(id)] = { name: this.#string(this.wasm.vx_material_name(id)), colour: [red, green, blue], mirror, authored };
-      }
+      wasm.vx_scene_begin();
+      for (const { name, colour: [red, green, blue], mirror = false, authored = true } of scene.materials)
+        this.#text(name, (at) => this.#checked(wasm.vx_material(at, (red << 16) | (green << 8) | blue, mirror, authored)));
+      const appearances = new Map();
+      const images = new Map();
       for (const mesh of scene.meshes) {
         const [vertices, triangles] = [mesh.positions.length / 3, mesh.triangles.length / 3];
-        const buffers = [this.#copy(Float64Array, mesh.positions), this.#copy(Int32Array, mesh.triangles), this.#copy(Uint8Array, mesh.materials)];
-        this.#checked(this.wasm.vx_mesh(buffers[0], vertices, buffers[1], triangles, buffers[2]));
+        this.#with(Float64Array, mesh.positions, (at) => this.#with(Int32Array, mesh.triangles, (corners) => this.#with(Uint8Array, mesh.materials, (ids) =>
+          this.#checked(wasm.vx_mesh(at, vertices, corners, triangles, ids)))));
+        if (!mesh.surface) continue;
+        const { entries, rows, uv, colours: light } = mesh.surface;
+        const numbers = entries.map((entry) => {
+          if (!appearances.has(entry)) appearances.set(entry, this.#appearance(entry, images));
+          return appearances.get(entry);
+        });
+        this.#with(Int32Array, numbers, (list) => this.#with(Int32Array, rows, (of) => this.#with(Float64Array, uv, (places) => this.#with(Float32Array, light, (tints) =>
+          this.#checked(wasm.vx_surface(list, numbers.length, of, places, tints))))));
       }
       for (const { name, mesh, transform } of scene.objects)
-        this.#with(Float64Array, transform, (at) => this.#text(name, (text) => this.#checked(this.wasm.vx_object(mesh, at, text))));
-      this.#checked(this.wasm.vx_voxelize(depth, FILLS.indexOf(fill)));
-      const words = this.#view(Uint32Array, this.wasm.vx_words(), this.wasm.vx_word_count()).slice();
-      const voxels = this.#view(BigInt64Array, this.wasm.vx_object_voxels(), scene.objects.length);
-      const objects = scene.objects.map(({ name }, i) => ({ name, mode: this.#string(this.wasm.vx_object_mode(i)), voxels: Number(voxels[i]) }));
-      const warnings = Array.from({ length: this.wasm.vx_warning_count() }, (_, i) => ({
-        kind: this.#string(this.wasm.vx_warning_kind(i)), message: this.#string(this.wasm.vx_warning_message(i)), count: this.wasm.vx_warning_objects(i),
-      }));
-      const grid = { origin: [...this.#view(Float64Array, this.wasm.vx_origin(), 3)], voxelSize: this.wasm.vx_voxel_size() };
-      this.wasm.vx_scene_begin();
+        this.#with(Float64Array, transform, (at) => this.#text(name, (text) => this.#checked(wasm.vx_object(mesh, at, text))));
+      const transparent = this.#checked(wasm.vx_scene_end());
+      this.#checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
+      const words = this.#view(Uint32Array, wasm.vx_words(), wasm.vx_word_count()).slice();
+      const voxels = this.#view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
+      const objects = Array.from(voxels, (count, i) => ({ name: this.#string(wasm.vx_object_name(i)), mode: this.#string(wasm.vx_object_mode(i)), voxels: Number(count) }));
+      const materials = Array.from({ length: wasm.vx_material_count() }, (_, id) => {
+        const look = wasm.vx_material_look(id);
+        return { name: this.#string(wasm.vx_material_name(id)), colour: [(look >> 16) & 255, (look >> 8) & 255, look & 255], mirror: Boolean(look & (1 << 24)), authored: Boolean(look & (1 << 25)) };
+      });
+      const warnings = transparent ? [{ kind: "transparent", message: "fully transparent faces were left out", count: transparent }] : [];
+      for (let i = 0; i < wasm.vx_warning_count(); i++)
+        warnings.push({ kind: this.#string(wasm.vx_warning_kind(i)), message: this.#string(wasm.vx_warning_message(i)), count: wasm.vx_warning_objects(i) });
+      const grid = { origin: [...this.#view(Float64Array, wasm.vx_origin(), 3)], voxelSize: wasm.vx_voxel_size() };
+      wasm.vx_scene_begin();
       return { words, depth, grid, materials, objects, warnings };
     });
+  }
+
+  #appearance({ name, factor = [1, 1, 1, 1], texture = null, cutoff = 0, mirror = false }, images) {
+    const { image, wrap = ["repeat", "repeat"], nearest = false } = texture ?? {};
+    if (image && !images.has(image)) images.set(image, this.wasm.vx_image(this.#copy(Uint8Array, image.pixels)));
+    const [u, v] = wrap.map((one) => WRAPS.indexOf(one));
+    return this.#text(name, (text) => this.#with(Float64Array, factor, (light) => this.#checked(
+      this.wasm.vx_appearance(text, light, image ? images.get(image) : 0, image?.width ?? 0, image?.height ?? 0, u, v, nearest, cutoff, mirror))));
+  }
+
+  // The words of voxels given one by one: x, y, z from 0 up to 2^depth, and a material, 1 … 255, each. Where a place
+  // repeats, the first counts.
+  fromPoints(places, materials, depth) {
+    return this.#guard(() => this.#with(Int32Array, places, (at) => this.#with(Uint8Array, materials, (ids) => {
+      const count = this.#checked(this.wasm.vx_points(at, ids, materials.length, depth));
+      return this.#view(Uint32Array, this.wasm.vx_points_words(), count).slice();
+    })));
   }
 
   // Take the words of an octree memory (Uint32Array), which are checked.
@@ -138,6 +173,9 @@ export class Voxrt {
 
   // Linear light, 0 … 1, as sRGB, 0 … 255.
   srgb(linear) { return this.wasm.vx_srgb(linear); }
+
+  // sRGB, 0 … 255, as linear light.
+  linear(code) { return this.wasm.vx_linear(code); }
 
   // Bytes of memory in use.
   get bytes() { return this.wasm.memory.buffer.byteLength; }

@@ -1,9 +1,12 @@
 // Dropped files as a scene: three.js parses them. Nothing is fetched but the files themselves.
 
 import { sceneOf } from "./voxrt/scene.js";
+import { GltfLooks } from "./gltf_looks.js";
+import { objLooks } from "./obj_looks.js";
+import { plyLook, readsColours } from "./ply_look.js";
 import { readMem } from "./mem.js";
 
-export const FORMATS = ["glb", "gltf", "obj", "stl", "ply", "usdz", "usda", "usdc", "usd", "mem"];
+export const FORMATS = ["glb", "gltf", "obj", "stl", "ply", "usdz", "usda", "usdc", "usd", "vox", "mem"];
 const ADDONS = "./three/addons/";
 
 export class FileError extends Error {
@@ -23,6 +26,10 @@ export async function readFiles(files, voxrt) {
     if (kind === "mem") {
       const memory = readMem(main.name, main.bytes, files.find(({ name }) => name === `${stem(main.name)}.json`));
       return { ...known, memory: { ...memory, depth: memory.depth ?? voxrt.depthOf(memory.words) } };
+    }
+    if (kind === "vox") {
+      const { readVox } = await import("./vox.js");
+      return { ...known, memory: readVox(main.name, main.bytes, voxrt) };
     }
     const read = { glb: readGltf, gltf: readGltf, obj: readObj, stl: readStl, ply: readPly }[kind] ?? readUsd;
     const scene = await read(main, new Folder(main, files), voxrt);
@@ -77,17 +84,22 @@ async function readGltf(main, folder, voxrt) {
   const loader = new GLTFLoader(await folder.manager());
   const { MeshoptDecoder } = await addon("libs/meshopt_decoder.module");
   loader.setMeshoptDecoder(MeshoptDecoder);
+  const { DracoDecoder } = await import("./draco.js");
+  loader.setDRACOLoader(new DracoDecoder());
+  const looks = new GltfLooks(folder);
+  const { Texture } = await import("./three/three.core.js");
+  for (const name of GltfLooks.loaders) loader.register((parser) => ({ name, loadTexture: (index) => looks.placeholder(parser, index, new Texture()) }));
   let gltf;
   try {
     gltf = await loader.parseAsync(main.bytes.buffer, "");
   } catch (error) {
     folder.close();
-    if (/draco/i.test(error.message)) throw new FileError("is compressed by Draco, which this page does not read; voxrt build does");
     throw error;
   }
   folder.close();
   const { parser } = gltf;
   const { json } = parser;
+  await looks.read(parser);
   const place = (object, kind) => (parser.associations.get(object) ?? {})[kind];
   // The primitives of a mesh hang below its node, or are the node.
   const groupOf = (mesh) => (place(mesh, "nodes") === undefined && mesh.parent ? mesh.parent : mesh);
@@ -105,44 +117,56 @@ async function readGltf(main, folder, voxrt) {
       const index = place(material, "materials");
       if (index === undefined) return null;
       const extras = json.materials[index].extras ?? {};
-      return { key: index, order: index, name: extras.voxrt_material || json.materials[index].name || `materials[${index}]`, mirror: Boolean(extras.voxrt_reflect) };
+      const { name, factor, mirror } = looks.properties(index);
+      return { key: extras.voxrt_material ? `${name} ${mirror}` : index, order: index, name, mirror, colour: factor.slice(0, 3).map((channel) => voxrt.srgb(channel)) };
     },
+    isLeftOut: (material) => looks.isLeftOut(place(material, "materials")),
+    appearanceOf: (material, geometry) => looks.appearance(place(material, "materials"), geometry),
   });
+  scene.warnings.push(...looks.warnings.values());
   const ignored = (json.extensionsUsed ?? []).filter((name) => /^KHR_(physics|implicit|materials_variants)/.test(name));
   for (const name of ignored) scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
   return scene;
 }
 
+// Text of UTF-8, or of UTF-16 where it begins with its mark.
+function textOf(bytes) {
+  const mark = (bytes[0] << 8) | bytes[1];
+  return new TextDecoder({ 0xfeff: "utf-16be", 0xfffe: "utf-16le" }[mark] ?? "utf-8").decode(bytes);
+}
+
 async function readObj(main, folder, voxrt) {
   const [{ OBJLoader }, { MTLLoader }] = [await addon("loaders/OBJLoader"), await addon("loaders/MTLLoader")];
-  const text = new TextDecoder().decode(main.bytes);
-  const colours = new Map();
+  const text = textOf(main.bytes);
+  const library = new Map();
   for (const [, name] of text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)) {
-    const library = folder.find(name);
-    if (!library) continue;
-    const { materialsInfo } = new MTLLoader().parse(new TextDecoder().decode(library.bytes), "");
-    for (const [key, { kd, map_kd: map }] of Object.entries(materialsInfo)) if (!colours.has(key)) colours.set(key, { kd, map });
+    const file = folder.find(name);
+    if (!file) continue;
+    const { materialsInfo } = new MTLLoader().parse(textOf(file.bytes), "");
+    for (const [key, info] of Object.entries(materialsInfo)) if (!library.has(key)) library.set(key, info);
   }
   const root = new OBJLoader().parse(text);
+  const looks = await objLooks(library, folder, voxrt);
   const scene = sceneOf(root, voxrt, {
     nameOf: (mesh) => mesh.name || stem(main.name),
     materialOf: ({ name }) => {
-      const { kd, map } = colours.get(name) ?? {};
+      const { kd } = library.get(name) ?? {};
       if (!name || (!kd && !text.includes("usemtl"))) return null;
-      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200], authored: Boolean(kd), textured: Boolean(map) };
+      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200] };
     },
+    ...looks.rules,
   });
-  if ([...colours.values()].some(({ map }) => map)) scene.warnings.push({ kind: "texture", message: "textures of OBJ files are not shown here; voxrt build shows them", count: 1 });
+  scene.warnings.push(...looks.warnings);
   return scene;
 }
 
 const encoded = (part) => Math.floor(Math.min(1, Math.max(0, part)) * 255 + 0.5);
 
-async function bare(geometry, main, voxrt) {
+async function bare(geometry, main, voxrt, rules = { appearanceOf: () => null }) {
   const { Mesh } = await import("./three/three.core.js");
   const mesh = new Mesh(geometry);
   mesh.name = stem(main.name);
-  return sceneOf(mesh, voxrt, { materialOf: () => null });
+  return sceneOf(mesh, voxrt, { materialOf: () => null, ...rules });
 }
 
 async function readStl(main, _folder, voxrt) {
@@ -150,9 +174,13 @@ async function readStl(main, _folder, voxrt) {
   return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt);
 }
 
-async function readPly(main, _folder, voxrt) {
+async function readPly(main, folder, voxrt) {
   const { PLYLoader } = await addon("loaders/PLYLoader");
-  return bare(new PLYLoader().parse(main.bytes.buffer), main, voxrt);
+  const geometry = readsColours(new PLYLoader()).parse(main.bytes.buffer);
+  const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);
+  const scene = await bare(geometry, main, voxrt, rules);
+  scene.warnings.push(...warnings);
+  return scene;
 }
 
 async function readUsd(main, folder, voxrt) {

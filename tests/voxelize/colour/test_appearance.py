@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance, sample, visible_triangles
+from voxrt.voxelize import _native
+from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance, sample
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
-from voxrt.voxelize.colour.texture import Texture, halved
+from voxrt.voxelize.colour.texture import Texture
 
 WRAPS = ("repeat", "mirror", "clamp")
 
@@ -98,7 +99,7 @@ def test_halving_takes_means_in_linear_light_weighed_by_alpha(height, width, see
     pixels = np.random.default_rng(seed).integers(0, 256, (height, width, 4), np.uint8)
     if opaque:
         pixels[:, :, 3] = 255
-    found = halved(Texture(pixels, ("clamp", "repeat"))).pixels
+    found = _native.halved_image(pixels)
     assert found.shape == ((height + 1) // 2, (width + 1) // 2, 4)
     for row, column in np.ndindex(found.shape[:2]):
         four = [pixels[min(2 * row + i, height - 1), min(2 * column + j, width - 1)] for i in (0, 1) for j in (0, 1)]
@@ -114,7 +115,7 @@ def test_black_and_white_halve_to_the_grey_of_half_the_light():
     pixels = np.zeros((8, 8, 4), np.uint8)
     pixels[::2, ::2, :3] = pixels[1::2, 1::2, :3] = 255
     pixels[:, :, 3] = 255
-    assert (halved(Texture(pixels)).pixels == [188, 188, 188, 255]).all()
+    assert (_native.halved_image(pixels) == [188, 188, 188, 255]).all()
 
 
 def test_triangles_remain_of_which_any_is_not_cut_away():
@@ -124,11 +125,12 @@ def test_triangles_remain_of_which_any_is_not_cut_away():
     left, whole, right = [(0.05, 0), (0.2, 0), (0.2, 1)], [(0, 0), (1, 0), (1, 1)], [(0.7, 0), (0.9, 0), (0.9, 1)]
     painted = surface_appearance(uv=[left, whole, right, right], texture=Texture(leaf, nearest=True), cutoff=0.5)
     painted = SurfaceAppearance(painted.entries, np.array([0, 0, 0, -1], np.int32), painted.uv, painted.colours)
-    assert visible_triangles(painted).tolist() == [True, True, False, False]
+    assert _native.visible_triangles(painted.arrays()).tolist() == [True, True, False, False]
 
 
 @pytest.mark.parametrize("count", [1, 40_000])
 def test_the_number_of_samples_is_bounded(count):
     texture = Texture(np.full((1000, 1000, 4), 127, np.uint8))
     uv = np.tile([[(0, 0), (1, 0), (1, 1)]], (count, 1, 1))
-    assert not visible_triangles(surface_appearance(uv=uv, texture=texture, cutoff=0.5)).any()
+    painted = surface_appearance(uv=uv, texture=texture, cutoff=0.5)
+    assert not _native.visible_triangles(painted.arrays()).any()

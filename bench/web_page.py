@@ -1,0 +1,161 @@
+"""Time the static page in Chromium: `make site`, then python bench/web_page.py. It needs chromium and chromedriver.
+
+Frames per second of 640x480 by the page's own workers, while the camera orbits; and the seconds from the drop of a
+binary glTF file of 5 MB to its first picture at 128³. The quickest counts, since other work on the machine slows
+both: twelve frames in a row, and one of three drops.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+import sys
+import tempfile
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import numpy as np
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
+from fakes.browser import Browser, chromium
+
+SITE = Path(__file__).resolve().parents[1] / "build" / "site"
+SCENES = [("courtyard", 7), ("courtyard", 9), ("planet", 8)]
+ROUNDS = 3
+FRAMES = 48
+WINDOW = 12  # frames: the quickest that follow one another count
+TRIANGLES = 280_000  # 5 MB
+
+FRAMES_SCRIPT = """
+    const [name, depth, frames, window_, done] = arguments;
+    (async () => {
+      const { Painter } = await import(new URL("painter.js", location));
+      const { Builder } = await import(new URL("builder.js", location));
+      const module = await WebAssembly.compileStreaming(fetch("voxrt/voxrt.wasm"));
+      const bytes = new Uint8Array(await (await fetch(`examples/${name}.glb`)).arrayBuffer());
+      const built = await new Builder(module).build([{ name: `${name}.glb`, bytes }], { depth, fill: "auto" });
+      const painter = new Painter(module);
+      await painter.load(built, { materials: built.materials.map((material) => material.colour) });
+      const side = 16 * 2 ** depth;
+      const camera = (turn) => {
+        const [sin, cos] = [Math.sin(turn), Math.cos(turn)].map((part) => part * 8192);
+        const position = [side / 2 - 1.4 * side * (sin / 8192), 1.1 * side, side / 2 - 1.4 * side * (cos / 8192)];
+        return { position: position.map(Math.round), look: [Math.round(sin), -4000, Math.round(cos)],
+                 right: [Math.round(-cos / 700), 0, Math.round(sin / 700)], up: [0, 12, 0] };
+      };
+      const times = [];
+      let sent = 0;
+      const ask = () => painter.changeView({ camera: camera((6.28 * sent++) / frames), size: [640, 480] });
+      painter.addEventListener("frame", () => {
+        times.push(performance.now());
+        if (sent < frames) ask();
+        else if (times.length === frames) {
+          const spans = times.slice(window_).map((time, i) => time - times[i]);
+          done({ rate: (1000 * window_) / Math.min(...spans), workers: painter.workers });
+        }
+      });
+      ask();
+      ask();
+    })().catch((error) => done({ problem: String(error) }));
+"""
+
+DROP_SCRIPT = """
+    window.measured = null;
+    const before = document.querySelector("#stage").dataset.scene;
+    addEventListener("drop", () => {
+      const start = performance.now();
+      const newest = window.voxrt.newest;
+      const look = () => {
+        if (document.querySelector("#stage").dataset.scene !== before && window.voxrt.newest !== newest)
+          window.measured = (performance.now() - start) / 1000;
+        else requestAnimationFrame(look);
+      };
+      look();
+    }, { once: true });
+"""
+
+
+def rough_sphere(path: Path) -> None:
+    """Write a sphere with hills as a binary glTF file."""
+    columns = round((TRIANGLES / 2) ** 0.5)
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, columns), np.linspace(0, np.pi, columns))
+    radius = 1 + 0.05 * np.sin(9 * u) * np.sin(7 * v)
+    positions = np.stack([radius * np.sin(v) * np.cos(u), radius * np.cos(v), radius * np.sin(v) * np.sin(u)], axis=-1)
+    corner = np.arange(columns * (columns - 1)).reshape(columns - 1, columns)[:, :-1].reshape(-1)
+    quads = np.stack([corner, corner + 1, corner + columns, corner + 1, corner + columns + 1, corner + columns], axis=1)
+    data = [positions.astype("<f4").tobytes(), quads.astype("<u4").tobytes()]
+    content = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {
+                "bufferView": 0, "componentType": 5126, "count": columns**2, "type": "VEC3",
+                "min": positions.min(axis=(0, 1)).tolist(), "max": positions.max(axis=(0, 1)).tolist(),
+            },
+            {"bufferView": 1, "componentType": 5125, "count": quads.size, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": len(data[0])},
+            {"buffer": 0, "byteOffset": len(data[0]), "byteLength": len(data[1])},
+        ],
+        "buffers": [{"byteLength": sum(map(len, data))}],
+    }  # fmt: skip
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    binary = b"".join(data)
+    whole = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary))
+    whole += struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    path.write_bytes(whole)
+
+
+def seconds_to_picture(browser: Browser, path: Path) -> float:
+    """Return the seconds from the drop of a file to its first picture."""
+    browser.run(DROP_SCRIPT)
+    browser.drop(*browser.middle("#stage"), [str(path)])
+    found = browser.until("window.measured", 60)
+    if not isinstance(found, float):
+        sys.exit(f"{path.name} was not shown")
+    return found
+
+
+def main() -> None:
+    """Print what was measured."""
+    if not SITE.exists():
+        sys.exit("build/site is not here: make site")
+
+    class Quiet(SimpleHTTPRequestHandler):
+        def log_message(self, *_: object) -> None:
+            pass
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(SITE)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    shown = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
+    with chromium() as browser, tempfile.TemporaryDirectory() as folder:
+        browser.open(f"http://127.0.0.1:{server.server_port}/")
+        browser.until(shown)
+        print("| scene | workers | frames per second, 640x480 |\n|---|--:|--:|")
+        for name, depth in SCENES:
+            found = browser.run_async(FRAMES_SCRIPT, name, depth, FRAMES, WINDOW)
+            if "problem" in found:
+                sys.exit(found["problem"])
+            print(f"| {name} {2**depth}³ | {found['workers']} | {found['rate']:.1f} |")
+        seconds = []
+        for number in range(ROUNDS):
+            path = Path(folder) / f"sphere{number}.glb"
+            rough_sphere(path)
+            seconds.append(seconds_to_picture(browser, path))
+            browser.until(shown)
+        size = path.stat().st_size / 1e6
+        print(f"\nDrop to first picture, {size:.1f} MB of {TRIANGLES:,} triangles: {min(seconds):.2f} s")
+    print(f"Load of the machine: {os.getloadavg()[0]:.1f}")
+    server.shutdown()
+
+
+if __name__ == "__main__":
+    main()
