@@ -23,6 +23,7 @@ PARAMETERS = (
     "L2SetBits",
     "Light",
     "Mirrors",
+    "Lod",
 )
 _SIMULATION = "SimulationBlockBits"
 
@@ -48,8 +49,8 @@ class Configuration:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """What it can shade beside faces: of light, mirrors."""
-        return tuple(name.lower() for name in ("Light", "Mirrors") if self.parameters[name])
+        """What it can do beside faces: of light, mirrors, lod."""
+        return tuple(name.lower() for name in ("Light", "Mirrors", "Lod") if self.parameters[name])
 
 
 def read_configurations(path: Path = RTL / "configurations.json") -> dict[str, Configuration]:

@@ -3,7 +3,7 @@
 //
 // Registers: registers.rdl. Stream: voxrt_pixel_packer.
 //
-// Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). A word
+// Memory port: byte addresses, 32-bit words of the report dialect or, as the register lod says, of the dialect lod, whole words only (all of bram_we_i or none). A word
 // read comes memory_clocks(MemoryForm) clocks after its address: set the controller's read latency so. Write a scene while
 // control.hold is set and status.busy clear. Writing at other times shows in the frame, and slows it down: the port
 // never waits, and lanes keep at least half of their share of the memory.
@@ -27,6 +27,8 @@ module voxrt_core
   // Features of the shader, 0 = not built in: a point light with shadows, mirrors.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
+  // Level of detail, 0 = not built in; not with Light or Mirrors.
+  parameter bit          Lod          = 1'b0,
   // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
   parameter string       OctreeFile   = ""
 ) (
@@ -113,6 +115,10 @@ module voxrt_core
     $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");
   end
 
+  if (Lod && (Light || Mirrors)) begin : gen_bad_lod
+    $error("voxrt_core: Lod does not go with Light or Mirrors");
+  end
+
   voxrt_registers_pkg::voxrt_registers__in_t  status;
   voxrt_registers_pkg::voxrt_registers__out_t control;
 
@@ -165,6 +171,8 @@ module voxrt_core
   end
 
   assign frame.memory_base     = {control.memory_base.address.value, 5'd0};
+  assign frame.lod_words       = control.lod.words.value;
+  assign frame.lod_scale       = control.lod.scale.value;
   assign frame.width           = control.size.width.value;
   assign frame.height          = control.size.height.value;
   assign frame.depth           = control.depth.depth.value;
@@ -219,6 +227,7 @@ module voxrt_core
     .L2SetBits   (L2SetBits),
     .Light       (Light),
     .Mirrors     (Mirrors),
+    .Lod         (Lod),
     .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,
@@ -268,6 +277,7 @@ module voxrt_core
   assign status.configuration.cached.next        = MemoryForm == CachedForm;
   assign status.features.light.next              = Light;
   assign status.features.mirrors.next            = Mirrors;
+  assign status.features.lod.next                = Lod;
   assign status.status.busy.next                 = busy;
   assign status.status.frame_done.hwset          = busy_q && !busy && rst_n;
   assign status.status.direction_overflow.hwset  = busy && error.direction_overflow;

@@ -7,6 +7,7 @@ module voxrt_rays
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter bit          Light        = 1'b0,
+  parameter bit          Lod          = 1'b0,
   parameter bit          Strips       = 1'b0   // Rays in strips, not line by line.
 ) (
   input  logic                    clk_i,
@@ -16,6 +17,7 @@ module voxrt_rays
   input  world_t                  world_i,
   input  logic                    root_leaf_i,
   input  material_t               root_material_i,
+  input  logic [LodScaleBits-1:0] lod_scale_i,
   // Lanes that have a credit; the lane that a ray is issued to, which takes one.
   input  logic        [Lanes-1:0] credit_i,
   output logic        [Lanes-1:0] issue_o,          // One-hot or 0.
@@ -79,13 +81,15 @@ module voxrt_rays
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Lanes       (Lanes),
-    .Light       (Light)
+    .Light       (Light),
+    .Lod         (Lod)
   ) u_ray_setup (
     .clk_i,
     .rst_ni,
     .world_i,
     .root_leaf_i,
     .root_material_i,
+    .lod_scale_i,
     .valid_i    (issues || shadow_valid_i),
     .lane_i     (shadow_valid_i ? shadow_lane_i : next_lane_q),
     .direction_i(ray_direction),

@@ -98,7 +98,10 @@ class BuildOptions:
         Python, also the name of a board: its memory is the budget.
     dialect
         How the ``.mem`` file encodes materials. ``"report"``: for the hardware of this project. ``"seed-rtl"``: for the
-        published bitstreams of the original system. ``"msb"``: for its C++ program.
+        published bitstreams of the original system. ``"msb"``: for its C++ program. ``"lod"``: that of `lod`.
+    lod
+        Level of detail: write mean materials too, in the dialect ``lod``. Then pictures of far views can be rendered
+        with fewer words.
     preview
         Render a picture of the whole scene, with the scene's own light if it has one. It goes to the given PNG file,
         or to ``NAME.preview.png`` in the output folder. In Python, True asks for the latter.
@@ -160,6 +163,7 @@ class BuildOptions:
     bake_samples: int = 64
     budget: int | str | None = None
     dialect: Dialect = "report"
+    lod: bool = False
     preview: str | PathLike[str] | bool = False
     size: tuple[int, int] = PREVIEW_SIZE
     camera: str | None = None
@@ -199,6 +203,7 @@ class BuildKeywords(TypedDict, total=False):
     bake_samples: int
     budget: int | str | None
     dialect: Dialect
+    lod: bool
     preview: str | PathLike[str] | bool
     size: tuple[int, int]
     camera: str | None
@@ -247,6 +252,8 @@ def _checked(given: BuildOptions) -> dict[str, object]:
 
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
+    if given.lod is True and given.dialect not in ("report", "lod"):
+        raise ValueError(f"lod has a dialect of its own, and {given.dialect} has no mean materials; leave one of them out")
 
     def budget(name: str, value: object) -> int | str:
         if not isinstance(value, str):
@@ -278,6 +285,7 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "bake_samples": lambda name, value: whole(name, value, 1, 4096),
         "budget": budget,
         "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
+        "lod": flag,
         "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
         "size": _pixels,
         "camera": text,

@@ -12,7 +12,7 @@ namespace voxrt::octree {
 namespace {
 
 constexpr std::uint32_t kFull = 1 << 16;
-constexpr std::uint64_t kSeen = std::uint64_t{1} << 40; // of a leaf; a quarter of that one level up, and so on
+constexpr std::uint64_t kSeen = std::uint64_t{1} << 40; // of a voxel
 
 // What is seen of an octant: how much of its square along each axis lets nothing through, 1/kFull; how much surface it
 // has, in squares of its own side, 1/kSeen; and the mean light of that.
@@ -106,7 +106,7 @@ private:
         const std::uint8_t of = material(word);
         if (of == 0)
             return {};
-        return {{kFull, kFull, kFull}, kSeen, of < light_.size() ? light_[of] : LinearLight{}};
+        return {{kFull, kFull, kFull}, kSeen << level, of < light_.size() ? light_[of] : LinearLight{}};
     }
 
     Look joined(std::uint64_t pair, unsigned level) const {

@@ -114,6 +114,7 @@ def build(
     ] = None,
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
+    lod: Annotated[bool, _option("lod", show_default=False)] = BuildOptions.lod,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -126,6 +127,8 @@ def build(
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
+    if lod and dialect not in ("report", "lod"):
+        raise UsageError(f"--lod has a dialect of its own, and {dialect} has no mean materials; leave one of them out")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
@@ -153,6 +156,7 @@ def build(
         bake_samples=bake_samples,
         budget=board or budget,
         dialect=dialect,
+        lod=lod,
         preview=png(Path(preview)) if preview else preview is not None,
         size=size,
         camera=camera,
