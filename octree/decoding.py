@@ -99,7 +99,7 @@ def decode(
         )
     if verdict.fault:
         facts = {
-            "word": int(report[verdict.address]),
+            "word": int(words[verdict.address]),
             "count": len(words),
             "depth": limit,
             "least": verdict.least_depth,

@@ -48,9 +48,7 @@ def as_dialect(name: str) -> Dialect:
     return name
 
 
-def encode(
-    words: NDArray[np.uint32], dialect: str, means: NDArray[np.uint8] | None = None
-) -> NDArray[np.uint32]:
+def encode(words: NDArray[np.uint32], dialect: str, means: NDArray[np.uint8] | None = None) -> NDArray[np.uint32]:
     """Write report words in `dialect`.
 
     Parameters
@@ -176,15 +174,16 @@ def block_means(
     if len(wrong := np.flatnonzero(means[blocks] != materials)):
         address = int(pointers[wrong[0]])
         raise RomError(
-            f"{place(address, source, lines)}: {int(words[address]):08X} gives block {int(words[address]) >> 8} another "
-            "mean material than a later word does; build it again"
+            f"{place(address, source, lines)}: {int(words[address]):08X} gives block {int(words[address]) >> 8} "
+            "another mean material than a later word does; build it again"
         )
     means.flags.writeable = False
     return means
 
 
 def _lod_leaves(words: NDArray[np.uint32]) -> NDArray[np.bool_]:
-    return (words >> np.uint32(8)) == np.uint32(0xFFFFFF)
+    leaves: NDArray[np.bool_] = (words >> np.uint32(8)) == np.uint32(0xFFFFFF)
+    return leaves
 
 
 def detect_dialect(
@@ -241,4 +240,9 @@ def detect_dialect(
 def _leaf_words(words: NDArray[np.uint32]) -> dict[Dialect, NDArray[np.bool_]]:
     report = (words & np.uint32(0xFFFFFF00)) == np.uint32(0xFFFFFF00)
     seed = report & ((words & np.uint32(0x08)) == 0) & np.isin(words & np.uint32(0xF0), (0x00, 0xF0))
-    return {"report": report, "seed-rtl": seed, "lod": report, "msb": (words & np.uint32(0xFFFFFF00)) == np.uint32(0x80000000)}
+    return {
+        "report": report,
+        "seed-rtl": seed,
+        "lod": report,
+        "msb": (words & np.uint32(0xFFFFFF00)) == np.uint32(0x80000000),
+    }

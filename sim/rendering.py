@@ -250,7 +250,7 @@ def _render_one(
     scale = lod_scale(camera) if lod else 0
     if engine == "model":
         shown = replace(rom, octree=frame_octree(rom.octree, root))
-        return _render_model(shown, camera, size, lighting, whole("threads", threads, 0, 1024), scale)
+        return _render_model(shown, camera, size, lighting, threads=whole("threads", threads, 0, 1024), scale=scale)
     return _render_rtl(
         rom, camera, size, lighting, config=text("config", config), dram=dram, root=root, scale=scale, lod=lod
     )
@@ -263,7 +263,7 @@ def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
 
 
 def _render_model(
-    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, threads: int, scale: int
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, threads: int, scale: int
 ) -> Frame:
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(

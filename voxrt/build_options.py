@@ -21,7 +21,7 @@ Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
 Engine: TypeAlias = Literal["rtl", "model"]
-Dialect: TypeAlias = Literal["report", "seed-rtl", "msb"]
+Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
 
 DEFAULT_DEPTH = 7
 """Levels of the octree if neither they nor the size of a voxel are given."""
@@ -253,7 +253,7 @@ def _checked(given: BuildOptions) -> dict[str, object]:
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
     if given.lod is True and given.dialect not in ("report", "lod"):
-        raise ValueError(f"lod has a dialect of its own, and {given.dialect} has no mean materials; leave one of them out")
+        raise ValueError(f"lod has its own dialect, and {given.dialect} has no mean materials; leave one of them out")
 
     def budget(name: str, value: object) -> int | str:
         if not isinstance(value, str):

@@ -4,8 +4,7 @@
 
 #include <voxrt/voxelize/interrupt.h>
 
-#include <algorithm>
-#include <cstdlib>
+#include <cstdint>
 #include <unordered_map>
 
 namespace voxrt::octree {
@@ -172,13 +171,9 @@ private:
     std::unordered_map<std::uint64_t, std::uint8_t> nearest_;
 };
 
+// Whether the mean coverage along the axes is less than half.
 bool is_sparse(const Look& look) {
-    static const char* mode = std::getenv("LODMODE");
-    const int m = mode ? atoi(mode) : -4;
-    std::uint64_t least = std::min({look.coverage[0], look.coverage[1], look.coverage[2]});
-    if (m < 0)
-        return 8ull * (std::uint64_t{look.coverage[0]} + look.coverage[1] + look.coverage[2]) < 3ull * kFull * std::uint64_t(-m);
-    return 8 * least < kFull * std::uint64_t(m);
+    return 2 * (std::uint64_t{look.coverage[0]} + look.coverage[1] + look.coverage[2]) < 3 * std::uint64_t{kFull};
 }
 
 } // namespace

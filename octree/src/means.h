@@ -14,13 +14,14 @@ using LinearLight = std::array<std::uint16_t, 3>;
 /// A mean material per block, by number (block k is at address 1 + 8 k); 0 where the block is not to be seen as one
 /// cell. `light` has the materials that may be chosen, by id; entry 0 is empty space and is never chosen.
 ///
-/// The coverage of an octant along an axis is the part of its square that is not seen through, in 1/65536: 0 of empty
-/// space, 1 of another leaf; of a block the mean of its four columns, each of which lets through what both octants do. An
-/// octant counts as much as is seen of it along the axes, from both sides, past the octant beside it. The mean is that of
-/// linear light, and the material is the nearest by the sum of squared differences; of equals, the one with the lowest
-/// id. A block whose mean coverage is less than half has 0.
+/// The mean is that of the visible voxels, which share a face with an empty one or with the outside, in all places
+/// where the block stands. Its material is the nearest in linear light by the sum of squared differences; of equals,
+/// the one with the lowest id. A block has 0 where nothing of it is visible, or where its mean coverage along the axes
+/// is less than half: the part of its square that is not seen through, 0 of empty space, 1 of another leaf, of a block
+/// the mean of its four columns, each of which lets through what both octants do.
 ///
-/// Every block is looked at once. Blocks that no path reaches may hold anything; they give any material.
+/// Cost: that of covered_voxels() (hidden.h), and linear in the pairs of blocks of the two memories that lie in one
+/// place. Blocks that are not reached from word 0 have 0. Throws std::invalid_argument where the words are no octree.
 std::vector<std::uint8_t> mean_materials(const Memory& memory, const std::vector<LinearLight>& light);
 
 } // namespace voxrt::octree

@@ -61,7 +61,7 @@ async def pixels_are_the_oracles(dut):
         for (row, column), direction in zip(
             np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
         ):
-            material, face = lod.trace(words, means, depth, camera[0], direction, scale)
+            material, face = lod.trace((words, means, depth), camera[0], direction, scale)
             expected[row, column] = ray.shade(COLOURS[material], direction, face)
         np.testing.assert_array_equal(core.picture(*SIZE), expected)
 
@@ -83,6 +83,6 @@ async def words_of_the_report_dialect_stop_no_ray(dut):
     for (row, column), direction in zip(
         np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
     ):
-        material, face = lod.trace(words, [], depth, camera[0], direction, 0)
+        material, face = lod.trace((words, [], depth), camera[0], direction, 0)
         expected[row, column] = ray.shade(COLOURS[material], direction, face)
     np.testing.assert_array_equal(core.picture(*SIZE), expected)

@@ -12,7 +12,18 @@ from oracles.random_worlds import dense_cubes
 
 import voxrt
 from voxrt.export import read_rom, write_rom
-from voxrt.octree import Octree, Rom, RomError, decode, detect_dialect, diff, encode, from_dense, from_points, with_means
+from voxrt.octree import (
+    Octree,
+    Rom,
+    RomError,
+    decode,
+    detect_dialect,
+    diff,
+    encode,
+    from_dense,
+    from_points,
+    with_means,
+)
 from voxrt.voxelize import EMPTY, DoesNotFitError, Material
 from voxrt.voxelize.colour.srgb import linear_from_srgb
 
@@ -89,9 +100,9 @@ def test_faults_are_told():
     tree = from_points([[0, 0, 0], [3, 3, 3]], [1, 2], depth=2)
     words = encode(tree.words, "lod", np.array([7, 5, 255], np.uint8))
     for address, word, problem in (
-        (8, 0x00000305, r"word 8.*beyond|word 8|range"),
-        (8, 0xFFFFFE05, r"word 8"),
-        (1, 0x00000002, r"word 1.*|block above"),
+        (8, 0x00000305, "word 0x8: pointer 00000305 leads behind the last of 25 words"),
+        (8, 0xFFFFFE05, "word 0x8: pointer FFFFFE05 leads behind the last of 25 words"),
+        (1, 0x00000002, "word 0x1: pointer 00000002 leads back to a block that it lies in"),
     ):
         broken = words.copy()
         broken[address] = word
@@ -99,7 +110,9 @@ def test_faults_are_told():
             decode(broken, "lod", 2)
     torn = words.copy()
     torn[2] = 0x00000106  # block 1 has mean 5 at word 1
-    with pytest.raises(RomError, match="gives block 1 another mean material|another mean material than"):
+    with pytest.raises(
+        RomError, match="00000106 gives block 1 another mean material|00000105 gives block 1 another mean"
+    ):
         decode(torn, "lod", 2)
     with pytest.raises(ValueError, match="no mean materials"):
         encode(tree.words, "lod")
@@ -134,5 +147,5 @@ def test_a_build_writes_it(tmp_path):
     np.testing.assert_array_equal(again.octree.means, built.octree.means)
     plain = voxrt.build("examples/house.obj", depth=5)
     np.testing.assert_array_equal(again.octree.words, plain.octree.words)
-    with pytest.raises(ValueError, match="lod has a dialect of its own, and msb has no mean materials"):
+    with pytest.raises(ValueError, match="lod has its own dialect, and msb has no mean materials"):
         voxrt.BuildOptions(lod=True, dialect="msb")

@@ -30,8 +30,9 @@ def stops_at(level, corner, position, direction, scale):
     return floor(distance_to(corner, 1 << level, position, direction)) >= reach * 2**level
 
 
-def trace(words, means, depth, position, direction, scale):
-    """Find what a ray shows, voxel by voxel: (material, face)."""
+def trace(memory, position, direction, scale):
+    """Find what a ray shows, voxel by voxel: (material, face). `memory`: words, means, depth."""
+    words, means, depth = memory
     for cell, face, _ in cells(1 << depth, position, direction):
         word, level = int(words[0]), depth
         while word < 1 << 31:
@@ -47,8 +48,8 @@ def trace(words, means, depth, position, direction, scale):
 
 
 def looks(words, depth, dense, palette):
-    """Give, by the address of a block, the mean light of what is visible in its octants and its least coverage."""
-    side = 1 << depth
+    """Give, by the address of a block, the mean light of what is visible in it (or None) and its three coverages."""
+    assert len(dense) == 1 << depth
     around = np.pad(dense > 0, 1)
     beside = [np.roll(around, step, axis)[1:-1, 1:-1, 1:-1] for axis in range(3) for step in (-1, 1)]
     visible = (dense > 0) & ~np.logical_and.reduce(beside)
@@ -80,11 +81,15 @@ def looks(words, depth, dense, palette):
         return covered, surface, shine
 
     look(int(words[0]), depth, [0, 0, 0])
-    assert side == len(dense)
     return {
         word: ([c / surface for c in shine] if surface else None, coverage[word])
         for word, (surface, *shine) in sums.items()
     }
+
+
+def spare_coverage(coverage):
+    """Give by how much a block's mean coverage exceeds a half."""
+    return sum(coverage) / 3 - Fraction(1, 2)
 
 
 def surface_of(visible):

@@ -54,7 +54,7 @@ def test_random_worlds_and_cameras(config, seed):
         for (row, column), direction in zip(
             np.ndindex(height, width), directions(camera, width, height).reshape(-1, 3), strict=True
         ):
-            material, face = lod.trace(words, means, depth, camera[0], direction, scale)
+            material, face = lod.trace((words, means, depth), camera[0], direction, scale)
             assert (got["material"][row, column], got["face"][row, column]) == (material, face)
             assert tuple(got["colour"][row, column]) == shade(MATERIALS[material], direction, face)
 

@@ -42,7 +42,7 @@ def test_frames_are_the_oracles(seed):
     for (row, column), direction in zip(
         np.ndindex(SIZE[1], SIZE[0]), ray.directions(camera, *SIZE).reshape(-1, 3), strict=True
     ):
-        material, face = lod.trace(words, means, depth, camera[0], direction, scale)
+        material, face = lod.trace((words, means, depth), camera[0], direction, scale)
         got = int(frame.material[row, column]), int(frame.face[row, column])
         assert got == (material, face), f"pixel ({column}, {row}) of seed {seed}"
         assert tuple(frame.colour[row, column]) == ray.shade(PALETTE[material], direction, face)
@@ -60,7 +60,7 @@ def test_far_cameras_have_exact_pixels_too(seed):
     frame = _model.Memory(words, depth).render(PALETTE, camera, 5, 5, means=means, lod_scale=scale)
     for (row, column), direction in zip(np.ndindex(5, 5), ray.directions(camera, 5, 5).reshape(-1, 3), strict=True):
         got = int(frame.material[row, column]), int(frame.face[row, column])
-        assert got == lod.trace(words, means, depth, camera[0], direction, scale)
+        assert got == lod.trace((words, means, depth), camera[0], direction, scale)
 
 
 def test_scale_0_and_blocks_without_mean_change_nothing():

@@ -128,7 +128,7 @@ def build(
     if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if lod and dialect not in ("report", "lod"):
-        raise UsageError(f"--lod has a dialect of its own, and {dialect} has no mean materials; leave one of them out")
+        raise UsageError(f"--lod has its own dialect, and {dialect} has no mean materials; leave one of them out")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}

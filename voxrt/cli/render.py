@@ -128,22 +128,12 @@ def render(
     camera = source.camera(size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, shading)
     if lod:
-        if light is not None or bounces:
-            raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
-        if lighting.features:
-            warn((voxrt.SceneWarning("light", "the memory's light and mirrors are left out: --lod goes without them"),))
-            lighting = replace(lighting, on=False, bounces=0)
-        if memory.octree.means is None:
-            memory = with_means(memory, (0,) if blob.animation is None else blob.animation.roots)
+        lighting = _unlit(lighting, "--lod goes without light and mirrors", light, bounces)
+        memory = _with_means(blob)
     if config is None:
-        config = "cached1" if lod else "lit" if lighting.features else "tiny"
-    elif engine == "rtl" and blob.lighting and light is None and bounces is None:
-        absent = lighting.features - voxrt.shader_features(config)
-        if absent:
-            warn(
-                (voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),)
-            )
-            lighting = replace(lighting, on=False, bounces=0)
+        config = _default_config(lighting, lod=lod)
+    elif engine == "rtl" and lighting.features - voxrt.shader_features(config) and light is None and bounces is None:
+        lighting = _unlit(lighting, f"{config} has none, --config lit does")
     dram = _dram(latency, interval, jitter)
     asked = _Asked(memory, camera, size, roots, engine, config, lighting, samples, background, dram, lod)
     shown, wrong_pixels = asked.check(file) if check else (asked.render(file, blob.animation), None)
@@ -163,6 +153,30 @@ def render(
         raise voxrt.SimulatorError(
             f"{scene}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
         )
+
+
+def _default_config(lighting: Lighting, *, lod: bool) -> str:
+    """Return the smallest configuration that has what is asked for."""
+    if lod:
+        return "cached1"
+    return "lit" if lighting.features else "tiny"
+
+
+def _with_means(blob: Blob) -> Rom:
+    """Return a memory with its mean materials, whether it was built with them or not."""
+    if blob.rom.octree.means is not None:
+        return blob.rom
+    return with_means(blob.rom, (0,) if blob.animation is None else blob.animation.roots)
+
+
+def _unlit(lighting: Lighting, why: str, light: Triple | None = None, bounces: int | None = None) -> Lighting:
+    """Leave the memory's light and mirrors out, with a warning if there are some; refuse those asked for."""
+    if light is not None or bounces:
+        raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
+    if not lighting.features:
+        return lighting
+    warn((voxrt.SceneWarning("light", f"the memory's light is left out: {why}"),))
+    return replace(lighting, on=False, bounces=0)
 
 
 class _Asked(NamedTuple):

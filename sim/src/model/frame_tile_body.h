@@ -45,10 +45,9 @@ inline Lanes reach_of(const FrameJob& job, GroupPixel first) {
     for (int lane = 0; lane < kLanes; ++lane) {
         int64_t direction[3];
         for (int axis = 0; axis < 3; ++axis)
-            direction[axis] =
-                job.camera.look[axis] +
-                int64_t{job.camera.right[axis]} * (first.column + lane - job.frame.width / 2) +
-                int64_t{job.camera.up[axis]} * (job.frame.height / 2 - first.row);
+            direction[axis] = job.camera.look[axis] +
+                              int64_t{job.camera.right[axis]} * (first.column + lane - job.frame.width / 2) +
+                              int64_t{job.camera.up[axis]} * (job.frame.height / 2 - first.row);
         reach[lane] = static_cast<double>(lod_reach(job.lod, direction));
     }
     Lanes out;

@@ -18,8 +18,8 @@ struct Lod {
 
 constexpr uint32_t kLodScaleLimit = 1 << 20;
 
-// The distance, in voxels, from which on a ray of that direction stops at a voxel; at a cell of 2^level voxels per side,
-// 2^level times as far. Distances are along the axis on which they are greatest.
+// The distance, in voxels, from which on a ray of that direction stops at a voxel; at a cell of 2^level voxels per
+// side, 2^level times as far. Distances are along the axis on which they are greatest.
 inline int64_t lod_reach(const Lod& lod, const int64_t direction[3]) {
     int64_t largest = 0;
     for (int axis = 0; axis < 3; ++axis)

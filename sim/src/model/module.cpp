@@ -248,8 +248,8 @@ NB_MODULE(_model, m) {
             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
             nb::arg("brightness") = nb::none(), nb::arg("light") = nb::none(), nb::arg("ambient") = 0,
             nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(), nb::arg("means") = nb::none(),
-            nb::arg("lod_scale") = 0,
-            nb::arg("seconds") = std::numeric_limits<double>::infinity(), nb::arg("stop").none() = nb::none(),
+            nb::arg("lod_scale") = 0, nb::arg("seconds") = std::numeric_limits<double>::infinity(),
+            nb::arg("stop").none() = nb::none(),
             "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
             "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
             "which is the fastest. docs/shading.md defines the rest: flat; brightness, None or (6,) uint8 in\n"

@@ -44,9 +44,8 @@ struct Walk {
     // Ends the rays that do not go into a block, as its mean material.
     void stop(uint32_t pointer, double x, double y, double z, double size, const Rays* rays, int count) {
         const uint8_t mean = lod.mean(pointer);
-        const double distance =
-            std::max({x - static_cast<double>(origin[0]), y - static_cast<double>(origin[1]),
-                      z - static_cast<double>(origin[2])});
+        const double distance = std::max({x - static_cast<double>(origin[0]), y - static_cast<double>(origin[1]),
+                                          z - static_cast<double>(origin[2])});
         if (mean == 0 || distance < size)
             return;
         Rays stopped[kGroups];

@@ -71,8 +71,9 @@ class Design {
 public:
     virtual ~Design() = default;
     virtual const Limits& limits() const = 0;
-    // At most memory_words(), report dialect or, if built in, dialect lod. Through the access port, a word a clock, or straight into the memory. A
-    // cached memory is the caller's words, which must stay until others are loaded; it has no access port.
+    // At most memory_words(), report dialect or, if built in, dialect lod. Through the access port, a word a clock, or
+    // straight into the memory. A cached memory is the caller's words, which must stay until others are loaded; it has
+    // no access port.
     virtual void load(std::span<const uint32_t> words, bool lod_words, bool through_port) = 0;
     // What the access port reads from address 0 on.
     virtual std::vector<uint32_t> read_back(std::size_t count) = 0;

@@ -9,12 +9,13 @@
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
 //     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
 //     .load(words, *, lod_words=False, through_port=False)
-//                             uint32, 1-D, report dialect or, where built in, dialect lod. Through the design's access port, one word a clock, or
-//                             straight into the simulated memory: the outcome is the same. A cached memory is these
-//                             words themselves, not a copy
+//                             uint32, 1-D, report dialect or, where built in, dialect lod. Through the design's access
+//                             port, one word a clock, or straight into the simulated memory: the outcome is the same. A
+//                             cached memory is these words themselves, not a copy
 //     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, flat=False, brightness=None, light=None, ambient=0,
-//             bounces=0, mirrors=None, lod_scale=0, root=0, stall_seed=0, latency=50, interval=3, jitter=0, dram_seed=0) -> dict
+//             bounces=0, mirrors=None, lod_scale=0, root=0, stall_seed=0, latency=50, interval=3, jitter=0,
+//             dram_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
 //                             materials uint8 (256, 3), sRGB, row 0 is the background; brightness None, by the
@@ -156,8 +157,8 @@ public:
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     bool flat, const std::optional<Faces>& brightness, const std::optional<Place>& light, long ambient,
-                    long bounces, const std::optional<Flags>& mirrors, long lod_scale, uint32_t root, uint32_t stall_seed, long latency,
-                    long interval, long jitter, uint32_t dram_seed) {
+                    long bounces, const std::optional<Flags>& mirrors, long lod_scale, uint32_t root,
+                    uint32_t stall_seed, long latency, long interval, long jitter, uint32_t dram_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -280,7 +281,7 @@ NB_MODULE(_rtl, m) {
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
-             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "lod_scale"_a = 0, "root"_a = 0, "stall_seed"_a = 0, "latency"_a = 50,
-             "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
+             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "lod_scale"_a = 0, "root"_a = 0, "stall_seed"_a = 0,
+             "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
     voxrt::rtl::bind_core(m);
 }
