@@ -16,7 +16,7 @@ NUMBERS = (0, 1, 2, 255)
 
 def some_scene(chance):
     """Make a random world with a random mean material for each block, and its words in both dialects."""
-    depth = int(chance.integers(2, 5))
+    depth = int(chance.integers(2, 4))
     voxels = chance.choice([0, 0, 0, 0, 1, 2, 255], (1 << depth,) * 3).astype(np.uint8)
     words = words_of(voxels)
     means = chance.choice(NUMBERS, len(words) // 8).astype(np.uint8)
@@ -45,7 +45,7 @@ async def pixels_are_the_oracles(dut):
     core = Core(dut)
     await core.start()
     assert await core.read("features", "lod") == 1
-    for _ in range(60):
+    for _ in range(40):
         depth, words, means, lod_words = some_scene(chance)
         camera = np.asarray(random_camera(chance, 1 << depth))
         limit = 1 << int(dut.PositionBits.value) - 1

@@ -110,9 +110,7 @@ def test_faults_are_told():
             decode(broken, "lod", 2)
     torn = words.copy()
     torn[2] = 0x00000106  # block 1 has mean 5 at word 1
-    with pytest.raises(
-        RomError, match="00000106 gives block 1 another mean material|00000105 gives block 1 another mean"
-    ):
+    with pytest.raises(RomError, match=r"0000010[56] gives block 1 another mean material"):
         decode(torn, "lod", 2)
     with pytest.raises(ValueError, match="no mean materials"):
         encode(tree.words, "lod")

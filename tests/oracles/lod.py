@@ -37,8 +37,8 @@ def trace(memory, position, direction, scale):
         word, level = int(words[0]), depth
         while word < 1 << 31:
             corner = [c >> level << level for c in cell]
-            mean = int(means[word >> 3])
-            if scale and mean and level < depth and stops_at(level, corner, position, direction, scale):
+            mean = int(means[word >> 3]) if scale and level < depth else 0
+            if mean and stops_at(level, corner, position, direction, scale):
                 return mean, face
             level -= 1
             word = int(words[word + sum((c >> level & 1) << axis for axis, c in enumerate(cell))])

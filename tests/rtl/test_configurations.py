@@ -19,6 +19,7 @@ DEFAULTS = {
     "L2SetBits": 9,
     "Light": 0,
     "Mirrors": 0,
+    "Lod": 0,
     "SimulationBlockBits": 17,
 }
 
