@@ -3,6 +3,7 @@
 #include <voxrt/voxelize/interrupt.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace voxrt::octree {
 namespace {
@@ -20,14 +21,16 @@ struct Pair {
 
 class Comparison {
 public:
-    Comparison(const Memory& first, const Memory& second) : first_(first), second_(second), cache_(kCacheEntries) {}
+    Comparison(const Memory& first, const Memory& second)
+        : first_(first), second_(second), cache_bits_(cache_bits(first.size + second.size)),
+          cache_(std::size_t{1} << cache_bits_) {}
 
     Pair of(Word a, Word b, unsigned level) {
         if (is_leaf(a) && is_leaf(b))
             return leaves(material(a), material(b), level);
         work_.count_step();
         const std::uint64_t key = (std::uint64_t{a} << 32 | b) ^ std::uint64_t{level} << 27;
-        Entry& entry = cache_[(key * 0x9E3779B97F4A7C15u) >> (64 - kCacheBits)];
+        Entry& entry = cache_[(key * 0x9E3779B97F4A7C15u) >> (64 - cache_bits_)];
         if (entry.level == level && entry.a == a && entry.b == b)
             return entry.pair;
         Pair sum;
@@ -47,8 +50,11 @@ private:
         unsigned level = 0; // 0 marks a free entry: pairs of voxels are leaves and never looked up
         Pair pair;
     };
-    static constexpr unsigned kCacheBits = 18;
-    static constexpr std::size_t kCacheEntries = std::size_t{1} << kCacheBits;
+
+    // A small memory must not pay for the clearing of a large cache.
+    static unsigned cache_bits(std::size_t words) {
+        return std::clamp(static_cast<unsigned>(std::bit_width(words)) + 2, 6u, 18u);
+    }
 
     static Pair leaves(std::uint8_t a, std::uint8_t b, unsigned level) {
         Pair pair;
@@ -75,6 +81,7 @@ private:
 
     Memory first_;
     Memory second_;
+    unsigned cache_bits_;
     std::vector<Entry> cache_;
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };

@@ -122,7 +122,9 @@ private:
 
 class HiddenFinder {
 public:
-    HiddenFinder(const BlockPool& solid, Around around) : solid_(solid), wanted_(around), cache_(kCacheEntries) {}
+    HiddenFinder(const BlockPool& solid, Around around)
+        : solid_(solid), wanted_(around), cache_bits_(cache_bits(solid.size())),
+          cache_(std::size_t{1} << cache_bits_) {}
 
     std::vector<Word> words(Node root, unsigned depth) {
         Neighbourhood world;
@@ -137,8 +139,11 @@ private:
         unsigned level = 0; // 0 marks a free entry
         Node node = 0;
     };
-    static constexpr unsigned kCacheBits = 15;
-    static constexpr std::size_t kCacheEntries = std::size_t{1} << kCacheBits;
+
+    // A small memory must not pay for the clearing of a large cache. A block is met with a few neighbourhoods.
+    static unsigned cache_bits(std::size_t blocks) {
+        return std::clamp(static_cast<unsigned>(std::bit_width(blocks)) + 4, 6u, 15u);
+    }
 
     Node visit(const Neighbourhood& around, unsigned level) {
         if (around[kCentre] == kEmpty)
@@ -197,19 +202,20 @@ private:
     // Bit k of three at bit 3k.
     static constexpr unsigned spread(unsigned value) { return (value & 1) | (value & 2) << 2 | (value & 4) << 4; }
 
-    static std::size_t slot_of(const Neighbourhood& around, unsigned level) {
+    std::size_t slot_of(const Neighbourhood& around, unsigned level) const {
         std::uint64_t hash = level;
         for (const Node node : around) {
             hash = (hash ^ node) * 0x9E3779B97F4A7C15u;
             hash ^= hash >> 32;
         }
-        return static_cast<std::size_t>(hash * 0x9E3779B97F4A7C15u >> (64 - kCacheBits));
+        return static_cast<std::size_t>(hash * 0x9E3779B97F4A7C15u >> (64 - cache_bits_));
     }
 
     const BlockPool& solid_;
     const Around wanted_;
     BlockPool pool_;
     BrickBuilder bricks_{pool_};
+    unsigned cache_bits_;
     std::vector<Entry> cache_;
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };

@@ -50,6 +50,29 @@ def test_a_server_without_scenes_offers_the_examples(folder):
     assert names == ["courtyard", "dog", "house", "planet"]
 
 
+def test_scenes_of_the_same_stem_are_all_served(folder):
+    for name, source in (("one", "house.obj"), ("two", "dog.usda")):
+        (folder / name).mkdir()
+        (folder / name / "scene").with_suffix((folder / source).suffix).write_bytes((folder / source).read_bytes())
+    (folder / "two" / "scene.obj").write_bytes((folder / "house.obj").read_bytes())
+
+    async def show_all(url):
+        async with open_client(url) as client:
+            await client.take_control()
+            words = {}
+            for name in client.hello["scenes"]:
+                number = await client.send("show", scene=name)
+                while (answer := await client._answer(number))["type"] != "done":
+                    pass
+                words[name] = answer["scene"]["words"]
+            return words
+
+    with serving(folder, "one/scene.obj", "two/scene.usda", "two/scene.obj", "--depth", "5") as served:
+        words = asyncio.run(asyncio.wait_for(show_all(served["url"]), 300))
+    assert sorted(words) == ["one/scene.obj", "scene.usda", "two/scene.obj"]
+    assert words["one/scene.obj"] == words["two/scene.obj"] != words["scene.usda"]
+
+
 def test_upload_to_a_server(voxrt, folder):
     assert voxrt("build", "dog.usda", "--depth", 5).code == 0
     with serving(folder, "house.obj", "--depth", "4", "--legacy-port", "0") as served:

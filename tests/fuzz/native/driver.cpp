@@ -50,13 +50,20 @@ void too_slow(int) {
 /// Whether the current input visited something for the first time, in ranges of numbers of visits: 1, 2, 3, 4-7, …
 bool is_new() {
     bool found = false;
-    for (size_t i = 0; i < std::size(visits); ++i)
-        if (visits[i] != 0) {
+    for (size_t eight = 0; eight < std::size(visits); eight += 8) {
+        uint64_t any;
+        std::memcpy(&any, &visits[eight], sizeof any);
+        if (any == 0) // as nearly all are
+            continue;
+        for (size_t i = eight; i < eight + 8; ++i) {
+            if (visits[i] == 0)
+                continue;
             const uint8_t n = visits[i];
             const auto range = uint8_t(n > 127 ? 128 : n > 31 ? 64 : n > 15 ? 32 : n > 7 ? 16 : n > 3 ? 8 : n);
             found = found || (seen[i] & range) != range;
             seen[i] |= range;
         }
+    }
     return found;
 }
 

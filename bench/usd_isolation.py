@@ -1,0 +1,67 @@
+"""What reading USD in a process of its own costs: ``python bench/usd_isolation.py [ASSET ...] [--write]``.
+
+Whole processes that read one asset take turns: through a process of its own, as `voxrt build` reads it, and in the same
+process, which nothing protects from a damaged file. Medians and least values of the wall clock. ``--write`` puts the
+table into ``bench/results/usd_isolation.md`` as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "bench" / "results" / "usd_isolation.md"
+APART = "from voxrt.voxelize.formats.usd.isolated import read_isolated; read_isolated(path)"
+TOGETHER = """
+from voxrt.voxelize.formats.usd.limits import Allowance, Limits
+from voxrt.voxelize.formats.usd.stage_scene import read_stage
+read_stage(path, Allowance(Limits.of_this_machine()), variants=(), time=None, allow_outside=False)
+"""
+
+
+def seconds(code: str, asset: Path) -> float:
+    """Give the wall seconds of a process that reads `asset` by `code`."""
+    program = f"import sys; from pathlib import Path; path = Path(sys.argv[1])\n{code}"
+    start = time.perf_counter()
+    subprocess.run([sys.executable, "-c", program, str(asset)], cwd=ROOT / "bench", check=True, capture_output=True)
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("assets", nargs="*", type=Path, default=[ROOT / "examples" / "dog.usda"])
+    parser.add_argument("--runs", type=int, default=15, help="runs per asset and way")
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
+    lines = [
+        "# USD in a process of its own",
+        "",
+        f"Made by `python bench/usd_isolation.py --write`: whole processes, {options.runs} runs each, in turns.",
+        "Seconds of the wall clock.",
+        "",
+        "| asset | apart: median, least | together: median, least | difference of the medians |",
+        "|---|---|---|---|",
+    ]
+    for asset in options.assets:
+        seconds(APART, asset), seconds(TOGETHER, asset)  # once for the caches of files
+        pairs = [(seconds(APART, asset.resolve()), seconds(TOGETHER, asset.resolve())) for _ in range(options.runs)]
+        apart, together = ([pair[way] for pair in pairs] for way in (0, 1))
+        medians = statistics.median(apart), statistics.median(together)
+        lines.append(
+            f"| {asset.name} | {medians[0]:.3f}, {min(apart):.3f} | {medians[1]:.3f}, {min(together):.3f} "
+            f"| {medians[0] - medians[1]:.3f} |"
+        )
+    report = "\n".join(lines) + "\n"
+    print(report, end="")
+    if options.write:
+        RESULTS.write_text(report)
+
+
+if __name__ == "__main__":
+    main()
