@@ -123,8 +123,8 @@ private:
 class HiddenFinder {
 public:
     HiddenFinder(const BlockPool& solid, Around around)
-        : solid_(solid), wanted_(around), cache_bits_(cache_bits(solid.size())),
-          cache_(std::size_t{1} << cache_bits_) {}
+        : solid_(solid), wanted_(around), cache_bits_(cache_bits(solid.size())), cache_(std::size_t{1} << cache_bits_) {
+    }
 
     std::vector<Word> words(Node root, unsigned depth) {
         Neighbourhood world;
