@@ -1,5 +1,5 @@
-// A memory word of the report dialect, or of the dialect lod, in the form that the lanes read (see voxrt_pkg::payload_bits): a pointer is
-// checked here, once, and not in every lane.
+// A memory word of the report dialect, or of the dialect lod, in the form that the lanes read (see
+// voxrt_pkg::payload_bits): a pointer is checked here, once, and not in every lane.
 module voxrt_word_encoder
   import voxrt_pkg::*;
 #(
