@@ -4,9 +4,9 @@
 // Registers: registers.rdl. Stream: voxrt_pixel_packer.
 //
 // Memory port: byte addresses, 32-bit words of the report dialect or, as the register lod says, of the dialect lod;
-// whole words only (all of bram_we_i or none). A word read comes memory_clocks(MemoryForm) clocks after its address: set the controller's read latency so. Write a scene while
-// control.hold is set and status.busy clear. Writing at other times shows in the frame, and slows it down: the port
-// never waits, and lanes keep at least half of their share of the memory.
+// whole words only (all of bram_we_i or none). A word read comes memory_clocks(MemoryForm) clocks after its address: set
+// the controller's read latency so. Write a scene while control.hold is set and status.busy clear. Writing at other times
+// shows in the frame, and slows it down: the port never waits, and lanes keep at least half of their share of the memory.
 module voxrt_core
   import voxrt_pkg::*;
 #(
