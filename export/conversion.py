@@ -100,7 +100,7 @@ def convert(blob: Blob, target: Path | str, *, dialect: str = "report") -> tuple
         The file. Its suffix, one of :data:`WRITABLE_SUFFIXES`, says what it is. A file of words gets a manifest beside
         it.
     dialect
-        How a file of words encodes materials. A blob is always ``"report"``.
+        How a file of words encodes materials. A blob is always ``"report"``, without mean materials.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def _with_known_provenance(blob: Blob, target: Path, dialect: str) -> Blob:
         there = read_manifest(path)
     except RomError:  # none, or a damaged one
         return blob
-    if there.crc32 != words_crc32(blob.rom, dialect):
+    if there.crc32 != words_crc32(blob.rom, dialect, blob.animation):
         if other := other_words(target, there):
             raise FileExistsError(
                 errno.EEXIST, f"{path.name} belongs to {other.name}, which has other words", str(target)

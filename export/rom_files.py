@@ -22,7 +22,7 @@ from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
 from voxrt.export.raw import raw_bytes, read_raw
 from voxrt.export.word_file import mem_crc32, mem_pieces
-from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode
+from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode, with_means
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
@@ -91,7 +91,8 @@ def write_rom(
     suffix
         The kind of the file of words, one of :data:`WORD_SUFFIXES`.
     dialect
-        How the file encodes materials, one of :data:`voxrt.octree.DIALECTS`.
+        How the file encodes materials, one of :data:`voxrt.octree.DIALECTS`. A memory without mean materials gets some
+        for ``"lod"``.
     objects, warnings, seconds, source
         What the manifest says of the build.
     view, lighting
@@ -131,7 +132,7 @@ def write_rom(
     stem = rom.name if stem is None else stem
     if stem in {"", ".", ".."} or any(c in stem for c in "/\0") or (stem == rom.name and "\\" in stem):
         raise ValueError(f"{stem!r} cannot name a file")
-    words = encode(rom.octree.words, dialect)
+    words = _encoded(rom, dialect, animation)
     manifest = make_manifest(
         rom,
         mem_crc32(words),
@@ -156,9 +157,16 @@ def write_rom(
     return files
 
 
-def words_crc32(rom: Rom, dialect: str) -> str:
+def words_crc32(rom: Rom, dialect: str, animation: Animation | None = None) -> str:
     """Return the CRC-32 by which a manifest knows the words of a memory in a dialect."""
-    return f"{mem_crc32(encode(rom.octree.words, dialect)):08X}"
+    return f"{mem_crc32(_encoded(rom, dialect, animation)):08X}"
+
+
+def _encoded(rom: Rom, dialect: str, animation: Animation | None) -> NDArray[np.uint32]:
+    """Give the words in a dialect; for ``lod``, of a memory without mean materials too."""
+    if dialect == "lod" and rom.octree.means is None:
+        rom = with_means(rom, animation.roots if animation else (0,))
+    return encode(rom.octree.words, dialect, rom.octree.means)
 
 
 def other_words(path: Path, manifest: Manifest) -> Path | None:
@@ -231,6 +239,8 @@ def read_words(
     octree = decode(mem.words, manifest.dialect, manifest.depth, source=str(mem_path), lines=mem.lines)
     animation = manifest.animation
     highest = check_roots(octree, animation.roots, source=str(mem_path)) if animation else _highest_material(octree)
+    if octree.means is not None:
+        highest = max(highest, int(octree.means.max(initial=0)))
     if highest >= len(manifest.materials):
         raise RomError(
             f"{mem_path}: material {highest} is missing from the manifest, which ends at "

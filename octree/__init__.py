@@ -55,6 +55,7 @@ __all__ = [
     "surface_change",
     "to_dense",
     "to_points",
+    "with_means",
 ]
 
 # Imported when first used: a build waits for what it needs alone.
@@ -77,6 +78,7 @@ _HOMES = {
     "voxrt.octree.errors": ("RomError",),
     "voxrt.octree.hidden": ("fill_hidden", "hidden_voxels", "share_hidden"),
     "voxrt.octree.leaf_arrays": ("Leaves", "leaves"),
+    "voxrt.octree.lod": ("with_means",),
     "voxrt.octree.octant": ("Octant", "octant_at"),
     "voxrt.octree.octree": ("MAX_DEPTH", "Octree"),
     "voxrt.octree.owners": ("Owners",),
@@ -108,6 +110,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.octree.errors import RomError
     from voxrt.octree.hidden import fill_hidden, hidden_voxels, share_hidden
     from voxrt.octree.leaf_arrays import Leaves, leaves
+    from voxrt.octree.lod import with_means
     from voxrt.octree.octant import Octant, octant_at
     from voxrt.octree.octree import MAX_DEPTH, Octree
     from voxrt.octree.owners import Owners

@@ -195,7 +195,7 @@ def check_frame_count(depth: int, count: int) -> None:
 
 
 def frame_octree(octree: Octree, root: int) -> Octree:
-    """Return the octree whose root is a word of a memory: the same words, but for word 0.
+    """Return the octree whose root is a word of a memory: the same words and means, but for word 0.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def frame_octree(octree: Octree, root: int) -> Octree:
     moved = words.copy()
     moved[0] = words[root]
     moved.flags.writeable = False
-    return Octree(octree.depth, moved)
+    return Octree(octree.depth, moved, octree.means)
 
 
 def frames_as_octants(octree: Octree, roots: Sequence[int]) -> Octree:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.dialects import leaf_materials
+from voxrt.octree.dialects import block_means, leaf_materials
 from voxrt.octree.errors import RomError, place
 from voxrt.octree.octree import MAX_DEPTH, Octree
 
@@ -44,7 +44,7 @@ def decode(
     """Read memory words, checking every one.
 
     A memory that is valid without being canonical (blocks repeated, in another order, or reached from nowhere) keeps
-    its words where they are; only leaves change, to the report dialect.
+    its words where they are; they change to the report dialect. Dialect ``lod`` gives mean materials, too.
 
     Parameters
     ----------
@@ -65,7 +65,8 @@ def decode(
     Raises
     ------
     RomError
-        A pointer is out of range, misaligned, part of a cycle or below `depth`, or a word is none of the dialect. The
+        A pointer is out of range, misaligned, part of a cycle or below `depth`, or a word is none of the dialect, or
+        pointers to one block have different mean materials. The
         message names the address of the word.
     ValueError
         The words are no such array, or there is no such dialect.
@@ -98,7 +99,7 @@ def decode(
         )
     if verdict.fault:
         facts = {
-            "word": int(report[verdict.address]),
+            "word": int(words[verdict.address]),
             "count": len(words),
             "depth": limit,
             "least": verdict.least_depth,
@@ -106,4 +107,5 @@ def decode(
         problem, fix = _PROBLEMS[verdict.fault].format(**facts), _FIXES[verdict.fault].format(**facts)
         raise RomError(f"{place(verdict.address, source, lines)}: {problem}; {fix}")
     report.flags.writeable = False
-    return Octree(max(1, verdict.least_depth) if depth is None else depth, report)
+    means = block_means(words, source=source, lines=lines) if dialect == "lod" else None
+    return Octree(max(1, verdict.least_depth) if depth is None else depth, report, means)

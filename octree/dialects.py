@@ -7,9 +7,11 @@ dialect      leaf of material m   read by
 ``seed-rtl`` ``0xFFFFFFF0 | m``   the original's published bitstreams: the low 3 bits
                                   count, so FFFFFF00 … FFFFFF07 are read as well
 ``msb``      ``0x80000000 | m``   the C++ program of the original's report
+``lod``      ``0xFFFFFF00 | m``   configurations of this project's hardware with level of detail
 ============ ==================== ====================================================
 
-Pointers are the same in all: bit 31 clear, the word address of octant 0 of a block.
+Pointers are the same in the first three: bit 31 clear, the word address of octant 0 of a block. In ``lod`` a pointer is
+256 times the number of the block, plus its mean material; block k is at address 1 + 8 k.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-Dialect: TypeAlias = Literal["report", "seed-rtl", "msb"]
+Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
 DIALECTS: tuple[Dialect, ...] = get_args(Dialect)
 
 _LEAF = np.uint32(0x80000000)
@@ -34,7 +36,9 @@ _TAGS: dict[Dialect, np.uint32] = {
     "report": np.uint32(0xFFFFFF00),
     "seed-rtl": np.uint32(0xFFFFFFF0),
     "msb": np.uint32(0x80000000),
+    "lod": np.uint32(0xFFFFFF00),
 }
+_LOD_BLOCKS = (1 << 24) - 1
 
 
 def as_dialect(name: str) -> Dialect:
@@ -44,7 +48,7 @@ def as_dialect(name: str) -> Dialect:
     return name
 
 
-def encode(words: NDArray[np.uint32], dialect: str) -> NDArray[np.uint32]:
+def encode(words: NDArray[np.uint32], dialect: str, means: NDArray[np.uint8] | None = None) -> NDArray[np.uint32]:
     """Write report words in `dialect`.
 
     Parameters
@@ -53,18 +57,20 @@ def encode(words: NDArray[np.uint32], dialect: str) -> NDArray[np.uint32]:
         uint32, shape (N,), report dialect: :attr:`Octree.words`.
     dialect
         One of :data:`DIALECTS`.
+    means
+        For ``lod``: the mean material of each block, :attr:`Octree.means`.
 
     Returns
     -------
     NDArray[np.uint32]
-        uint32, shape (N,); pointers unchanged.
+        uint32, shape (N,); pointers unchanged, but for ``lod``.
 
     Raises
     ------
     DoesNotFitError
-        The dialect cannot name a material in use.
+        The dialect cannot name a material in use, or so many blocks.
     ValueError
-        There is no such dialect.
+        There is no such dialect, or ``lod`` without means.
 
     Examples
     --------
@@ -76,6 +82,17 @@ def encode(words: NDArray[np.uint32], dialect: str) -> NDArray[np.uint32]:
     if dialect == "report":
         return words
     leaves = (words & _LEAF) != 0
+    if dialect == "lod":
+        if means is None:
+            raise ValueError("the memory has no mean materials: give it some with with_means")
+        if len(means) > _LOD_BLOCKS:
+            raise DoesNotFitError(
+                f"dialect lod holds {_LOD_BLOCKS:,} blocks and the memory has {len(means):,}; build with less depth"
+            )
+        if len(means) == 0:
+            return words
+        blocks = np.where(leaves, 0, words) >> np.uint32(3)
+        return np.where(leaves, words, blocks << np.uint32(8) | means[blocks])
     materials = words & np.uint32(0xFF)
     if dialect == "seed-rtl":
         highest = int(materials[leaves].max(initial=0))
@@ -90,7 +107,7 @@ def encode(words: NDArray[np.uint32], dialect: str) -> NDArray[np.uint32]:
 def leaf_materials(
     words: NDArray[np.uint32], dialect: str, *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.uint32]:
-    """Read the words of `dialect` as report words, pointers unchanged and unchecked.
+    """Read the words of `dialect` as report words, pointers unchecked.
 
     Parameters
     ----------
@@ -111,6 +128,11 @@ def leaf_materials(
     RomError
         A word is neither a pointer nor a leaf of that dialect.
     """
+    if dialect == "lod":
+        leaves = _lod_leaves(words)
+        pointers = 8 * (words >> np.uint32(8)).astype(np.uint64) + 1
+        # What leads beyond the memory stays so; what is beyond bit 31 would be no pointer at all.
+        return np.where(leaves, words, np.minimum(pointers, 0x7FFFFFF9).astype(np.uint32))
     leaves = (words & _LEAF) != 0
     known = ~leaves | _leaf_words(words)[as_dialect(dialect)]
     if not known.all():
@@ -123,6 +145,47 @@ def leaf_materials(
     return np.where(leaves, _TAGS["report"] | materials, words)
 
 
+def block_means(
+    words: NDArray[np.uint32], *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
+) -> NDArray[np.uint8]:
+    """Read the mean material of each block of a memory of dialect ``lod``.
+
+    Parameters
+    ----------
+    words
+        uint32, shape (1 + 8 * blocks,); every pointer leads into the memory.
+    source, lines
+        The file that the words come from and the line of each, for the error.
+
+    Returns
+    -------
+    NDArray[np.uint8]
+        uint8, shape (blocks,), read-only; 0 for a block that nothing points to.
+
+    Raises
+    ------
+    RomError
+        Two pointers to one block have different means.
+    """
+    pointers = np.flatnonzero(~_lod_leaves(words))
+    blocks, materials = words[pointers] >> np.uint32(8), (words[pointers] & np.uint32(0xFF)).astype(np.uint8)
+    means = np.zeros((len(words) - 1) // 8, np.uint8)
+    means[blocks] = materials
+    if len(wrong := np.flatnonzero(means[blocks] != materials)):
+        address = int(pointers[wrong[0]])
+        raise RomError(
+            f"{place(address, source, lines)}: {int(words[address]):08X} gives block {int(words[address]) >> 8} "
+            "another mean material than a later word does; build it again"
+        )
+    means.flags.writeable = False
+    return means
+
+
+def _lod_leaves(words: NDArray[np.uint32]) -> NDArray[np.bool_]:
+    leaves: NDArray[np.bool_] = (words >> np.uint32(8)) == np.uint32(0xFFFFFF)
+    return leaves
+
+
 def detect_dialect(
     words: NDArray[np.uint32], *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> Dialect:
@@ -130,7 +193,8 @@ def detect_dialect(
 
     ``msb`` leaves look like no others. A memory is ``seed-rtl`` if all leaves lie in FFFFFF00 … 07 and FFFFFFF0 … F7
     and some leaf is FFFFFFF0, the empty space of that dialect: as ``report`` it would use material 240 and none of
-    8 … 239. FFFFFFF1 … F7 without FFFFFFF0 is refused. Every other memory of FFFFFFmm is ``report``.
+    8 … 239. FFFFFFF1 … F7 without FFFFFFF0 is refused. Every other memory of FFFFFFmm is ``report``. The leaves of
+    ``lod`` are those of ``report``: only a manifest tells it.
 
     Parameters
     ----------
@@ -176,4 +240,9 @@ def detect_dialect(
 def _leaf_words(words: NDArray[np.uint32]) -> dict[Dialect, NDArray[np.bool_]]:
     report = (words & np.uint32(0xFFFFFF00)) == np.uint32(0xFFFFFF00)
     seed = report & ((words & np.uint32(0x08)) == 0) & np.isin(words & np.uint32(0xF0), (0x00, 0xF0))
-    return {"report": report, "seed-rtl": seed, "msb": (words & np.uint32(0xFFFFFF00)) == np.uint32(0x80000000)}
+    return {
+        "report": report,
+        "seed-rtl": seed,
+        "lod": report,
+        "msb": (words & np.uint32(0xFFFFFF00)) == np.uint32(0x80000000),
+    }

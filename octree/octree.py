@@ -28,6 +28,9 @@ class Octree:
         Levels below the root, 1 … 16: the world has 2**depth voxels per side.
     words
         uint32, shape (1 + 8 * blocks,), read-only, report dialect.
+    means
+        uint8, shape (blocks,), read-only: the mean material of each block, which a ray shows that stops there; 0 where
+        none does. None for a memory without level of detail: :func:`with_means` gives it some.
 
     Examples
     --------
@@ -42,6 +45,7 @@ class Octree:
 
     depth: int
     words: NDArray[np.uint32]
+    means: NDArray[np.uint8] | None = None
 
     def __repr__(self) -> str:
         return f"<Octree: depth {self.depth}, {len(self.words):,} words>"

@@ -24,6 +24,7 @@ PARAMETERS = (
     "Light",
     "Mirrors",
     "RayClocks",
+    "Lod",
 )
 _SIMULATION = "SimulationBlockBits"
 
@@ -49,8 +50,8 @@ class Configuration:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """What it can shade beside faces: of light, mirrors."""
-        return tuple(name.lower() for name in ("Light", "Mirrors") if self.parameters[name])
+        """What it can do beside faces: of light, mirrors, lod."""
+        return tuple(name.lower() for name in ("Light", "Mirrors", "Lod") if self.parameters[name])
 
 
 def read_configurations(path: Path = RTL / "configurations.json") -> dict[str, Configuration]:

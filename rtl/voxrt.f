@@ -20,6 +20,7 @@ voxrt_slot_scheduler.sv
 voxrt_light.sv
 voxrt_light_direction.sv
 voxrt_line_reader.sv
+voxrt_lod.sv
 voxrt_merge.sv
 voxrt_miss_list.sv
 voxrt_multiply.sv

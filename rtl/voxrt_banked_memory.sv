@@ -17,21 +17,22 @@ module voxrt_banked_memory
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes     = 16,
-  parameter int unsigned BlockBits = 12
+  parameter int unsigned BlockBits = 12,
+  parameter bit          Lod       = 1'b0
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
   input  logic                             access_i,
   input  logic                             access_write_i,
   input  logic [BlockBits+2:0]             access_address_i,
-  input  logic [payload_bits(BlockBits):0] access_word_i,
-  output logic [payload_bits(BlockBits):0] access_word_o,            // Five clocks later.
+  input  logic [payload_bits(BlockBits, Lod):0] access_word_i,
+  output logic [payload_bits(BlockBits, Lod):0] access_word_o,            // Five clocks later.
   input  logic [Lanes-1:0]                 read_i,
   input  logic [BlockBits+2:0]             address_i        [Lanes],
   output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits):0] word_o           [Lanes]
+  output logic [payload_bits(BlockBits, Lod):0] word_o           [Lanes]
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned BankBits = 4;
   localparam int unsigned Banks = 2 ** BankBits;

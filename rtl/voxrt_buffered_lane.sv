@@ -12,13 +12,14 @@ module voxrt_buffered_lane
   parameter int unsigned RayDepth     = 16,    // Rays that wait, of the camera and shadow rays each.
   parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before.
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  parameter bit          Lod          = 1'b0
 ) (
   input  logic                                           clk_i,
   input  logic                                           rst_ni,
   // Held during a frame; see voxrt_lane.
   input  world_t                                         world_i,
-  input  logic            [ payload_bits(BlockBits):0]   root_i,
+  input  logic            [ payload_bits(BlockBits, Lod):0]   root_i,
   input  shading_t                                       shading_i,
   input  light_planes_t                                  light_planes_i,
   input  material_write_t                                material_write_i,
@@ -33,7 +34,8 @@ module voxrt_buffered_lane
   output logic                                           mem_read_o,
   output logic            [BlockBits+2:0]                mem_address_o,
   input  logic                                           mem_ack_i,
-  input  logic            [payload_bits(BlockBits):0]    mem_word_i,
+  input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
+  output logic                                           mem_stops_o,
   // To voxrt_light.
   output logic                                           hit_point_valid_o,
   input  logic                                           hit_point_ready_i,
@@ -89,7 +91,12 @@ module voxrt_buffered_lane
   end
 
   // The weights of a ray go to the lane when it comes, all else through the queue.
-  assign weights_write = '{valid: ray_valid_i, row: RowLimit'(arrival_row), weights: weights_i};
+  assign weights_write = '{
+      valid: ray_valid_i,
+      row: RowLimit'(arrival_row),
+      weights: weights_i,
+      reach: ray_i.reach
+  };
 
   voxrt_free_list #(
     .RowBits(RowBits)
@@ -198,6 +205,7 @@ module voxrt_buffered_lane
     ray.octant     = queued.octant;
     ray.entry_time = KeyLimit'(queued.entry_time);
     ray.entry_face = queued.entry_face;
+    ray.reach      = '0;  // With the weights.
     for (int unsigned a = 0; a < 3; a++) ray.origin[a] = DistanceLimit'($signed(origin[a]));
   end
 
@@ -212,7 +220,8 @@ module voxrt_buffered_lane
     .BlockBits   (BlockBits),
     .MemoryClocks(MemoryClocks),
     .Light       (Light),
-    .Mirrors     (Mirrors)
+    .Mirrors     (Mirrors),
+    .Lod         (Lod)
   ) u_lane (
     .clk_i,
     .rst_ni,
@@ -231,6 +240,7 @@ module voxrt_buffered_lane
     .mem_address_o,
     .mem_ack_i,
     .mem_word_i,
+    .mem_stops_o,
     .allocate_o      (allocate),
     .allocate_ready_i(allocate_ready),
     .allocate_tag_i  (allocate_tag),

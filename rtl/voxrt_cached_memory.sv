@@ -14,6 +14,7 @@ module voxrt_cached_memory
   parameter int unsigned BlockBits   = 12,
   parameter int unsigned L1SetBits   = 5,   // Sets of four lines.
   parameter int unsigned L2SetBits   = 9,
+  parameter bit          Lod         = 1'b0,
   parameter int unsigned TimeoutBits = 16
 ) (
   input  logic                             clk_i,
@@ -23,18 +24,20 @@ module voxrt_cached_memory
   input  logic                             start_i,
   output logic                             ready_o,
   input  logic                             flush_i,
-  input  logic [31:0]                      base_i,                 // As voxrt_line_reader has it.
+  input  logic [31:0]                      base_i,                 // As voxrt_line_reader has them.
+  input  logic                             lod_words_i,
   // Lanes.
   input  logic [Lanes-1:0]                 read_i,
   input  logic [BlockBits+3:0]             address_i        [Lanes],
   output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits):0] word_o           [Lanes],
+  output logic [payload_bits(BlockBits, Lod):0] word_o      [Lanes],
+  input  logic [Lanes-1:0]                 stops_i,                // As voxrt_l1_cache has it.
   // External memory.
   output axi_read_request_t                axi_o            [BusPorts],
   input  axi_read_response_t               axi_i            [BusPorts],
   output memory_events_t                   events_o
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
   // Frames.
   logic             waits_q, flushing_q, flush_needed_q, clears;
@@ -68,7 +71,8 @@ module voxrt_cached_memory
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
     voxrt_l1_cache #(
       .BlockBits(BlockBits),
-      .SetBits  (L1SetBits)
+      .SetBits  (L1SetBits),
+      .Lod      (Lod)
     ) u_l1 (
       .clk_i,
       .rst_ni,
@@ -78,6 +82,7 @@ module voxrt_cached_memory
       .address_i      (address_i[i]),
       .ack_o          (ack_o[i]),
       .word_o         (word_o[i]),
+      .stops_i        (stops_i[i]),
       .request_valid_o(request_valid[i]),
       .request_ready_i(request_ready[i]),
       .request_line_o (request_line[i]),
@@ -90,7 +95,8 @@ module voxrt_cached_memory
   voxrt_l2_cache #(
     .Lanes    (Lanes),
     .BlockBits(BlockBits),
-    .SetBits  (L2SetBits)
+    .SetBits  (L2SetBits),
+    .Lod      (Lod)
   ) u_l2 (
     .clk_i,
     .rst_ni,
@@ -112,6 +118,7 @@ module voxrt_cached_memory
 
   voxrt_line_reader #(
     .BlockBits  (BlockBits),
+    .Lod        (Lod),
     .TimeoutBits(TimeoutBits)
   ) u_reader (
     .clk_i,
@@ -119,6 +126,7 @@ module voxrt_cached_memory
     .clear_i        (!rst_ni),
     .recover_i      (clears),
     .base_i,
+    .lod_words_i,
     .request_valid_i(fetch_valid),
     .request_ready_o(fetch_ready),
     .request_line_i (fetch_line),

@@ -34,7 +34,10 @@ module voxrt_cell_times
   input  logic                  [2:0][DistanceLimit-1:0]         ray_origin_i,
   input  face_e                                                  key_face_i,
   // Stage 6.
-  output logic                  [key_bits(MaxDepth, Light)-1:0]  time_o      [3]
+  output logic                  [key_bits(MaxDepth, Light)-1:0]  time_o      [3],
+  // For voxrt_lod, with an origin that all rays share: stage 2, near plane - origin, voxels, signed; stage 3.
+  output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o [3],
+  output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
   localparam int unsigned SubBits = Light ? FractionBits : 0;
   localparam int unsigned RowBits = row_bits(Light);
@@ -54,6 +57,7 @@ module voxrt_cell_times
     logic                           unused_shared;
 
     assign unused_shared = &{world_i, mirrored1_i};
+    assign near2_o       = '{default: '0};
 
     assign planes = decision_i.shift[MaxDepth+1:0];
     assign shift  = Mirrors ? DistanceBits'(planes) <<< FractionBits : '0;
@@ -90,6 +94,7 @@ module voxrt_cell_times
     logic        [FractionBits-1:0] fraction2_q[3];
     logic                           unused_origin;
 
+    assign near2_o       = near2_q;
     assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, slot1_i, slot9_i, decision_i, key_face_i};
 
     // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
@@ -115,6 +120,7 @@ module voxrt_cell_times
   logic        [WeightBits-1:0] weight_x_q[2**RowBits], weight_y_q[2**RowBits], weight_z_q[2**RowBits];
   logic        [WeightBits-1:0] weight3_q [3];
   logic        [   RowBits-1:0] written_row;
+  logic [OriginBits-FractionBits-1:0] reach_q[2**RowBits], reach3_q;
   logic signed [  TimeBits-1:0] exact_time[3];
 
   assign written_row = weights_write_i.row[RowBits-1:0];
@@ -123,12 +129,16 @@ module voxrt_cell_times
     weight3_q[0] <= weight_x_q[row2_i];
     weight3_q[1] <= weight_y_q[row2_i];
     weight3_q[2] <= weight_z_q[row2_i];
+    reach3_q     <= reach_q[row2_i];
     if (weights_write_i.valid) begin
       weight_x_q[written_row] <= weights_write_i.weights[0];
       weight_y_q[written_row] <= weights_write_i.weights[1];
       weight_z_q[written_row] <= weights_write_i.weights[2];
+      reach_q[written_row]    <= weights_write_i.reach[OriginBits-FractionBits-1:0];
     end
   end
+
+  assign reach3_o = reach3_q;
 
   for (genvar a = 0; a < 3; a++) begin : gen_time
     voxrt_plane_time #(

@@ -3,10 +3,10 @@
 //
 // Registers: registers.rdl. Stream: voxrt_pixel_packer.
 //
-// Memory port: byte addresses, 32-bit words of the report dialect, whole words only (all of bram_we_i or none). A word
-// read comes access_clocks(MemoryForm) clocks after its address: set the controller's read latency so. Write a scene while
-// control.hold is set and status.busy clear. Writing at other times shows in the frame, and slows it down: the port
-// never waits, and lanes keep at least half of their share of the memory.
+// Memory port: byte addresses, 32-bit words of the report dialect or, as the register lod says, of the dialect lod;
+// whole words only (all of bram_we_i or none). A word read comes access_clocks(MemoryForm) clocks after its address: set
+// the controller's read latency so. Write a scene while control.hold is set and status.busy clear. Writing at other times
+// shows in the frame, and slows it down: the port never waits, and lanes keep at least half of their share of the memory.
 module voxrt_core
   import voxrt_pkg::*;
 #(
@@ -28,8 +28,10 @@ module voxrt_core
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   // Clocks per ray and per pixel: 1; or 4, at which the setup of rays and the shader share their multipliers. 4 needs a
-  // core without Light and Mirrors.
+  // core without Light, Mirrors and Lod.
   parameter int unsigned RayClocks    = 1,
+  // Level of detail, 0 = not built in; not with Light or Mirrors.
+  parameter bit          Lod          = 1'b0,
   // What the octree memory holds from the beginning, for $readmemh (voxrt_octree_memory); "": nothing.
   parameter string       OctreeFile   = ""
 ) (
@@ -108,8 +110,8 @@ module voxrt_core
   if (BlockBits < 5 || BlockBits > 24) begin : gen_bad_blocks
     $error("voxrt_core: BlockBits must be 5 to 24 bits");
   end
-  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors)) begin : gen_bad_ray_clocks
-    $error("voxrt_core: RayClocks must be 1, or 4 without Light and Mirrors");
+  if (RayClocks != 1 && (RayClocks != 4 || Light || Mirrors || Lod)) begin : gen_bad_ray_clocks
+    $error("voxrt_core: RayClocks must be 1, or 4 without Light, Mirrors and Lod");
   end
   if (MemoryForm > CachedForm) begin : gen_bad_form
     $error("voxrt_core: MemoryForm must be 0, 1 or 2");
@@ -117,6 +119,10 @@ module voxrt_core
   if (MemoryForm == CachedForm &&
       (L1SetBits < 1 || L1SetBits >= BlockBits || L2SetBits < 1 || L2SetBits >= BlockBits)) begin : gen_bad_sets
     $error("voxrt_core: L1SetBits and L2SetBits must be 1 bit or more, and less than BlockBits");
+  end
+
+  if (Lod && (Light || Mirrors)) begin : gen_bad_lod
+    $error("voxrt_core: Lod does not go with Light or Mirrors");
   end
 
   voxrt_registers_pkg::voxrt_registers__in_t  status;
@@ -171,6 +177,8 @@ module voxrt_core
   end
 
   assign frame.memory_base     = {control.memory_base.address.value, 5'd0};
+  assign frame.lod_words       = control.lod.words.value;
+  assign frame.lod_scale       = control.lod.scale.value;
   assign frame.width           = control.size.width.value;
   assign frame.height          = control.size.height.value;
   assign frame.depth           = control.depth.depth.value;
@@ -226,6 +234,7 @@ module voxrt_core
     .Light       (Light),
     .Mirrors     (Mirrors),
     .RayClocks   (RayClocks),
+    .Lod         (Lod),
     .OctreeFile  (OctreeFile)
   ) u_rtu (
     .clk_i,
@@ -276,6 +285,7 @@ module voxrt_core
   assign status.configuration.cached.next        = MemoryForm == CachedForm;
   assign status.features.light.next              = Light;
   assign status.features.mirrors.next            = Mirrors;
+  assign status.features.lod.next                = Lod;
   assign status.status.busy.next                 = busy;
   assign status.status.frame_done.hwset          = busy_q && !busy && rst_n;
   assign status.status.direction_overflow.hwset  = busy && error.direction_overflow;

@@ -8,7 +8,8 @@ module voxrt_frame
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  parameter bit          Lod          = 1'b0
 ) (
   input  logic   clk_i,
   input  logic   start_i,
@@ -46,6 +47,8 @@ module voxrt_frame
     legal.shading.light   = Light && frame_i.shading.light;
     legal.shading.ambient = Light ? frame_i.shading.ambient : '0;
     legal.shading.bounces = Mirrors ? frame_i.shading.bounces : '0;
+    legal.lod_words       = Lod && frame_i.lod_words;
+    legal.lod_scale       = Lod && frame_i.lod_words ? frame_i.lod_scale : '0;
   end
 
   always_ff @(posedge clk_i) begin

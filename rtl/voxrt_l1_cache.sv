@@ -12,14 +12,16 @@
 // it is read. Each ray waits for one line at most, and comes back, so that a fresh line becomes valid.
 //
 // Prefetch: when a word is a pointer, its ray will want that block when it comes round. It is asked for at once. Such a
-// line comes as valid, unless a ray has asked for it in the meantime: an error can end the ray.
+// line comes as valid, unless a ray has asked for it in the meantime: an error can end the ray. With Lod it is asked for
+// three clocks later, when the lane knows whether the ray goes into the block at all.
 module voxrt_l1_cache
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits = 12,
   parameter int unsigned SetBits   = 5,    // 1 or more.
   parameter int unsigned Ways      = 4,
-  parameter bit          Prefetch  = 1'b1
+  parameter bit          Prefetch  = 1'b1,
+  parameter bit          Lod       = 1'b0
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
@@ -29,16 +31,17 @@ module voxrt_l1_cache
   input  logic                                  read_i,
   input  logic                  [BlockBits+3:0] address_i,        // {line, octant}
   output logic                                  ack_o,
-  output logic      [payload_bits(BlockBits):0] word_o,
+  output logic      [payload_bits(BlockBits, Lod):0] word_o,
+  input  logic                                  stops_i,          // Lod: the ray of the word of three clocks ago hits it.
   // Lines: requests, and answers in any order, each for the set of the one line that is pending there.
   output logic                                  request_valid_o,
   input  logic                                  request_ready_i,
   output logic                    [BlockBits:0] request_line_o,
   input  logic                                  answer_valid_i,   // At any clock.
   input  logic                    [SetBits-1:0] answer_set_i,
-  input  logic [7:0][payload_bits(BlockBits):0] answer_words_i
+  input  logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_i
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned WordBits = PayloadBits + 1;
   localparam int unsigned LineBits = BlockBits + 1;
   localparam int unsigned TagBits1 = LineBits - SetBits;
@@ -56,7 +59,7 @@ module voxrt_l1_cache
   logic [   Ways-1:0][Ways-1:0] newer_q      [Sets];  // [a][b]: a was used after b.
 
   // 1 tags: of the lane's line and of the line to prefetch.
-  logic                read1_q, prefetch_q;
+  logic                read1_q, prefetch, prefetch_waits_q;
   logic [LineBits-1:0] line1_q, prefetch_line_q;
   logic [         2:0] octant1_q;
   logic [ SetBits-1:0] set1, prefetch_set;
@@ -96,7 +99,7 @@ module voxrt_l1_cache
     for (int unsigned w = 0; w < Ways; w++) if (hit_ways[w]) hit_way |= WayBits'(w);
     waits      = read1_q && pending_q[set1] && same1[pending_way_q[set1]];
     wants      = read1_q && !hit && !pending_q[set1];
-    prefetches = prefetch_q && (prefetch_same & valid_q[prefetch_set]) == '0 && !pending_q[prefetch_set];
+    prefetches = prefetch && (prefetch_same & valid_q[prefetch_set]) == '0 && !pending_q[prefetch_set];
     new_line   = wants ? line1_q : prefetch_line_q;
     may_ask    = asked_q != CountBits'(Outstanding);
   end
@@ -186,7 +189,7 @@ module voxrt_l1_cache
     end
   end
 
-  assign idle_o = asked_q == '0 && !read1_q && !prefetch_q;
+  assign idle_o = asked_q == '0 && !read1_q && !points && !prefetch;
 
   // Requests.
   logic unused_request_ready;
@@ -241,14 +244,46 @@ module voxrt_l1_cache
     odd_q      <= {odd_q[0], octant2_q[0]};
     ack_q      <= hit_q[4];
     word_q     <= word4;
-    prefetch_q <= Prefetch && hit_q[4] && !word4[PayloadBits];
     if (!rst_ni) begin
-      read1_q    <= 1'b0;
-      hit_q      <= '0;
-      ack_q      <= 1'b0;
-      prefetch_q <= 1'b0;
+      read1_q <= 1'b0;
+      hit_q   <= '0;
+      ack_q   <= 1'b0;
     end
-    prefetch_line_q <= {1'b0, word4[BlockBits-1:0]};
+  end
+
+  // What a word points to.
+  logic pointer4, points;
+
+  assign pointer4 = Prefetch && hit_q[4] && !word4[PayloadBits];
+
+  if (Lod) begin : gen_lod
+    logic [2:0]           pointer_q;
+    logic [BlockBits-1:0] block_q  [3];
+
+    assign points     = pointer_q != '0;
+    assign prefetch = prefetch_waits_q && !stops_i;
+
+    always_ff @(posedge clk_i) begin
+      pointer_q        <= {pointer_q[1:0], pointer4};
+      block_q          <= '{word4[BlockBits-1:0], block_q[0], block_q[1]};
+      prefetch_waits_q <= pointer_q[2];
+      prefetch_line_q  <= {1'b0, block_q[2]};
+      if (!rst_ni) begin
+        pointer_q        <= '0;
+        prefetch_waits_q <= 1'b0;
+      end
+    end
+  end else begin : gen_at_once
+    logic unused_stops;
+
+    assign unused_stops = stops_i;
+    assign points       = 1'b0;
+    assign prefetch   = prefetch_waits_q;
+
+    always_ff @(posedge clk_i) begin
+      prefetch_waits_q <= pointer4 && rst_ni;
+      prefetch_line_q  <= {1'b0, word4[BlockBits-1:0]};
+    end
   end
 
   assign ack_o  = ack_q;

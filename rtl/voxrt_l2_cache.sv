@@ -16,6 +16,7 @@ module voxrt_l2_cache
   parameter int unsigned Lanes     = 16,
   parameter int unsigned BlockBits = 12,
   parameter int unsigned SetBits   = 9,   // Sets of four lines; less than BlockBits.
+  parameter bit          Lod       = 1'b0,
   parameter int unsigned Misses    = 32   // A power of two.
 ) (
   input  logic                                  clk_i,
@@ -28,21 +29,21 @@ module voxrt_l2_cache
   input  logic      [BlockBits:0]               request_line_i   [Lanes],
   output logic      [Lanes-1:0]                 answer_valid_o,
   output logic      [BlockBits:0]               answer_line_o    [2],  // By pipe.
-  output logic [7:0][payload_bits(BlockBits):0] answer_words_o   [2],
+  output logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_o   [2],
   // External memory.
   output logic                                  fetch_valid_o,
   input  logic                                  fetch_ready_i,
   output logic      [BlockBits:0]               fetch_line_o,
   input  logic                                  fill_valid_i,
   output logic                                  fill_ready_o,
-  input  logic [7:0][payload_bits(BlockBits):0] fill_words_i
+  input  logic [7:0][payload_bits(BlockBits, Lod):0] fill_words_i
 );
   localparam int unsigned Ways = 4;
   localparam int unsigned Pipes = Lanes > 1 ? 2 : 1;
   localparam int unsigned PipeLanes = (Lanes + 1) / 2;
   localparam int unsigned LineBits = BlockBits + 1;
   localparam int unsigned StoredBits = LineBits - SetBits;  // Of a line's number, in the tags.
-  localparam int unsigned LineWidth = 8 * (payload_bits(BlockBits) + 1);
+  localparam int unsigned LineWidth = 8 * (payload_bits(BlockBits, Lod) + 1);
   typedef logic [LineBits-1:0] line_t;
 
   // 0 choose. A lane that is looked up waits for the outcome.

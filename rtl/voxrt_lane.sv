@@ -37,13 +37,14 @@ module voxrt_lane
   parameter int unsigned BlockBits    = 12,
   parameter int unsigned MemoryClocks = 2,
   parameter bit          Light        = 1'b0,
-  parameter bit          Mirrors      = 1'b0
+  parameter bit          Mirrors      = 1'b0,
+  parameter bit          Lod          = 1'b0
 ) (
   input  logic                                            clk_i,
   input  logic                                            rst_ni,
   // Held during a frame.
   input  world_t                                          world_i,
-  input  logic            [payload_bits(BlockBits):0]     root_i,             // A leaf only with Light or Mirrors.
+  input  logic            [payload_bits(BlockBits, Lod):0]     root_i,             // A leaf only with Light or Mirrors.
   input  shading_t                                        shading_i,
   input  light_planes_t                                   light_planes_i,
   // Material table, for mirrors.
@@ -60,7 +61,8 @@ module voxrt_lane
   output logic                                            mem_read_o,
   output logic            [BlockBits+2:0]                 mem_address_o,      // {block, octant}
   input  logic                                            mem_ack_i,
-  input  logic            [payload_bits(BlockBits):0]     mem_word_i,
+  input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
+  output logic                                            mem_stops_o,        // Lod: stage 5, the ray hits its pointer.
   // Reorder buffer. Results of entries that were allocated before, or at this clock.
   output logic                                            allocate_o,         // Only with allocate_ready_i.
   input  logic                                            allocate_ready_i,
@@ -75,7 +77,7 @@ module voxrt_lane
   output logic                                            bad_pointer_o,
   output logic                                            step_limit_o
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned RowBits = row_bits(Light);
 
@@ -85,6 +87,7 @@ module voxrt_lane
   localparam int unsigned Slots = lane_slots(MemoryClocks);
   localparam int unsigned SlotBits = $clog2(Slots);
   localparam int unsigned LevelBits = $clog2(MaxDepth);
+  localparam int unsigned WholeBits = distance_bits(MaxDepth, PositionBits) - FractionBits;
 
   // Corners and sizes count 1 / 2**SubBits voxel.
   localparam int unsigned SubBits = Light ? FractionBits : 0;
@@ -154,6 +157,9 @@ module voxrt_lane
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
+  // With Lod, a ray may stop at a pointer.
+  logic                 stops5;
+  material_t            mean5;
   action_e              action3_q, action4_q, action5_q, action6_q;
   logic [BlockBits-1:0] block3_q;
   material_t            material3_q, material4_q, material5_q, material6_q;
@@ -187,6 +193,8 @@ module voxrt_lane
   decision_t          decision;
   step_t              next_step, step9;
   logic [KeyBits-1:0] time6[3];
+  logic signed [WholeBits-1:0] near2[3];
+  logic        [WholeBits-1:0] reach3;
 
   voxrt_cell_times #(
     .MaxDepth    (MaxDepth),
@@ -211,8 +219,37 @@ module voxrt_lane
     .decision_i  (decision),
     .ray_origin_i(ray_i.origin),
     .key_face_i  (step9.key_face),
-    .time_o      (time6)
+    .time_o      (time6),
+    .near2_o     (near2),
+    .reach3_o    (reach3)
   );
+
+  // 2 to 5: level of detail.
+  if (Lod) begin : gen_lod
+    voxrt_lod #(
+      .LevelBits(LevelBits),
+      .WholeBits(WholeBits)
+    ) u_lod (
+      .clk_i,
+      .pointer_i(active_q[2+Extra] && action == Descend),
+      .mean_i   (word[PayloadBits-1-:8]),
+      .near_i   (near2),
+      .level_i  (level_of(size2)),
+      .reach_i  (reach3),
+      .stops_o  (stops5),
+      .mean_o   (mean5)
+    );
+  end else begin : gen_no_lod
+    logic unused_lod;
+    always_comb begin
+      unused_lod = ^reach3;
+      for (int unsigned a = 0; a < 3; a++) unused_lod ^= ^near2[a];
+    end
+    assign stops5 = 1'b0;
+    assign mean5  = '0;
+  end
+
+  assign mem_stops_o = stops5;
 
   logic [KeyBits-1:0] key_time6_q;
   face_e              key_face6_q;
@@ -220,10 +257,10 @@ module voxrt_lane
   always_ff @(posedge clk_i) begin
     action4_q   <= action3_q;
     action5_q   <= action4_q;
-    action6_q   <= action5_q;
+    action6_q   <= stops5 ? Finish : action5_q;
     material4_q <= material3_q;
     material5_q <= material4_q;
-    material6_q <= material5_q;
+    material6_q <= stops5 ? mean5 : material5_q;
     material7_q <= material6_q;
     material8_q <= material7_q;
     material9_q <= material8_q;

@@ -8,6 +8,7 @@ module voxrt_line_reader
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits   = 12,
+  parameter bit          Lod         = 1'b0,
   parameter int unsigned TimeoutBits = 16
 ) (
   input  logic                                  clk_i,
@@ -15,18 +16,19 @@ module voxrt_line_reader
   input  logic                                  clear_i,          // As voxrt_axi_read_master has them.
   input  logic                                  recover_i,
   input  logic                           [31:0] base_i,           // A multiple of 32, held during a frame.
+  input  logic                                  lod_words_i,      // Held too; see voxrt_word_encoder.
   input  logic                                  request_valid_i,
   output logic                                  request_ready_o,
   input  logic                    [BlockBits:0] request_line_i,   // Signed.
   output logic                                  answer_valid_o,
   input  logic                                  answer_ready_i,
-  output logic [7:0][payload_bits(BlockBits):0] answer_words_o,
+  output logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_o,
   output logic                                  bus_error_o,      // For one clock each.
   output logic                                  bus_timeout_o,
   output axi_read_request_t                     axi_o           [BusPorts],
   input  axi_read_response_t                    axi_i           [BusPorts]
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned UnderWay = 8;
 
   logic [BusPorts-1:0] ready, valid, failed, bus_error, bus_timeout;
@@ -80,8 +82,10 @@ module voxrt_line_reader
     logic [PayloadBits:0] encoded;
 
     voxrt_word_encoder #(
-      .BlockBits(BlockBits)
+      .BlockBits(BlockBits),
+      .Lod      (Lod)
     ) u_encoder (
+      .lod_words_i,
       .word_i(line[answer_port_q][32*w+:32]),
       .word_o(encoded)
     );

@@ -16,25 +16,30 @@ module voxrt_octree_memory
   parameter int unsigned MemoryForm = PrivateForm,
   parameter int unsigned L1SetBits  = 5,
   parameter int unsigned L2SetBits  = 9,
+  parameter bit          Lod        = 1'b0,
   // What private copies hold from the beginning, for $readmemh: row a has word 1 + a, as voxrt_word_encoder encodes it.
   parameter string       File       = ""
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
-  // Report dialect, word addresses, any order, one access per clock; what is written beyond the memory is dropped.
+  // Report dialect or, with lod_words_i, dialect lod; word addresses, any order, one access per clock; what is written beyond the memory is dropped.
   input  logic                             access_i,
   input  logic                             access_write_i,
   input  logic [31:0]                      access_address_i,
   input  logic [31:0]                      access_word_i,
   output logic                             access_valid_o,            // access_word_o is what was read.
   output logic [31:0]                      access_word_o,
-  output logic [payload_bits(BlockBits):0] first_word_o,              // Word 0, if not cached.
+  output logic [payload_bits(BlockBits, Lod):0] first_word_o,              // Word 0, if not cached.
   // Lanes: a word comes memory_clocks(MemoryForm) clocks after its address, {block, octant}, with ack_o or not. In the
   // cached form, word 0 is in block -1.
   input  logic [Lanes-1:0]                 read_i,
   input  logic [BlockBits+3:0]             address_i         [Lanes],
   output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits):0] word_o            [Lanes],
+  output logic [payload_bits(BlockBits, Lod):0] word_o       [Lanes],
+  // Lod: the dialect of the words that are written or, cached, read in a frame; and, cached, which lanes' rays hit the
+  // cells of the pointers that they read three clocks ago.
+  input  logic                             lod_words_i,
+  input  logic [Lanes-1:0]                 stops_i,
   // Cached: see voxrt_cached_memory.
   input  logic                             bus_rst_ni,
   input  logic                             start_i,
@@ -63,7 +68,8 @@ module voxrt_octree_memory
       .Lanes    (Lanes),
       .BlockBits(BlockBits),
       .L1SetBits(L1SetBits),
-      .L2SetBits(L2SetBits)
+      .L2SetBits(L2SetBits),
+      .Lod      (Lod)
     ) u_memory (
       .clk_i,
       .rst_ni,
@@ -72,10 +78,12 @@ module voxrt_octree_memory
       .ready_o,
       .flush_i,
       .base_i,
+      .lod_words_i,
       .read_i,
       .address_i,
       .ack_o,
       .word_o,
+      .stops_i,
       .axi_o,
       .axi_i,
       .events_o
@@ -85,7 +93,7 @@ module voxrt_octree_memory
     logic                   unused_external;
 
     always_comb begin
-      unused_external = &{bus_rst_ni, flush_i, base_i};
+      unused_external = &{bus_rst_ni, flush_i, base_i, stops_i};
       for (int unsigned p = 0; p < BusPorts; p++) unused_external &= ^axi_i[p];
       for (int unsigned i = 0; i < Lanes; i++) begin
         address[i]       = address_i[i][AddressBits-1:0];
@@ -101,6 +109,7 @@ module voxrt_octree_memory
       .Lanes    (Lanes),
       .BlockBits(BlockBits),
       .Banked   (MemoryForm == BankedForm),
+      .Lod      (Lod),
       .File     (File)
     ) u_memory (
       .clk_i,
@@ -109,6 +118,7 @@ module voxrt_octree_memory
       .access_write_i,
       .access_address_i,
       .access_word_i,
+      .lod_words_i,
       .access_valid_o,
       .access_word_o,
       .first_word_o,

@@ -13,6 +13,7 @@ module voxrt_on_chip_memory
   parameter int unsigned Lanes     = 1,
   parameter int unsigned BlockBits = 12,
   parameter bit          Banked    = 1'b0,
+  parameter bit          Lod       = 1'b0,
   parameter string       File      = ""     // As voxrt_octree_memory has it.
 ) (
   input  logic                             clk_i,
@@ -22,16 +23,17 @@ module voxrt_on_chip_memory
   input  logic                             access_write_i,
   input  logic [31:0]                      access_address_i,
   input  logic [31:0]                      access_word_i,
+  input  logic                             lod_words_i,               // Words are of the dialect lod; only with Lod.
   output logic                             access_valid_o,            // access_word_o is what was read.
   output logic [31:0]                      access_word_o,
-  output logic [payload_bits(BlockBits):0] first_word_o,              // Word 0.
+  output logic [payload_bits(BlockBits, Lod):0] first_word_o,              // Word 0.
   // Lanes: a word comes memory_clocks(Banked ? BankedForm : PrivateForm) clocks after its address, {block, octant}, with ack_o or not.
   input  logic [Lanes-1:0]                 read_i,
   input  logic [BlockBits+2:0]             address_i         [Lanes],
   output logic [Lanes-1:0]                 ack_o,
-  output logic [payload_bits(BlockBits):0] word_o            [Lanes]
+  output logic [payload_bits(BlockBits, Lod):0] word_o            [Lanes]
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Clocks = memory_clocks(Banked ? BankedForm : PrivateForm);
 
@@ -41,8 +43,10 @@ module voxrt_on_chip_memory
   logic                   access_q, write_q, first_q, in_memory_q;
 
   voxrt_word_encoder #(
-    .BlockBits(BlockBits)
+    .BlockBits(BlockBits),
+    .Lod      (Lod)
   ) u_encoder (
+    .lod_words_i,
     .word_i(access_word_i),
     .word_o(encoded)
   );
@@ -68,7 +72,8 @@ module voxrt_on_chip_memory
   if (Banked) begin : gen_banked
     voxrt_banked_memory #(
       .Lanes    (Lanes),
-      .BlockBits(BlockBits)
+      .BlockBits(BlockBits),
+      .Lod      (Lod)
     ) u_memory (
       .clk_i,
       .rst_ni,
@@ -113,8 +118,10 @@ module voxrt_on_chip_memory
   end
 
   voxrt_word_decoder #(
-    .BlockBits(BlockBits)
+    .BlockBits(BlockBits),
+    .Lod      (Lod)
   ) u_decoder (
+    .lod_words_i,
     .word_i(first_reads_q[Clocks-1] ? root_q : read_back),
     .word_o(decoded)
   );

@@ -38,6 +38,9 @@ package voxrt_pkg;
   localparam int unsigned PixelDepth = 256;
   localparam int unsigned TagBits = $clog2(PixelDepth) + 1;
 
+  // A ray's reach is its largest component times the frame's lod_scale / 2**LodScaleBits.
+  localparam int unsigned LodScaleBits = 20;
+
   // Shadow rays count positions in 1/32 voxel.
   localparam int unsigned ShadowFractionBits = FractionBits + 1;
   // Reflections are at most 2**BounceBits - 1.
@@ -74,9 +77,10 @@ package voxrt_pkg;
     return larger(max_depth + FractionBits + 1, DirectionBits) + 1;
   endfunction
 
-  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block.
-  function automatic int payload_bits(int block_bits);
-    return larger(block_bits, 9);
+  // Memory words as the lanes read them: bit PayloadBits set = leaf of material [7:0], error in [8]; clear = block, and
+  // with Lod the mean material of what is below in the eight bits under that one.
+  function automatic int payload_bits(int block_bits, bit lod);
+    return larger(block_bits, 9) + (lod ? 8 : 0);
   endfunction
 
   // Forms of the octree memory: the parameter MemoryForm.
@@ -110,6 +114,7 @@ package voxrt_pkg;
   localparam int unsigned PointLimit = DepthLimit + FractionBits;
   localparam int unsigned ShadowPointLimit = DepthLimit + ShadowFractionBits + 2;
   localparam int unsigned RowLimit = row_bits(1'b1);
+  localparam int unsigned ReachLimit = DistanceLimit - FractionBits;
 
   typedef logic [7:0] material_t;
 
@@ -173,6 +178,8 @@ package voxrt_pkg;
     logic [31:0]                root;      // Word address.
     shading_t                   shading;
     logic [2:0][31:0]           light;
+    logic                       lod_words;  // The octree memory is in the dialect lod.
+    logic [LodScaleBits-1:0]    lod_scale;  // 0: rays stop at leaves alone.
   } frame_t;
 
   // The world of a frame; held during it.
@@ -215,13 +222,15 @@ package voxrt_pkg;
     logic [KeyLimit-1:0]           entry_time;
     face_e                         entry_face;
     logic [2:0][DistanceLimit-1:0] origin;      // Signed; 1/32 voxel for shadow rays.
+    logic [ReachLimit-1:0]         reach;       // As voxrt_lod has it.
   } ray_t;
 
   // The weights of a ray go to its lane before it does, into a row that is free.
   typedef struct packed {
-    logic                valid;
-    logic [RowLimit-1:0] row;
-    weights_t            weights;
+    logic                  valid;
+    logic [RowLimit-1:0]   row;
+    weights_t              weights;
+    logic [ReachLimit-1:0] reach;
   } weights_write_t;
 
   typedef struct packed {

@@ -21,6 +21,7 @@ module voxrt_ray_setup
   parameter int unsigned PositionBits = 17,
   parameter int unsigned Lanes        = 1,
   parameter bit          Light        = 1'b0,
+  parameter bit          Lod          = 1'b0,
   parameter int unsigned RayClocks    = 1      // 1, or 4: one multiplier for three axes.
 ) (
   input  logic                                    clk_i,
@@ -29,6 +30,7 @@ module voxrt_ray_setup
   input  world_t                                  world_i,
   input  logic                                    root_leaf_i,      // The whole world is one leaf ...
   input  material_t                               root_material_i,  // ... of this material.
+  input  logic        [LodScaleBits-1:0]          lod_scale_i,      // 0: off.
   // Directions.
   input  logic                                    valid_i,
   output logic                                    ready_o,
@@ -238,6 +240,52 @@ module voxrt_ray_setup
     assign tag11   = '0;
   end
 
+  // 2 to 5: the reach of voxrt_lod, its largest component times the scale, plus one; none where that is beyond all
+  // distances.
+  localparam int unsigned WholeBits = DistanceBits - FractionBits;
+  logic [ReachLimit-1:0] reach11;
+
+  if (Lod) begin : gen_lod
+    localparam int unsigned ProductBits = DirectionBits + LodScaleBits;
+    localparam logic [WholeBits-1:0] NoReach = {1'b1, (WholeBits - 1)'(0)};
+    logic [DirectionBits-1:0] larger_size, largest_q;
+    logic [  ProductBits-1:0] product4;
+    logic [   LodScaleBits:0] reach;
+    logic [    WholeBits-1:0] reach_q[5:Stages];
+
+    assign larger_size = size_q[0] > size_q[1] ? size_q[0] : size_q[1];
+
+    always_ff @(posedge clk_i) if (valid_q[1]) largest_q <= larger_size > size_q[2] ? larger_size : size_q[2];
+
+    voxrt_multiply #(
+      .ABits(DirectionBits),
+      .BBits(LodScaleBits)
+    ) u_reach (
+      .clk_i,
+      .a_i      (largest_q),
+      .b_i      (lod_scale_i),
+      .product_o(product4)
+    );
+
+    assign reach = {1'b0, product4[ProductBits-1-:LodScaleBits]} + 1'b1;
+
+    always_ff @(posedge clk_i) begin
+      if (valid_q[4]) begin
+        reach_q[5] <= lod_scale_i == '0 || 32'(reach) >= 32'(NoReach) ? NoReach : WholeBits'(reach);
+      end
+      for (int unsigned s = 6; s <= Stages; s++) if (valid_q[s-1]) reach_q[s] <= reach_q[s-1];
+    end
+
+    logic unused_product;
+    assign unused_product = ^product4[DirectionBits-1:0];
+
+    assign reach11 = ReachLimit'(reach_q[11]);
+  end else begin : gen_no_lod
+    logic unused_scale;
+    assign unused_scale = ^lod_scale_i;
+    assign reach11      = '0;
+  end
+
   // 4, 5, 6: plane 0.
   logic signed [TimeBits-1:0] near_time[3];
 
@@ -372,6 +420,7 @@ module voxrt_ray_setup
     ray_o.octant     = past_middle_q[11];
     ray_o.entry_time = KeyLimit'(entry_time_key_q[11]);
     ray_o.entry_face = entry_face_q[11];
+    ray_o.reach      = reach11;
     for (int unsigned a = 0; a < 3; a++) begin
       weights_o[a]    = weight_q[11][a];
       ray_o.origin[a] = DistanceLimit'(mirrored_q[11][a] ? mirrored_world_origin[a] : world_origin[a]);

@@ -1,5 +1,5 @@
-// Issues the rays of a frame to the lanes, one per RayClocks clocks. Rays of the camera go to the lanes in turn, each when its
-// lane has a credit; shadow rays (Light) go first, at any clock: their places in the queue are reserved already.
+// Issues the rays of a frame to the lanes, one per RayClocks clocks. Rays of the camera go to the lanes in turn, each when
+// its lane has a credit; shadow rays (Light) go first, at any clock: their places in the queue are reserved already.
 module voxrt_rays
   import voxrt_pkg::*;
 #(
@@ -7,6 +7,7 @@ module voxrt_rays
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter bit          Light        = 1'b0,
+  parameter bit          Lod          = 1'b0,
   parameter bit          Strips       = 1'b0,  // Rays in strips, not line by line.
   parameter int unsigned RayClocks    = 1
 ) (
@@ -17,6 +18,7 @@ module voxrt_rays
   input  world_t                  world_i,
   input  logic                    root_leaf_i,
   input  material_t               root_material_i,
+  input  logic [LodScaleBits-1:0] lod_scale_i,
   // Lanes that have a credit; the lane that a ray is issued to, which takes one.
   input  logic        [Lanes-1:0] credit_i,
   output logic        [Lanes-1:0] issue_o,          // One-hot or 0.
@@ -81,6 +83,7 @@ module voxrt_rays
     .PositionBits(PositionBits),
     .Lanes       (Lanes),
     .Light       (Light),
+    .Lod         (Lod),
     .RayClocks   (RayClocks)
   ) u_ray_setup (
     .clk_i,
@@ -88,6 +91,7 @@ module voxrt_rays
     .world_i,
     .root_leaf_i,
     .root_material_i,
+    .lod_scale_i,
     .valid_i    (issues || shadow_valid_i),
     .ready_o    (setup_ready),
     .lane_i     (shadow_valid_i ? shadow_lane_i : next_lane_q),

@@ -11,7 +11,7 @@
 // words of the octree that are written. busy_o falls when the last pixel has been accepted. A frame may be started
 // before its pixels can be accepted: pixel_ready_i may be low at any time.
 //
-// Light and Mirrors build the shader's features in: docs/shading.md.
+// Light and Mirrors build the shader's features in: docs/shading.md. Lod builds the level of detail in: docs/lod.md.
 module voxrt_rtu
   import voxrt_pkg::*;
 #(
@@ -25,6 +25,7 @@ module voxrt_rtu
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter int unsigned RayClocks    = 1,
+  parameter bit          Lod          = 1'b0,
   parameter string       OctreeFile   = ""
 ) (
   input  logic            clk_i,
@@ -55,7 +56,7 @@ module voxrt_rtu
   output error_t          error_o,
   output counters_t       counters_o
 );
-  localparam int unsigned PayloadBits = payload_bits(BlockBits);
+  localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
   // Rays that are neighbours find lines in the caches. A pixel's detail is too wide for a buffer of strips.
@@ -81,7 +82,8 @@ module voxrt_rtu
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Light       (Light),
-    .Mirrors     (Mirrors)
+    .Mirrors     (Mirrors),
+    .Lod         (Lod)
   ) u_frame (
     .clk_i,
     .start_i(start),
@@ -91,7 +93,7 @@ module voxrt_rtu
   );
 
   // Octree memory. Lane 0's read port finds the root before the frame's rays start.
-  logic [      Lanes-1:0] lane_read, memory_read, word_valid;
+  logic [      Lanes-1:0] lane_read, memory_read, word_valid, lane_stops;
   logic [AddressBits-1:0] lane_address[Lanes];
   logic [  AddressBits:0] memory_address[Lanes], root_address;
   logic                   memory_ready;
@@ -114,6 +116,7 @@ module voxrt_rtu
     .MemoryForm(MemoryForm),
     .L1SetBits (L1SetBits),
     .L2SetBits (L2SetBits),
+    .Lod       (Lod),
     .File      (OctreeFile)
   ) u_memory (
     .clk_i,
@@ -129,6 +132,8 @@ module voxrt_rtu
     .address_i   (memory_address),
     .ack_o       (word_valid),
     .word_o      (word),
+    .lod_words_i (MemoryForm == CachedForm ? frame.lod_words : frame_i.lod_words),
+    .stops_i     (lane_stops),
     .bus_rst_ni,
     .start_i     (start),
     .ready_o     (memory_ready),
@@ -142,6 +147,7 @@ module voxrt_rtu
   voxrt_root #(
     .BlockBits   (BlockBits),
     .MemoryClocks(memory_clocks(MemoryForm)),
+    .Lod         (Lod),
     .ReadsFirst  (MemoryForm == CachedForm)
   ) u_root (
     .clk_i,
@@ -198,6 +204,7 @@ module voxrt_rtu
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Light       (Light),
+    .Lod         (Lod),
     .Strips      (Strips),
     .RayClocks   (RayClocks)
   ) u_rays (
@@ -207,6 +214,7 @@ module voxrt_rtu
     .world_i        (world),
     .root_leaf_i    (ResolvesRoot && root[PayloadBits]),
     .root_material_i(!ResolvesRoot || root[8] ? '0 : root[7:0]),
+    .lod_scale_i    (frame.lod_scale),
     .credit_i       (credit),
     .issue_o        (issue),
     .shadow_valid_i (shadow_valid),
@@ -283,7 +291,8 @@ module voxrt_rtu
       .RayDepth    (RayDepth),
       .CreditClocks(CreditClocks),
       .Light       (Light),
-      .Mirrors     (Mirrors)
+      .Mirrors     (Mirrors),
+      .Lod         (Lod)
     ) u_lane (
       .clk_i,
       .rst_ni,
@@ -302,6 +311,7 @@ module voxrt_rtu
       .mem_address_o    (lane_address[i]),
       .mem_ack_i        (word_valid[i]),
       .mem_word_i       (word[i]),
+      .mem_stops_o      (lane_stops[i]),
       .hit_point_valid_o(hit_point_valid[i]),
       .hit_point_ready_i(hit_point_ready[i]),
       .hit_point_o      (hit_point[i]),

@@ -14,7 +14,7 @@ from ..board.scene import Scene, frame_period
 
 _COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _WORD = re.compile(rb"[0-9A-Fa-f]{1,8}")
-_DIALECT_TAGS = {"report": 0xFFFFFF00, "seed-rtl": 0xFFFFFFF0, "msb": 0x80000000}
+_DIALECT_TAGS = {"report": 0xFFFFFF00, "seed-rtl": 0xFFFFFFF0, "msb": 0x80000000, "lod": 0xFFFFFF00}
 
 
 def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
@@ -52,6 +52,9 @@ def read_mem_files(name: str, mem: bytes, manifest: bytes) -> Scene:
         raise Refused(f"{name}.mem has a word that is not 8 hex digits; build the scene again")
     words = np.array([int(token, 16) for token in tokens], dtype=np.uint32)
     tag = _DIALECT_TAGS[dialect]
+    if dialect == "lod":  # the mean materials are left out: no board shows them
+        pointers = np.minimum(8 * (words >> 8).astype(np.uint64) + 1, 0x7FFFFFFF).astype(np.uint32)
+        words = np.where(words >> 8 == 0xFFFFFF, words, pointers)
     leaf = words >> 31 == 1
     words[leaf] = words[leaf] & np.uint32(~tag & 0xFF) | np.uint32(0xFFFFFF00)
     return Scene(name, depth, words, colours, mirrors, roots=roots, period=period)

@@ -53,6 +53,8 @@ class Memory:
         ambient: int = 0,
         bounces: int = 0,
         mirrors: NDArray[np.uint8] | None = None,
+        means: NDArray[np.uint8] | None = None,
+        lod_scale: int = 0,
         seconds: float = ...,
         stop: Stop | None = None,
     ) -> RenderedPixels: ...

@@ -31,7 +31,7 @@ class Tracer:
     def position_limit(self) -> int: ...
     @property
     def light_limit(self) -> int: ...
-    def load(self, words: NDArray[np.uint32], *, through_port: bool = False) -> None: ...
+    def load(self, words: NDArray[np.uint32], *, lod_words: bool = False, through_port: bool = False) -> None: ...
     def read_back(self, count: int) -> NDArray[np.uint32]: ...
     def render(
         self,
@@ -47,6 +47,7 @@ class Tracer:
         ambient: int = 0,
         bounces: int = 0,
         mirrors: NDArray[np.uint8] | None = None,
+        lod_scale: int = 0,
         root: int = 0,
         stall_seed: int = 0,
         latency: int = 50,

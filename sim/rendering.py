@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from voxrt.octree import Rom, frame_octree
+from voxrt.octree import Rom, encode, frame_octree
 from voxrt.octree.camera import (
     BOUNCE_LIMIT,
     DIRECTION_LIMIT,
     PLAIN_LIGHTING,
     POSITION_UNITS,
     SAMPLES,
+    lod_scale,
     sample_cameras,
 )
 from voxrt.sim import _model
@@ -75,6 +76,7 @@ def render(
     config: str = "tiny",
     dram: Dram | None = None,
     root: int = 0,
+    lod: bool = False,
 ) -> Frame:
     """Render a frame.
 
@@ -105,6 +107,9 @@ def render(
     root
         The word of the memory that is the root of what is rendered: the register ``root``. The frames of an animation
         (:class:`~voxrt.octree.Animation`) have roots of their own.
+    lod
+        Stop rays at cells that are not wider than a pixel. The memory needs mean materials:
+        :func:`~voxrt.octree.with_means`. Not with a light or mirrors.
 
     Returns
     -------
@@ -118,8 +123,8 @@ def render(
     NoSuchConfigurationError
         The installation has no ray tracer of that configuration.
     SimulatorError
-        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading. A
-        direction or the light is out of range.
+        The ray tracer is not in this installation, cannot hold the memory or the camera, or has no such shading or no
+        level of detail. A direction or the light is out of range. The memory has no mean materials.
 
     Examples
     --------
@@ -137,9 +142,12 @@ def render(
         raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     root = whole("root", root, 0, len(rom.octree.words) - 1)
+    _check_lod(rom, lighting, lod=lod)
     return join_samples(
         [
-            _render_one(rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram, root=root)
+            _render_one(
+                rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=dram, root=root, lod=lod
+            )
             for one in cameras
         ],
         background,
@@ -158,12 +166,13 @@ def check(
     config: str = "tiny",
     dram: Dram | None = None,
     root: int = 0,
+    lod: bool = False,
 ) -> EngineCheck:
     """Render with both engines and compare every sample of every pixel.
 
     Parameters
     ----------
-    rom, camera, size, lighting, samples, background, threads, config, dram, root
+    rom, camera, size, lighting, samples, background, threads, config, dram, root, lod
         As for :func:`render`.
 
     Returns
@@ -187,14 +196,17 @@ def check(
     """
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     root = whole("root", root, 0, len(rom.octree.words) - 1)
-    rtl = [
-        _render_one(rom, one, size, lighting, engine="rtl", threads=threads, config=config, dram=dram, root=root)
-        for one in cameras
-    ]
-    model = [
-        _render_one(rom, one, size, lighting, engine="model", threads=threads, config=config, dram=None, root=root)
-        for one in cameras
-    ]
+    _check_lod(rom, lighting, lod=lod)
+    hardware: Engine = "rtl"
+    rtl, model = (
+        [
+            _render_one(
+                rom, one, size, lighting, engine=engine, threads=threads, config=config, dram=memory, root=root, lod=lod
+            )
+            for one in cameras
+        ]
+        for engine, memory in ((hardware, dram), ("model", None))
+    )
     wrong = np.any([_apart(hardware, exact) for hardware, exact in zip(rtl, model, strict=True)], axis=0)
     return EngineCheck(rtl=join_samples(rtl, background), model=join_samples(model, background), wrong=wrong)
 
@@ -233,11 +245,15 @@ def _render_one(
     config: str,
     dram: Dram | None,
     root: int,
+    lod: bool,
 ) -> Frame:
+    scale = lod_scale(camera) if lod else 0
     if engine == "model":
         shown = replace(rom, octree=frame_octree(rom.octree, root))
-        return _render_model(shown, camera, size, lighting, whole("threads", threads, 0, 1024))
-    return _render_rtl(rom, camera, size, lighting, config=text("config", config), dram=dram, root=root)
+        return _render_model(shown, camera, size, lighting, threads=whole("threads", threads, 0, 1024), scale=scale)
+    return _render_rtl(
+        rom, camera, size, lighting, config=text("config", config), dram=dram, root=root, scale=scale, lod=lod
+    )
 
 
 def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
@@ -246,7 +262,9 @@ def _apart(one: Frame, other: Frame) -> NDArray[np.bool_]:
     return apart
 
 
-def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, threads: int) -> Frame:
+def _render_model(
+    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, threads: int, scale: int
+) -> Frame:
     started = time.perf_counter()
     pixels = _model.Memory(rom.octree.words, rom.octree.depth).render(
         palette_of(rom),
@@ -255,6 +273,8 @@ def _render_model(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lig
         size[1],
         threads,
         **shading_of(rom, lighting),
+        means=rom.octree.means if scale else None,
+        lod_scale=scale,
     )
     return Frame(
         colour=pixels.colour,
@@ -275,7 +295,7 @@ def shader_features(config: str) -> frozenset[str]:
     Returns
     -------
     frozenset[str]
-        Some of ``"light"`` and ``"mirrors"``.
+        Some of ``"light"``, ``"mirrors"`` and ``"lod"``.
 
     Raises
     ------
@@ -300,7 +320,16 @@ def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be 
 
 
 def _render_rtl(
-    rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, *, config: str, dram: Dram | None, root: int
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    lighting: Lighting,
+    *,
+    config: str,
+    dram: Dram | None,
+    root: int,
+    scale: int,
+    lod: bool,
 ) -> Frame:
     started = time.perf_counter()
     _rtl = _ray_tracer(config)
@@ -309,6 +338,11 @@ def _render_rtl(
         raise SimulatorError(
             f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
             "take configuration 'lit' or render with --engine model"
+        )
+    if lod and "lod" not in shader_features(config):
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} is built without level of detail; take one with caches, such as "
+            "'cached1', or render with --engine model"
         )
     place = tuple(value / POSITION_UNITS for value in camera.position)
     for misfit, problem in (
@@ -334,7 +368,8 @@ def _render_rtl(
             "take one with caches, such as 'cached4'"
         )
     memory = Dram() if dram is None else dram
-    tracer.load(rom.octree.words)
+    words = encode(rom.octree.words, "lod", rom.octree.means) if lod else rom.octree.words
+    tracer.load(words, lod_words=lod)
     pixels = tracer.render(
         registers_of(camera),
         size[0],
@@ -346,6 +381,7 @@ def _render_rtl(
         interval=memory.interval,
         jitter=memory.jitter,
         dram_seed=memory.seed,
+        lod_scale=scale,
         root=root,
     )
     if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
@@ -382,6 +418,15 @@ def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
             f"the camera's directions reach {largest} at the frame's corners, which is not below 2**20; "
             "scale look, right and up down together"
         )
+
+
+def _check_lod(rom: Rom, lighting: Lighting, *, lod: bool) -> None:
+    if not lod:
+        return
+    if lighting.on or lighting.bounces:
+        raise SimulatorError("level of detail does not go with a light or mirrors; render without them, or without lod")
+    if rom.octree.means is None:
+        raise SimulatorError(f"{rom.name} has no mean materials; build it with --lod")
 
 
 def _check_lighting(lighting: Lighting) -> None:

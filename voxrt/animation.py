@@ -115,6 +115,9 @@ def build_animation(
     with clock.stage("octree"):
         tree, roots = octree.join_frames(made.octrees())
     rom = octree.Rom(files.name, tree, scenes.union.materials, grid)
+    if options.lod or options.dialect == "lod":
+        with clock.stage("lod"):
+            rom = octree.with_means(rom, roots)
     animation = Animation(
         tuple(
             AnimationFrame(root, words, take.options.time, take.name)

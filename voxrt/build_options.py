@@ -21,7 +21,7 @@ Geometry: TypeAlias = Literal["auto", "render", "collider"]
 Pow2: TypeAlias = Literal["box", "none"]
 UpAxis: TypeAlias = Literal["x", "y", "z"]
 Engine: TypeAlias = Literal["rtl", "model"]
-Dialect: TypeAlias = Literal["report", "seed-rtl", "msb"]
+Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
 
 DEFAULT_DEPTH = 7
 """Levels of the octree if neither they nor the size of a voxel are given."""
@@ -99,7 +99,10 @@ class BuildOptions:
         Python, also the name of a board: its memory is the budget.
     dialect
         How the ``.mem`` file encodes materials. ``"report"``: for the hardware of this project. ``"seed-rtl"``: for the
-        published bitstreams of the original system. ``"msb"``: for its C++ program.
+        published bitstreams of the original system. ``"msb"``: for its C++ program. ``"lod"``: that of `lod`.
+    lod
+        Level of detail: write mean materials too, in the dialect ``lod``. Then pictures of far views can be rendered
+        with fewer words.
     preview
         Render a picture of the whole scene, with the scene's own light if it has one. It goes to the given PNG file,
         or to ``NAME.preview.png`` in the output folder. In Python, True asks for the latter.
@@ -165,6 +168,7 @@ class BuildOptions:
     bake_samples: int = 64
     budget: int | str | None = None
     dialect: Dialect = "report"
+    lod: bool = False
     preview: str | PathLike[str] | bool = False
     size: tuple[int, int] = PREVIEW_SIZE
     camera: str | None = None
@@ -205,6 +209,7 @@ class BuildKeywords(TypedDict, total=False):
     bake_samples: int
     budget: int | str | None
     dialect: Dialect
+    lod: bool
     preview: str | PathLike[str] | bool
     size: tuple[int, int]
     camera: str | None
@@ -254,6 +259,8 @@ def _checked(given: BuildOptions) -> dict[str, object]:
 
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
+    if given.lod is True and given.dialect not in ("report", "lod"):
+        raise ValueError(f"lod has its own dialect, and {given.dialect} has no mean materials; leave one of them out")
 
     def budget(name: str, value: object) -> int | str:
         if not isinstance(value, str):
@@ -285,6 +292,7 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "bake_samples": lambda name, value: whole(name, value, 1, 4096),
         "budget": budget,
         "dialect": lambda name, value: choice(name, value, get_args(Dialect)),
+        "lod": flag,
         "preview": lambda name, value: value if isinstance(value, str | PathLike) else flag(name, value),
         "size": _pixels,
         "camera": text,

@@ -86,7 +86,7 @@ def write_build(files: OutputFiles, result: BuildResult, options: BuildOptions) 
                 result.rom,
                 stem=files.words.stem,
                 suffix=files.words.suffix,
-                dialect=options.dialect,
+                dialect="lod" if options.lod else options.dialect,
                 objects=result.objects,
                 warnings=result.warnings,
                 seconds=result.seconds,

@@ -69,6 +69,7 @@ def render(
     threads: int = 0,
     dram: Dram | None = None,
     root: int = 0,
+    lod: bool = False,
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -98,6 +99,8 @@ def render(
         The external memory of a configuration that has caches. None takes the default of :class:`voxrt.sim.Dram`.
     root
         The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.
+    lod
+        Level of detail: rays stop at cells that are not wider than a pixel. The memory is built with ``lod=True``.
 
     Returns
     -------
@@ -133,6 +136,7 @@ def render(
         threads=threads,
         dram=dram,
         root=root,
+        lod=lod,
     )
 
 

@@ -117,6 +117,9 @@ def build(
         refuse_empty(asset_label(asset), grid, voxelization)
     rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
+    if options.lod or options.dialect == "lod":
+        with clock.stage("lod"):
+            rom = octree.with_means(rom)
     view, lighting, unseen = authored_view(scene, rom, options)
     warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
     refuse_warnings(asset, warnings, options)

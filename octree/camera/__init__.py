@@ -6,6 +6,7 @@ Needs NumPy and Python 3.10 alone: the boards' own package takes this folder too
 from .aim import FIELD_OF_VIEW, THREE_QUARTER, eye_that_sees, focal_length, frame_points, frame_world, look_at, refit
 from .camera import DIRECTION_LIMIT, POSITION_UNITS, Camera, Triple, camera_from_registers, pixel_directions
 from .lighting import BOUNCE_LIMIT, FACES, FEATURES, PLAIN_LIGHTING, Faces, Lighting, Shading
+from .lod import LOD_SCALE_BITS, lod_scale
 from .samples import SAMPLES, average_cut_out, average_samples, sample_cameras
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "FACES",
     "FEATURES",
     "FIELD_OF_VIEW",
+    "LOD_SCALE_BITS",
     "PLAIN_LIGHTING",
     "POSITION_UNITS",
     "SAMPLES",
@@ -30,6 +32,7 @@ __all__ = [
     "focal_length",
     "frame_points",
     "frame_world",
+    "lod_scale",
     "look_at",
     "pixel_directions",
     "refit",

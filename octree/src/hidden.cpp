@@ -16,6 +16,9 @@ constexpr Node kSolid = leaf(1);
 constexpr unsigned kBrickLevel = 3;
 constexpr unsigned kCentre = 13;
 
+// Which voxels around a solid one must be solid for it to be found.
+enum class Around { all, faces };
+
 // An octant and the 26 around it, x fastest: nodes of one level.
 using Neighbourhood = std::array<Node, 27>;
 
@@ -54,8 +57,19 @@ public:
                   (static_cast<int>(i / 9) - 1) * side_});
     }
 
-    // Bit z + 1 of element 8 * x + y: voxel (x, y, z) of the brick and all around it are solid.
-    std::array<std::uint16_t, 64> interior() const {
+    // Bit z + 1 of element 8 * x + y: voxel (x, y, z) of the brick and those around it are solid.
+    std::array<std::uint16_t, 64> interior(Around around) const {
+        std::array<std::uint16_t, 64> result{};
+        if (around == Around::faces) {
+            for (int x = 0; x < side_; ++x)
+                for (int y = 0; y < side_; ++y) {
+                    const std::uint16_t own = rows_[row(x + 1, y + 1)];
+                    result[static_cast<std::size_t>(8 * x + y)] = own & own << 1 & own >> 1 & rows_[row(x, y + 1)] &
+                                                                  rows_[row(x + 2, y + 1)] & rows_[row(x + 1, y)] &
+                                                                  rows_[row(x + 1, y + 2)];
+                }
+            return result;
+        }
         std::array<std::uint16_t, kRows> z_done;
         for (unsigned i = 0; i < kRows; ++i)
             z_done[i] = rows_[i] & rows_[i] << 1 & rows_[i] >> 1;
@@ -63,7 +77,6 @@ public:
         for (int x = 0; x < side_ + 2; ++x)
             for (int y = 1; y <= side_; ++y)
                 y_done[row(x, y)] = z_done[row(x, y - 1)] & z_done[row(x, y)] & z_done[row(x, y + 1)];
-        std::array<std::uint16_t, 64> result{};
         for (int x = 0; x < side_; ++x)
             for (int y = 0; y < side_; ++y)
                 result[static_cast<std::size_t>(8 * x + y)] =
@@ -109,8 +122,9 @@ private:
 
 class HiddenFinder {
 public:
-    explicit HiddenFinder(const BlockPool& solid)
-        : solid_(solid), cache_bits_(cache_bits(solid.size())), cache_(std::size_t{1} << cache_bits_) {}
+    HiddenFinder(const BlockPool& solid, Around around)
+        : solid_(solid), wanted_(around), cache_bits_(cache_bits(solid.size())), cache_(std::size_t{1} << cache_bits_) {
+    }
 
     std::vector<Word> words(Node root, unsigned depth) {
         Neighbourhood world;
@@ -142,7 +156,7 @@ private:
             return entry.node;
         Node node;
         if (level <= kBrickLevel) {
-            node = brick(Halo(solid_, around, level).interior(), level);
+            node = brick(Halo(solid_, around, level).interior(wanted_), level);
         } else {
             Block children;
             for (unsigned octant = 0; octant < 8; ++octant)
@@ -198,6 +212,7 @@ private:
     }
 
     const BlockPool& solid_;
+    const Around wanted_;
     BlockPool pool_;
     BrickBuilder bricks_{pool_};
     unsigned cache_bits_;
@@ -205,13 +220,17 @@ private:
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
-} // namespace
-
-std::vector<Word> hidden_voxels(const Memory& memory) {
+std::vector<Word> voxels_within(const Memory& memory, Around around) {
     BlockPool solid;
     const Node root = Solidity(memory, solid).node(memory.root(), memory.depth);
-    return HiddenFinder(solid).words(root, memory.depth);
+    return HiddenFinder(solid, around).words(root, memory.depth);
 }
+
+} // namespace
+
+std::vector<Word> hidden_voxels(const Memory& memory) { return voxels_within(memory, Around::all); }
+
+std::vector<Word> covered_voxels(const Memory& memory) { return voxels_within(memory, Around::faces); }
 
 std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, const Memory& hidden, unsigned level) {
     std::unordered_map<std::uint64_t, std::uint64_t> pairs{{std::uint64_t{memory.root()} << 32 | hidden.root(), 1}};

@@ -9,6 +9,7 @@
 #include "hidden.h"
 #include "interior.h"
 #include "leaves.h"
+#include "means.h"
 #include "mem_text.h"
 #include "query.h"
 #include "regions.h"
@@ -264,6 +265,18 @@ nb::object bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidd
     return words_to_numpy(run([&] { return share_hidden(memory, hidden_memory); }));
 }
 
+nb::object bind_mean_materials(const Vector<Word>& words, unsigned depth, const Rows<std::uint16_t, 3>& light) {
+    require(light.shape(0) <= 256, "light must have 256 rows at most");
+    const Memory memory = memory_of(words, depth);
+    std::vector<LinearLight> materials(light.shape(0));
+    for (std::size_t id = 0; id < materials.size(); ++id)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            materials[id][channel] = light(id, channel);
+    std::vector<std::uint8_t> means = run([&] { return mean_materials(memory, materials); });
+    const std::size_t count = means.size();
+    return to_read_only_numpy(std::move(means), {count});
+}
+
 nb::bytes bind_mem_text(const Vector<Word>& words, int threads) {
     const std::size_t count = words.shape(0);
     PyObject* text = PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(kMemLine * count));
@@ -357,6 +370,7 @@ NB_MODULE(_native, m) {
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
     m.def("fit_bricks", &bind_fit_bricks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
           "same_axis"_a.noconvert(), "other_axis"_a.noconvert(), "occlusion"_a.noconvert(), "limit"_a);
+    m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
     m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);
     m.def("mem_text_crc32", &bind_mem_text_crc32, "words"_a.noconvert(), "before"_a = 0, "threads"_a = 0);
     m.def("read_mem_text", &bind_read_mem_text, "text"_a);

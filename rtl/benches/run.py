@@ -62,6 +62,11 @@ BUILDS = {
         narrow=True,
         repeats=True,
     ),
+    "lod": Build(
+        CORE,
+        {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Lod": 1},
+        ("bench_lod",),
+    ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
     "free_list": Build("voxrt_free_list", {"RowBits": 5}, ("bench_free_list",)),

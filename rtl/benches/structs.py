@@ -50,7 +50,7 @@ class Struct:
         return fields
 
 
-DISTANCE, KEY, POINT, SHADOW_POINT, SCAN, WEIGHT = 33, 62, 20, 23, 29, 40
+DISTANCE, KEY, POINT, SHADOW_POINT, SCAN, WEIGHT, REACH = 33, 62, 20, 23, 29, 40, 29
 WORLD = Struct(origin=(3, DISTANCE), mirrored_origin=(3, DISTANCE), depth=5, side=17, outside_mask=16)
 RASTER = Struct(start=1, corner=1, line_step=(3, SCAN), right=(3, 16), width=12, height=12)
 # Brightness: by {looks along +axis, axis}.
@@ -70,8 +70,9 @@ RAY = Struct(
     entry_time=KEY,
     entry_face=2,
     origin=(3, DISTANCE),
+    reach=REACH,
 )
-WEIGHTS_WRITE = Struct(valid=1, row=6, weights=(3, WEIGHT))
+WEIGHTS_WRITE = Struct(valid=1, row=6, weights=(3, WEIGHT), reach=REACH)
 ROW_FREE = Struct(valid=1, row=6)
 HIT_POINT = Struct(tag=9, face=2, mirrored=3, point=(3, POINT))
 SHADOW_RAY = Struct(tag=9, point=(3, SHADOW_POINT), direction=(3, SCAN))

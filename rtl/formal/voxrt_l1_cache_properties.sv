@@ -19,7 +19,7 @@ module voxrt_l1_cache_properties
   input logic                                  request_ready_i,
   input logic                                  answer_i,
   input logic                    [SetBits-1:0] answer_set_i,
-  input logic [7:0][payload_bits(BlockBits):0] answer_words_i
+  input logic [7:0][payload_bits(BlockBits, 1'b0):0] answer_words_i
 );
   localparam int unsigned LineBits = BlockBits + 1;
   localparam int unsigned Rays = 3;
@@ -29,7 +29,7 @@ module voxrt_l1_cache_properties
   logic                        idle_o, read, ack_o, request_valid_o;
   logic      [BlockBits+3:0]   address;
   logic      [LineBits-1:0]    request_line_o;
-  logic [payload_bits(BlockBits):0] word_o;
+  logic [payload_bits(BlockBits, 1'b0):0] word_o;
 
   voxrt_l1_cache #(
     .BlockBits(BlockBits),
@@ -44,6 +44,7 @@ module voxrt_l1_cache_properties
     .address_i      (address),
     .ack_o,
     .word_o,
+    .stops_i        (1'b0),
     .request_valid_o,
     .request_ready_i,
     .request_line_o,
@@ -87,7 +88,7 @@ module voxrt_l1_cache_properties
 
   // The memory: a word of it, which is followed; all other words may be anything else.
   logic [BlockBits+3:0]             target;
-  logic [payload_bits(BlockBits):0] target_word;
+  logic [payload_bits(BlockBits, 1'b0):0] target_word;
   always_ff @(posedge clk_i) begin
     target      <= target;
     target_word <= target_word;

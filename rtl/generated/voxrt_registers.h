@@ -20,7 +20,7 @@ extern "C" {
 #define VOXRT_REGISTERS__VERSION__MINOR_bm 0xff
 #define VOXRT_REGISTERS__VERSION__MINOR_bp 0
 #define VOXRT_REGISTERS__VERSION__MINOR_bw 8
-#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x3
+#define VOXRT_REGISTERS__VERSION__MINOR_reset 0x4
 #define VOXRT_REGISTERS__VERSION__MAJOR_bm 0xff00
 #define VOXRT_REGISTERS__VERSION__MAJOR_bp 8
 #define VOXRT_REGISTERS__VERSION__MAJOR_bw 8
@@ -131,6 +131,9 @@ extern "C" {
 #define VOXRT_REGISTERS__FEATURES__FACES_bp 3
 #define VOXRT_REGISTERS__FEATURES__FACES_bw 1
 #define VOXRT_REGISTERS__FEATURES__FACES_reset 0x1
+#define VOXRT_REGISTERS__FEATURES__LOD_bm 0x10
+#define VOXRT_REGISTERS__FEATURES__LOD_bp 4
+#define VOXRT_REGISTERS__FEATURES__LOD_bw 1
 
 // reg - voxrt_registers::position_reg
 #define VOXRT_REGISTERS__POSITION_REG__VALUE_bm 0xffffffff
@@ -176,6 +179,16 @@ extern "C" {
 #define VOXRT_REGISTERS__ROOT__ADDRESS_bp 0
 #define VOXRT_REGISTERS__ROOT__ADDRESS_bw 32
 #define VOXRT_REGISTERS__ROOT__ADDRESS_reset 0x0
+
+// reg - voxrt_registers::lod
+#define VOXRT_REGISTERS__LOD__SCALE_bm 0xfffff
+#define VOXRT_REGISTERS__LOD__SCALE_bp 0
+#define VOXRT_REGISTERS__LOD__SCALE_bw 20
+#define VOXRT_REGISTERS__LOD__SCALE_reset 0x0
+#define VOXRT_REGISTERS__LOD__WORDS_bm 0x80000000
+#define VOXRT_REGISTERS__LOD__WORDS_bp 31
+#define VOXRT_REGISTERS__LOD__WORDS_bw 1
+#define VOXRT_REGISTERS__LOD__WORDS_reset 0x0
 
 // reg - voxrt_registers::lower_faces
 #define VOXRT_REGISTERS__LOWER_FACES__X_bm 0xff
@@ -241,7 +254,7 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t stalls;
     uint32_t shading;
     uint32_t root;
-    uint8_t RESERVED_7c_7f[0x4];
+    uint32_t lod;
     uint32_t light[3];
     uint8_t RESERVED_8c_8f[0x4];
     uint32_t lower_faces;

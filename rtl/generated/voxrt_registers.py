@@ -68,6 +68,7 @@ REGISTERS = {
             "light": (1, 1),
             "mirrors": (2, 1),
             "faces": (3, 1),
+            "lod": (4, 1),
         },
     ),
     "position[0]": (
@@ -186,6 +187,13 @@ REGISTERS = {
         0x078,
         {
             "address": (0, 32),
+        },
+    ),
+    "lod": (
+        0x07C,
+        {
+            "scale": (0, 20),
+            "words": (31, 1),
         },
     ),
     "light[0]": (

@@ -256,6 +256,7 @@ module voxrt_registers (
         logic stalls;
         logic shading;
         logic root;
+        logic lod;
         logic light[3];
         logic lower_faces;
         logic upper_faces;
@@ -336,6 +337,8 @@ module voxrt_registers (
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h74);
         decode_reg_strb.root = cpuif_req_masked & (cpuif_addr == 11'h78);
         is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h78);
+        decode_reg_strb.lod = cpuif_req_masked & (cpuif_addr == 11'h7c);
+        is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h7c);
         for(int i0=0; i0<3; i0++) begin
             decode_reg_strb.light[i0] = cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
             is_valid_addr |= cpuif_req_masked & (cpuif_addr == 11'h80 + (11)'(i0) * 11'h4);
@@ -523,6 +526,16 @@ module voxrt_registers (
         } root;
         struct {
             struct {
+                logic [19:0] next;
+                logic load_next;
+            } scale;
+            struct {
+                logic next;
+                logic load_next;
+            } words;
+        } lod;
+        struct {
+            struct {
                 logic [31:0] next;
                 logic load_next;
             } value;
@@ -657,6 +670,14 @@ module voxrt_registers (
                 logic [31:0] value;
             } address;
         } root;
+        struct {
+            struct {
+                logic [19:0] value;
+            } scale;
+            struct {
+                logic value;
+            } words;
+        } lod;
         struct {
             struct {
                 logic [31:0] value;
@@ -1279,6 +1300,52 @@ module voxrt_registers (
         end
     end
     assign hwif_out.root.address.value = field_storage.root.address.value;
+    // Field: voxrt_registers.lod.scale
+    always_comb begin
+        automatic logic [19:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.lod.scale.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.lod && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.lod.scale.value & ~decoded_wr_biten[19:0]) | (decoded_wr_data[19:0] & decoded_wr_biten[19:0]);
+            load_next_c = '1;
+        end
+        field_combo.lod.scale.next = next_c;
+        field_combo.lod.scale.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.lod.scale.value <= 20'h0;
+        end else begin
+            if(field_combo.lod.scale.load_next) begin
+                field_storage.lod.scale.value <= field_combo.lod.scale.next;
+            end
+        end
+    end
+    assign hwif_out.lod.scale.value = field_storage.lod.scale.value;
+    // Field: voxrt_registers.lod.words
+    always_comb begin
+        automatic logic [0:0] next_c;
+        automatic logic load_next_c;
+        next_c = field_storage.lod.words.value;
+        load_next_c = '0;
+        if(decoded_reg_strb.lod && decoded_req_is_wr) begin // SW write
+            next_c = (field_storage.lod.words.value & ~decoded_wr_biten[31:31]) | (decoded_wr_data[31:31] & decoded_wr_biten[31:31]);
+            load_next_c = '1;
+        end
+        field_combo.lod.words.next = next_c;
+        field_combo.lod.words.load_next = load_next_c;
+    end
+    always_ff @(posedge clk) begin
+        if(~rst_n) begin
+            field_storage.lod.words.value <= 1'h0;
+        end else begin
+            if(field_combo.lod.words.load_next) begin
+                field_storage.lod.words.value <= field_combo.lod.words.next;
+            end
+        end
+    end
+    assign hwif_out.lod.words.value = field_storage.lod.words.value;
     for(genvar i0=0; i0<3; i0++) begin
         // Field: voxrt_registers.light[].value
         always_comb begin
@@ -1536,7 +1603,7 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h0)][31:0] = 32'h56585254;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h4)) begin
-            readback_data_var[ad_hi(11'h4)][7:0] = 8'h3;
+            readback_data_var[ad_hi(11'h4)][7:0] = 8'h4;
             readback_data_var[ad_hi(11'h4)][15:8] = 8'h0;
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h8)) begin
@@ -1576,6 +1643,7 @@ module voxrt_registers (
             readback_data_var[ad_hi(11'h1c)][1] = hwif_in.features.light.next;
             readback_data_var[ad_hi(11'h1c)][2] = hwif_in.features.mirrors.next;
             readback_data_var[ad_hi(11'h1c)][3] = 1'h1;
+            readback_data_var[ad_hi(11'h1c)][4] = hwif_in.features.lod.next;
         end
         for(int i0=0; i0<3; i0++) begin
             if(ad_low(rd_mux_addr) == ad_low(11'h20 + (11)'(i0) * 11'h4)) begin
@@ -1621,6 +1689,10 @@ module voxrt_registers (
         end
         if(ad_low(rd_mux_addr) == ad_low(11'h78)) begin
             readback_data_var[ad_hi(11'h78)][31:0] = field_storage.root.address.value;
+        end
+        if(ad_low(rd_mux_addr) == ad_low(11'h7c)) begin
+            readback_data_var[ad_hi(11'h7c)][19:0] = field_storage.lod.scale.value;
+            readback_data_var[ad_hi(11'h7c)][31] = field_storage.lod.words.value;
         end
         for(int i0=0; i0<3; i0++) begin
             if(ad_low(rd_mux_addr) == ad_low(11'h80 + (11)'(i0) * 11'h4)) begin

@@ -92,8 +92,13 @@ package voxrt_registers_pkg;
     } voxrt_registers__features__mirrors__in_t;
 
     typedef struct {
+        logic next;
+    } voxrt_registers__features__lod__in_t;
+
+    typedef struct {
         voxrt_registers__features__light__in_t light;
         voxrt_registers__features__mirrors__in_t mirrors;
+        voxrt_registers__features__lod__in_t lod;
     } voxrt_registers__features__in_t;
 
     typedef struct {
@@ -260,6 +265,19 @@ package voxrt_registers_pkg;
     } voxrt_registers__root__out_t;
 
     typedef struct {
+        logic [19:0] value;
+    } voxrt_registers__lod__scale__out_t;
+
+    typedef struct {
+        logic value;
+    } voxrt_registers__lod__words__out_t;
+
+    typedef struct {
+        voxrt_registers__lod__scale__out_t scale;
+        voxrt_registers__lod__words__out_t words;
+    } voxrt_registers__lod__out_t;
+
+    typedef struct {
         logic [7:0] value;
     } voxrt_registers__lower_faces__x__out_t;
 
@@ -322,6 +340,7 @@ package voxrt_registers_pkg;
         voxrt_registers__direction_reg__out_t up[3];
         voxrt_registers__shading__out_t shading;
         voxrt_registers__root__out_t root;
+        voxrt_registers__lod__out_t lod;
         voxrt_registers__position_reg__out_t light[3];
         voxrt_registers__lower_faces__out_t lower_faces;
         voxrt_registers__upper_faces__out_t upper_faces;

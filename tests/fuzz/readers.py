@@ -158,9 +158,9 @@ def _read_blob(path: Path) -> None:
 def _mem_seeds() -> tuple[bytes, ...]:
     cube = np.zeros((8, 8, 8), int)
     cube[0, 0, 0], cube[5:, 2, 1] = 1, 2
-    rom = octree.Rom("a", octree.from_dense(cube), export.default_materials(2))
+    tree = octree.with_means(octree.Rom("a", octree.from_dense(cube), export.default_materials(2))).octree
     return tuple(
-        "".join(f"{word:08x}\n" for word in octree.encode(rom.octree.words, dialect).tolist()).encode()
+        "".join(f"{word:08x}\n" for word in octree.encode(tree.words, dialect, tree.means).tolist()).encode()
         for dialect in octree.DIALECTS
     )
 

@@ -20,10 +20,14 @@ def block(**octants):
     return [octants.get(f"o{i}", AIR) for i in range(8)]
 
 
+# Dialect lod has pointers of its own, which only a manifest tells: test_lod.py.
+DIALECTS = tuple(one for one in octree.DIALECTS if one != "lod")
+
+
 @given(dense_cubes(4))
 def test_dialects_round_trip(cube):
     few = octree.from_dense(np.minimum(cube, 7))
-    for tree, dialects in ((few, octree.DIALECTS), (octree.from_dense(cube), ("report", "msb"))):
+    for tree, dialects in ((few, DIALECTS), (octree.from_dense(cube), ("report", "msb"))):
         for dialect in dialects:
             written = octree.encode(tree.words, dialect)
             np.testing.assert_array_equal(octree.decode(written, dialect, tree.depth).words, tree.words)
@@ -31,7 +35,7 @@ def test_dialects_round_trip(cube):
 
 @given(dense_cubes(3))
 def test_detection_is_right_or_refuses(cube):
-    for dialect in octree.DIALECTS:
+    for dialect in DIALECTS:
         tree = octree.from_dense(np.minimum(cube, 7) if dialect == "seed-rtl" else cube)
         written = octree.encode(tree.words, dialect)
         try:

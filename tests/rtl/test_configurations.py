@@ -20,6 +20,7 @@ DEFAULTS = {
     "Light": 0,
     "Mirrors": 0,
     "RayClocks": 1,
+    "Lod": 0,
     "SimulationBlockBits": 17,
 }
 

@@ -116,6 +116,7 @@ def build(
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     memory: Annotated[int | None, _option("memory", converter=size_in_bytes, metavar="SIZE")] = BuildOptions.memory,
+    lod: Annotated[bool, _option("lod", show_default=False)] = BuildOptions.lod,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -128,6 +129,8 @@ def build(
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
+    if lod and dialect not in ("report", "lod"):
+        raise UsageError(f"--lod has its own dialect, and {dialect} has no mean materials; leave one of them out")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
     told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
@@ -155,6 +158,7 @@ def build(
         bake_samples=bake_samples,
         budget=board or budget,
         dialect=dialect,
+        lod=lod,
         preview=png(Path(preview)) if preview else preview is not None,
         size=size,
         camera=camera,

@@ -51,6 +51,8 @@ def info(
     ]
     if told.shared_words < told.words and blob.animation is None:
         rows.append(("shared", f"{told.shared_words:,} words would do: equal blocks are stored more than once"))
+    if told.mean_materials is not None:
+        rows.append(("lod", f"mean materials for {told.mean_materials:,} of {told.blocks:,} blocks"))
     if blob.animation is not None:
         rows.append(("frames", frames_row(blob.animation, told.words)))
     if told.bounds:

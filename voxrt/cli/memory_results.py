@@ -78,6 +78,8 @@ class InfoResult(msgspec.Struct, frozen=True):
     boards: list[BoardInfo]
     world: WorldEntry | None
     """Null for a memory that does not say."""
+    mean_materials: int | None = None
+    """Blocks that have one, for the level of detail; null for a memory without it."""
     frames: list[FrameEntry] | None = None
     """Those of an animation; null for a memory of one scene. All else is then of the first, but for the words."""
 
@@ -228,6 +230,7 @@ def info_result(blob: Blob) -> InfoResult:
         materials=list(told.materials),
         boards=list(told.boards),
         world=None if rom.grid is None else WorldEntry(rom.grid.origin, rom.grid.voxel_size),
+        mean_materials=None if rom.octree.means is None else int((rom.octree.means > 0).sum()),
         frames=None if blob.animation is None else frame_entries(blob.animation),
     )
 

@@ -25,6 +25,7 @@ from voxrt.cli.arguments import (
 from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import read_source
+from voxrt.octree import with_means
 
 if TYPE_CHECKING:
     from voxrt import Camera, Frame, Lighting
@@ -59,6 +60,7 @@ def render(
     latency: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
     interval: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
     jitter: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
+    lod: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
@@ -76,7 +78,7 @@ def render(
         give the same pixels.
     config
         The configuration of the hardware: its lanes, its memory, the features of its shader. The default is tiny, or
-        lit if light or mirrors are asked for.
+        lit if light or mirrors are asked for, or cached1 with --lod.
     size
         Width and height in pixels. [default: 640x480]
     sight
@@ -111,6 +113,9 @@ def render(
         Of the external memory: clocks from one line of 32 bytes to the next. [default: 3]
     jitter
         Of the external memory: up to so many clocks more for each line, at random. [default: 0]
+    lod
+        Level of detail: rays stop at cells that are not wider than a pixel and show the mean material of what is in
+        them. A memory that was built without --lod gets its mean materials first.
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
     reporting
@@ -122,17 +127,15 @@ def render(
     roots = _roots(blob, file, frame, check=check, background=background)
     camera = source.camera(size, sight)
     lighting = _lighting(blob.lighting, light, ambient, bounces, shading)
+    if lod:
+        lighting = _unlit(lighting, "--lod goes without light and mirrors", light, bounces)
+        memory = _with_means(blob)
     if config is None:
-        config = "lit" if lighting.features else "tiny"
-    elif engine == "rtl" and blob.lighting and light is None and bounces is None:
-        absent = lighting.features - voxrt.shader_features(config)
-        if absent:
-            warn(
-                (voxrt.SceneWarning("light", f"the memory's light is left out: {config} has none, --config lit does"),)
-            )
-            lighting = replace(lighting, on=False, bounces=0)
+        config = _default_config(lighting, lod=lod)
+    elif engine == "rtl" and lighting.features - voxrt.shader_features(config) and light is None and bounces is None:
+        lighting = _unlit(lighting, f"{config} has none, --config lit does")
     dram = _dram(latency, interval, jitter)
-    asked = _Asked(memory, camera, size, roots, engine, config, lighting, samples, background, dram)
+    asked = _Asked(memory, camera, size, roots, engine, config, lighting, samples, background, dram, lod)
     shown, wrong_pixels = asked.check(file) if check else (asked.render(file, blob.animation), None)
     if reporting.json:
         print_json(render_result(voxrt.Picture(shown, camera, engine), file, wrong_pixels))
@@ -152,6 +155,30 @@ def render(
         )
 
 
+def _default_config(lighting: Lighting, *, lod: bool) -> str:
+    """Return the smallest configuration that has what is asked for."""
+    if lod:
+        return "cached1"
+    return "lit" if lighting.features else "tiny"
+
+
+def _with_means(blob: Blob) -> Rom:
+    """Return a memory with its mean materials, whether it was built with them or not."""
+    if blob.rom.octree.means is not None:
+        return blob.rom
+    return with_means(blob.rom, (0,) if blob.animation is None else blob.animation.roots)
+
+
+def _unlit(lighting: Lighting, why: str, light: Triple | None = None, bounces: int | None = None) -> Lighting:
+    """Leave the memory's light and mirrors out, with a warning if there are some; refuse those asked for."""
+    if light is not None or bounces:
+        raise UsageError("--lod does not go with --light or --bounces; leave them or --lod out")
+    if not lighting.features:
+        return lighting
+    warn((voxrt.SceneWarning("light", f"the memory's light is left out: {why}"),))
+    return replace(lighting, on=False, bounces=0)
+
+
 class _Asked(NamedTuple):
     """Frames that are asked for."""
 
@@ -165,6 +192,7 @@ class _Asked(NamedTuple):
     samples: int
     background: tuple[int, int, int] | Literal["transparent"] | None
     dram: Dram | None
+    lod: bool
 
     def render(self, file: Path, animation: Animation | None) -> Frame:
         """Render and save them, and return the first."""
@@ -180,6 +208,7 @@ class _Asked(NamedTuple):
                 background=self.background,
                 dram=self.dram,
                 root=root,
+                lod=self.lod,
             )
             for root in self.roots
         ]
@@ -201,6 +230,7 @@ class _Asked(NamedTuple):
             config=self.config,
             dram=self.dram,
             root=self.roots[0],
+            lod=self.lod,
         )
         frame: Frame = getattr(checked, self.engine)
         voxrt.save_picture(frame.colour, file)

@@ -156,7 +156,7 @@ double vx_render(const int32_t* registers, int width, int height, int first, int
                      std::vector<uint8_t>(pixels)};
         }
         return static_cast<double>(
-            sim::render(loaded(), shading.shading, camera,
+            sim::render(loaded(), shading.shading, sim::Lod{}, camera,
                         {width, height, frame.colour.data(), frame.material.data(), frame.face.data()}, {first, end}, 1,
                         sim::tile_engines()[0].render_tile));
     });

@@ -26,7 +26,7 @@ uint64_t render_pixel(const FrameJob& job, int32_t column, int32_t row) {
     for (int axis = 0; axis < 3; ++axis)
         direction[axis] = camera.look[axis] + camera.right[axis] * (column - frame.width / 2) +
                           camera.up[axis] * (frame.height / 2 - row);
-    const Pixel traced = trace_pixel(job.memory, job.shading, camera.position, direction);
+    const Pixel traced = trace_pixel(job.memory, job.shading, job.lod, camera.position, direction);
     const size_t pixel = static_cast<size_t>(row) * frame.width + column;
     frame.material[pixel] = traced.material;
     frame.face[pixel] = traced.face;
@@ -62,11 +62,11 @@ void check_directions(const Camera& camera, int32_t width, int32_t height) {
 
 int32_t tile_rows(int32_t height) { return (height + kTileSide - 1) / kTileSide; }
 
-uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
+uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const Camera& camera,
                 const FrameView& frame, TileRows rows, int threads, RenderTile render_tile) {
     const int32_t no_direction[3] = {0, 0, 0};
-    const uint8_t at_camera = trace_pixel(memory, shading, camera.position, no_direction).material;
-    const FrameJob job{memory, shading, camera, frame, at_camera};
+    const uint8_t at_camera = trace_pixel(memory, shading, lod, camera.position, no_direction).material;
+    const FrameJob job{memory, shading, lod, camera, frame, at_camera};
     const int32_t across = (frame.width + kTileSide - 1) / kTileSide;
     const int32_t down = rows.end - rows.first;
     std::atomic<uint64_t> words_read{0};

@@ -56,13 +56,13 @@ int32_t tile_rows(int32_t height);
 
 // Renders those rows of a frame. `threads`: 0 takes as many as the machine has; the frame does not depend on it.
 // `render_tile` is one of tile_engines() (frame_tile.h). Returns how many octree words were read.
-uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
+uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const Camera& camera,
                 const FrameView& frame, TileRows rows, int threads, RenderTile render_tile);
 
 // Renders all of a frame.
-inline uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Camera& camera,
-                       const FrameView& frame, int threads, RenderTile render_tile) {
-    return render(memory, shading, camera, frame, {0, tile_rows(frame.height)}, threads, render_tile);
+inline uint64_t render(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod,
+                       const Camera& camera, const FrameView& frame, int threads, RenderTile render_tile) {
+    return render(memory, shading, lod, camera, frame, {0, tile_rows(frame.height)}, threads, render_tile);
 }
 
 // Traces a list of rays, whose directions are below kDirectionLimit. Returns how many octree words were read.

@@ -14,6 +14,7 @@ inline constexpr int32_t kTileSide = 16; // pixels
 struct FrameJob {
     const octree::VerifiedMemory& memory;
     const Shading& shading;
+    const Lod& lod;
     const Camera& camera;
     const FrameView& frame;
     uint8_t material_at_camera; // of the voxel that holds the camera: what a ray without direction hits

@@ -40,6 +40,21 @@ inline Mask in_frame(const FrameJob& job, GroupPixel first) {
     return static_cast<Mask>(columns >= kLanes ? 0xFF : columns > 0 ? (1 << columns) - 1 : 0);
 }
 
+inline Lanes reach_of(const FrameJob& job, GroupPixel first) {
+    double reach[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) {
+        int64_t direction[3];
+        for (int axis = 0; axis < 3; ++axis)
+            direction[axis] = job.camera.look[axis] +
+                              int64_t{job.camera.right[axis]} * (first.column + lane - job.frame.width / 2) +
+                              int64_t{job.camera.up[axis]} * (job.frame.height / 2 - first.row);
+        reach[lane] = static_cast<double>(lod_reach(job.lod, direction));
+    }
+    Lanes out;
+    std::memcpy(&out, reach, sizeof out);
+    return out;
+}
+
 inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
     const double world = 16.0 * (1 << job.memory.depth());
     const Lanes zero = all(0);
@@ -67,6 +82,8 @@ inline void set_up(Tile& tile, const FrameJob& job, int32_t left, int32_t top) {
                 tile.offset[group][axis] = choose(dead, all(-rest * kNeverKey), tile.offset[group][axis]);
             }
         }
+        if (job.lod.on())
+            tile.reach[group] = reach_of(job, first);
         tile.alive[group] = in_frame(job, first) & ~still;
         tile.material[group] = bytes_of(still) * job.material_at_camera;
     }
@@ -135,7 +152,7 @@ inline Pixels shade(const Tile& tile, const FrameJob& job, int group, const Dire
 uint64_t VOXRT_RENDER_TILE(const FrameJob& job, int32_t left, int32_t top) {
     Tile tile;
     set_up(tile, job, left, top);
-    const uint64_t words_read = trace_tile(job.memory, tile);
+    const uint64_t words_read = trace_tile(job, tile);
     for (int group = 0; group < kGroups; ++group) {
         const GroupPixel first = first_pixel(left, top, group);
         if (first.row >= job.frame.height || first.column >= job.frame.width)

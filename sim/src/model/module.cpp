@@ -37,6 +37,7 @@ using Triples = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::d
 
 using Position = nb::ndarray<const int32_t, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 using Faces = nb::ndarray<const uint8_t, nb::shape<6>, nb::c_contig, nb::device::cpu>;
+using Means = nb::ndarray<const uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const uint8_t, nb::shape<256>, nb::c_contig, nb::device::cpu>;
 
 constexpr int kBounceLimit = 15;
@@ -109,10 +110,22 @@ void check_threads(int threads) {
         throw std::invalid_argument("threads is " + std::to_string(threads) + ", not 0 ... 1024");
 }
 
+Lod lod_of(const OwnedMemory& memory, const std::optional<Means>& means, int scale) {
+    if (scale < 0 || scale >= static_cast<int>(kLodScaleLimit))
+        throw std::invalid_argument("lod_scale is " + std::to_string(scale) + ", not 0 ... 2**20 - 1");
+    if (scale == 0)
+        return {};
+    const size_t blocks = (memory.verified().memory().size - 1) / 8;
+    if (!means || means->shape(0) != blocks)
+        throw std::invalid_argument("means must have a material for each of the " + std::to_string(blocks) + " blocks");
+    return {means->data(), static_cast<uint32_t>(scale)};
+}
+
 nb::object render_frame(const OwnedMemory& memory, const Palette& materials, const Registers& registers, int width,
                         int height, int threads, const std::string& instructions, bool flat,
                         const std::optional<Faces>& brightness, const std::optional<Position>& light, int ambient,
-                        int bounces, const std::optional<Flags>& mirrors, double seconds, const Stop* stop) {
+                        int bounces, const std::optional<Flags>& mirrors, const std::optional<Means>& means,
+                        int lod_scale, double seconds, const Stop* stop) {
     if (ambient < 0 || ambient > 255)
         throw std::invalid_argument("ambient is " + std::to_string(ambient) + ", not 0 ... 255");
     if (bounces < 0 || bounces > kBounceLimit)
@@ -123,6 +136,9 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
         std::copy_n(brightness->data(), 6, shading.faces.emplace().begin());
     if (light)
         shading.light = Light{{(*light)(0), (*light)(1), (*light)(2)}, static_cast<uint8_t>(ambient)};
+    const Lod lod = lod_of(memory, means, lod_scale);
+    if (lod.on() && (light || bounces != 0))
+        throw std::invalid_argument("level of detail does not go with a light or reflections");
     check_threads(threads);
     if (width < 1 || height < 1 || width > kSizeLimit || height > kSizeLimit)
         throw std::invalid_argument("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
@@ -147,7 +163,7 @@ nb::object render_frame(const OwnedMemory& memory, const Palette& materials, con
     try {
         const LongCall call;
         const FrameLimit limit(seconds, stop);
-        words_read = render(memory.verified(), shading, camera,
+        words_read = render(memory.verified(), shading, lod, camera,
                             {width, height, colour.get(), material.get(), face.get()}, threads, engine->render_tile);
     } catch (const FrameEnded& ended) {
         PyErr_SetString(ended.error, ended.problem.c_str());
@@ -231,15 +247,17 @@ NB_MODULE(_model, m) {
             "render", &render_frame, nb::arg("materials"), nb::arg("camera"), nb::arg("width"), nb::arg("height"),
             nb::arg("threads") = 0, nb::arg("instructions") = "", nb::kw_only(), nb::arg("flat") = false,
             nb::arg("brightness") = nb::none(), nb::arg("light") = nb::none(), nb::arg("ambient") = 0,
-            nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(),
-            nb::arg("seconds") = std::numeric_limits<double>::infinity(), nb::arg("stop").none() = nb::none(),
+            nb::arg("bounces") = 0, nb::arg("mirrors") = nb::none(), nb::arg("means") = nb::none(),
+            nb::arg("lod_scale") = 0, nb::arg("seconds") = std::numeric_limits<double>::infinity(),
+            nb::arg("stop").none() = nb::none(),
             "Render a frame: materials (256, 3) uint8 sRGB, entry 0 the background; camera (4, 3) int32 position,\n"
             "look, right, up; threads 0 takes every core; instructions one of INSTRUCTION_SETS, empty for the first,\n"
             "which is the fastest. docs/shading.md defines the rest: flat; brightness, None or (6,) uint8 in\n"
             "1/255, of the faces that look along -x, +x, -y, +y, -z, +z; light, None or (3,) int32 in 1/16 voxel, "
             "with\n"
             "ambient 0 ... 255; bounces 0 ... 15 off mirrors, (256,) uint8 flags of materials. Returns colour (H, W, "
-            "3), material (H, W), face (H, W), uint8, and words_read.\n"
+            "3), material (H, W), face (H, W), uint8, and words_read. lod_scale, 0 ... 2**20 - 1, of docs/lod.md;\n"
+            "0 is off; else means, uint8, has a material per block, and there is no light and no bounce.\n"
             "ValueError: a frame above 16384 x 16384, pixel directions not below 2**20. TimeoutError: the frame takes\n"
             "longer than `seconds`. InterruptedError: `stop` is set.")
         .def("trace", &trace_rays, nb::arg("origins"), nb::arg("directions"), nb::arg("threads") = 0,

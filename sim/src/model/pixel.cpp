@@ -70,10 +70,12 @@ void light_colour(const octree::VerifiedMemory& memory, const Shading& shading, 
         scale_colour(surface, square.part, square.whole, pixel.colour);
 }
 
-template <class Key> Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, Line line) {
+template <class Key>
+Pixel traced(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, Line line) {
     Pixel pixel{{}, 0, kFaceNone, 0};
     uint32_t sum[3] = {0, 0, 0};
     Ray<Key> ray(memory, line);
+    ray.use(lod, line);
     for (int bounce = 0;; ++bounce) {
         const Hit<Key> hit = ray.trace();
         pixel.words_read += hit.words_read;
@@ -113,7 +115,7 @@ template <class Key> Pixel traced(const octree::VerifiedMemory& memory, const Sh
 
 } // namespace
 
-Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const int32_t origin[3],
+Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const int32_t origin[3],
                   const int32_t direction[3]) {
     Line line{}, farthest{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -123,7 +125,8 @@ Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, 
         farthest.origin[axis] = distance + (int64_t{2 * kPositionUnit * shading.bounces} << memory.depth());
         farthest.direction[axis] = direction[axis];
     }
-    return key_fits_64(farthest) ? traced<int64_t>(memory, shading, line) : traced<WideKey>(memory, shading, line);
+    return key_fits_64(farthest) ? traced<int64_t>(memory, shading, lod, line)
+                                 : traced<WideKey>(memory, shading, lod, line);
 }
 
 } // namespace voxrt::sim

@@ -1,6 +1,8 @@
 // The colour of one pixel with every feature of the shader, in integers. docs/shading.md defines them.
 #pragma once
 
+#include "lod.h"
+
 #include <voxrt/octree/verify.h>
 
 #include <array>
@@ -34,8 +36,9 @@ struct Pixel {
     uint32_t words_read;
 };
 
-// Traces the ray from `origin` (1/16 voxel). Components of `direction` are below kDirectionLimit.
-Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const int32_t origin[3],
+// Traces the ray from `origin` (1/16 voxel). Components of `direction` are below kDirectionLimit. Not with lod.on()
+// where there is a light or bounces are not 0.
+Pixel trace_pixel(const octree::VerifiedMemory& memory, const Shading& shading, const Lod& lod, const int32_t origin[3],
                   const int32_t direction[3]);
 
 } // namespace voxrt::sim

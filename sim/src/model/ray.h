@@ -16,6 +16,8 @@
 // per ray. No errors: the memory is verified, and a line of any origin and direction below kDirectionLimit is valid.
 #pragma once
 
+#include "lod.h"
+
 #include <voxrt/octree/verify.h>
 
 #include <bit>
@@ -82,6 +84,12 @@ public:
         }
     }
 
+    // Lets the ray stop at cells that are not wider than a pixel. Its positions count 1/kPositionUnit voxel.
+    void use(const Lod& lod, const Line& line) {
+        lod_ = lod;
+        reach_ = lod_reach(lod, line.direction);
+    }
+
     // Moves the start of the ray to its crossing of a plane across `axis` at T = time.
     void start_behind(Key time, int axis) {
         for (int other = 0; other < 3; ++other)
@@ -118,6 +126,15 @@ private:
     bool is_behind(int axis, int32_t plane) const {
         return alive_[axis] ? crossing(axis, plane) < passed_[axis] : start_[axis] >= Key{unit_} * plane;
     }
+    // Whether the ray stops at the octant of 2^level voxels per side with that pointer.
+    bool stops(uint32_t pointer, const int32_t corner[3], int level) const {
+        if (!lod_.on() || lod_.mean(pointer) == 0)
+            return false;
+        int64_t distance = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            distance = std::max(distance, static_cast<int64_t>((Key{unit_} * corner[axis] - start_[axis]) >> 4));
+        return distance >= reach_ << level;
+    }
     // Moves `corner`, the lowest cell of a node of 2 * half voxels per side, to the child in which the ray is; returns
     // the octant of that child.
     uint32_t descend(int32_t corner[3], int32_t half) const {
@@ -141,6 +158,8 @@ private:
     Key passed_[3] = {1, 1, 1};
     Key time_ = 0;
     uint8_t face_ = kFaceNone;
+    Lod lod_;
+    int64_t reach_ = 0;
 };
 
 template <class Key> template <class Read> Hit<Key> Ray<Key>::trace(Read&& read) {
@@ -171,14 +190,16 @@ template <class Key> template <class Read> Hit<Key> Ray<Key>::trace(Read&& read)
         read(reading);
     };
     for (;;) {
-        while (!octree::is_leaf(word)) {
+        // The root is no octant of a block: no ray stops at it.
+        while (!octree::is_leaf(word) && (level == depth_ || !stops(word, corner, level))) {
             block_at[--level] = word;
             read_octant(descend(corner, 1 << level));
         }
-        if (octree::material(word) != 0) {
-            while (level > 0) // the cell of a larger leaf in which the ray is
+        const uint8_t material = octree::is_leaf(word) ? octree::material(word) : lod_.mean(word);
+        if (material != 0) {
+            while (level > 0) // the cell of a larger octant in which the ray is
                 descend(corner, 1 << --level);
-            Hit<Key> hit{octree::material(word), face_, {}, time_, words_read};
+            Hit<Key> hit{material, face_, {}, time_, words_read};
             for (int axis = 0; axis < 3; ++axis)
                 hit.cell[axis] = mirror_ >> axis & 1 ? side_ - 1 - corner[axis] : corner[axis];
             return hit;

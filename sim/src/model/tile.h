@@ -37,6 +37,7 @@ struct Tile {
     Mask alive[kGroups];        // rays still to be traced; after the walk, those that hit nothing
     uint64_t material[kGroups]; // a byte per ray: the material hit; 0 before
     Mask face[kGroups][3];      // rays that hit a face across each axis; none before
+    Lanes reach[kGroups];       // lod_reach of each ray, where LOD is on
 };
 
 } // namespace

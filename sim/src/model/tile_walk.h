@@ -4,6 +4,7 @@
 #include "frame_tile.h"
 #include "tile.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace voxrt::sim {
@@ -20,7 +21,9 @@ struct Walk {
     const uint32_t* words;
     Tile& tile;
     uint32_t mirror;
-    uint64_t words_read;
+    const Lod& lod;
+    int64_t origin[3]; // of all rays, rounded up to voxels, mirrored frame
+    uint64_t words_read = 0;
     uint32_t uncounted_work = 0;
 
     Lanes key(int group, int axis, double plane) const {
@@ -29,10 +32,28 @@ struct Walk {
 
     // A node of `size` voxels with its lowest corner at (x, y, z), mirrored frame, and the rays that visit it.
     void node(uint32_t word, double x, double y, double z, double size, const Rays* rays, int count) {
-        if (octree::is_leaf(word))
+        if (octree::is_leaf(word)) {
             hit(octree::material(word), x, y, z, rays, count);
-        else
-            block(word, x, y, z, size, rays, count);
+            return;
+        }
+        if (lod.on())
+            stop(word, x, y, z, size, rays, count);
+        block(word, x, y, z, size, rays, count);
+    }
+
+    // Ends the rays that do not go into a block, as its mean material.
+    void stop(uint32_t pointer, double x, double y, double z, double size, const Rays* rays, int count) {
+        const uint8_t mean = lod.mean(pointer);
+        const double distance = std::max({x - static_cast<double>(origin[0]), y - static_cast<double>(origin[1]),
+                                          z - static_cast<double>(origin[2])});
+        if (mean == 0 || distance < size)
+            return;
+        Rays stopped[kGroups];
+        for (int i = 0; i < count; ++i) {
+            const Mask beyond = less(all(size) * tile.reach[rays[i].group], all(distance + 0.5));
+            stopped[i] = {rays[i].group, static_cast<Mask>(rays[i].lanes & beyond)};
+        }
+        hit(mean, x, y, z, stopped, count);
     }
 
     void hit(uint8_t material, double x, double y, double z, const Rays* rays, int count) {
@@ -101,6 +122,14 @@ struct Walk {
                      visitors[i], visits[i]);
     }
 
+    // No ray stops at the root.
+    void start(uint32_t word, double side, const Rays* rays, int count) {
+        if (octree::is_leaf(word))
+            hit(octree::material(word), 0, 0, 0, rays, count);
+        else
+            block(word, 0, 0, 0, side, rays, count);
+    }
+
     // Traces the rays that are mirrored as `mirror` says.
     void root(double side) {
         const uint32_t word = words[0];
@@ -123,13 +152,14 @@ struct Walk {
                 rays[count++] = {static_cast<uint8_t>(group), lanes};
         }
         if (count)
-            node(word, 0, 0, 0, side, rays, count);
+            start(word, side, rays, count);
     }
 };
 
-// Traces the rays of `tile` that are alive through the memory. Returns how many octree words were read. A ray
+// Traces the rays of `tile` that are alive through the job's memory. Returns how many octree words were read. A ray
 // without any direction must not be alive.
-inline uint64_t trace_tile(const octree::VerifiedMemory& memory, Tile& tile) {
+inline uint64_t trace_tile(const FrameJob& job, Tile& tile) {
+    const int64_t side = int64_t{1} << job.memory.depth();
     uint64_t words_read = 0;
     Mask some[3] = {0, 0, 0}, every[3] = {0xFF, 0xFF, 0xFF}; // mirrored on each axis
     for (int group = 0; group < kGroups; ++group)
@@ -145,8 +175,12 @@ inline uint64_t trace_tile(const octree::VerifiedMemory& memory, Tile& tile) {
     };
     for (uint32_t mirror = 0; mirror < 8; ++mirror)
         if (occurs(mirror)) {
-            Walk walk{memory.words(), tile, mirror, 0, 0};
-            walk.root(static_cast<double>(1 << memory.depth()));
+            Walk walk{job.memory.words(), tile, mirror, job.lod, {}};
+            for (int axis = 0; axis < 3; ++axis) {
+                const int64_t position = job.camera.position[axis];
+                walk.origin[axis] = ((mirror >> axis & 1 ? 16 * side - position : position) + 15) >> 4;
+            }
+            walk.root(static_cast<double>(side));
             words_read += walk.words_read;
         }
     return words_read;

@@ -23,6 +23,7 @@ struct Limits {
     unsigned position_bits; // signed
     unsigned block_bits;    // blocks of eight words that the memory holds: 2 ** block_bits
     bool light, mirrors;    // features that are built in; others are off, whatever is asked for
+    bool lod;
 
     std::size_t memory_words() const { return (std::size_t{8} << block_bits) + 1; }
     // Signed, 1/16 voxel: voxrt_pkg::light_bits.
@@ -47,6 +48,7 @@ struct FrameRequest {
     int32_t light_position[3]; // 1/16 voxel
     uint8_t ambient;           // 1/256
     uint8_t bounces;           // 0 .. bounce_limit
+    uint32_t lod_scale;        // below 2 ** 20; 0 but for memories of the dialect lod
     DramTiming dram;           // of a cached memory
     uint32_t stall_seed;       // 0: the output is always ready; else it stalls in a pattern of this seed's
 };
@@ -69,9 +71,10 @@ class Design {
 public:
     virtual ~Design() = default;
     virtual const Limits& limits() const = 0;
-    // At most memory_words(), report dialect. Through the access port, a word a clock, or straight into the memory. A
-    // cached memory is the caller's words, which must stay until others are loaded; it has no access port.
-    virtual void load(std::span<const uint32_t> words, bool through_port) = 0;
+    // At most memory_words(), report dialect or, if built in, dialect lod. Through the access port, a word a clock, or
+    // straight into the memory. A cached memory is the caller's words, which must stay until others are loaded; it has
+    // no access port.
+    virtual void load(std::span<const uint32_t> words, bool lod_words, bool through_port) = 0;
     // What the access port reads from address 0 on.
     virtual std::vector<uint32_t> read_back(std::size_t count) = 0;
     // Calls poll now and then; what it throws ends the frame, and the design stays usable.

@@ -1,26 +1,28 @@
 // voxrt.sim._rtl: the verilated ray tracer for Python. Every argument is checked here.
 //
 //   CONFIGS: list[str]        names of the configurations that were built
-//   FEATURES: dict[str, list[str]]  which of "light" and "mirrors" each of them has built in
+//   FEATURES: dict[str, list[str]]  which of "light", "mirrors" and "lod" each of them has built in
 //   Tracer(config)            one instance of the design with its own memory; one call at a time (RuntimeError)
 //     .memory_words           how many words the simulated memory holds
 //     .cached                 whether its memory is external, behind caches
 //     .max_depth              the deepest octree that the configuration can trace
 //     .position_limit         camera positions are in -limit ... limit - 1, 1/16 voxel
 //     .light_limit            light positions are in -limit ... limit - 1, 1/16 voxel
-//     .load(words, *, through_port=False)
-//                             uint32, 1-D, report dialect. Through the design's access port, one word a clock, or
-//                             straight into the simulated memory: the outcome is the same. A cached memory is these
-//                             words themselves, not a copy
+//     .load(words, *, lod_words=False, through_port=False)
+//                             uint32, 1-D, report dialect or, where built in, dialect lod. Through the design's access
+//                             port, one word a clock, or straight into the simulated memory: the outcome is the same. A
+//                             cached memory is these words themselves, not a copy
 //     .read_back(count)       uint32: the memory's first words, read through that port
 //     .render(camera, width, height, depth, materials, *, flat=False, brightness=None, light=None, ambient=0,
-//             bounces=0, mirrors=None, root=0, stall_seed=0, latency=50, interval=3, jitter=0, dram_seed=0) -> dict
+//             bounces=0, mirrors=None, lod_scale=0, root=0, stall_seed=0, latency=50, interval=3, jitter=0,
+//             dram_seed=0) -> dict
 //                             camera int32 (4, 3): position (1/16 voxel), look, right, up (signed 16 bit each);
 //                             width, height 1 ... 4095; depth 1 ... max_depth, the levels below the root;
 //                             materials uint8 (256, 3), sRGB, row 0 is the background; brightness None, by the
 //                             angle, or uint8 (6,), 1/255, of the faces along -x, +x, -y, +y, -z, +z; light int32 (3,),
-//                             1/16 voxel; ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; root the
-//                             word address of the octree's root. With a stall_seed, the picture's consumer stalls in a
+//                             1/16 voxel; ambient 0 ... 255; bounces 0 ... 15; mirrors uint8 (256,), flags; lod_scale
+//                             0 ... 2**20 - 1, 0 but for words of the dialect lod; root the word address of the
+//                             octree's root. With a stall_seed, the picture's consumer stalls in a
 //                             pattern that depends on it. latency, interval, jitter, dram_seed: of a cached memory, in
 //                             clocks; see dram.h. Its caches are empty at the start. Gives colour uint8 (H, W, 3),
 //                             material and face uint8 (H, W), cycles (from the start to the last pixel accepted),
@@ -50,7 +52,7 @@ using namespace nb::literals;
 
 namespace voxrt::rtl {
 
-#define VOXRT_CONFIGURATION(name, light, mirrors) std::unique_ptr<Design> make_##name();
+#define VOXRT_CONFIGURATION(name, light, mirrors, lod) std::unique_ptr<Design> make_##name();
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 
@@ -59,11 +61,11 @@ namespace {
 struct Configuration {
     const char* name;
     std::unique_ptr<Design> (*make)();
-    bool light, mirrors;
+    bool light, mirrors, lod;
 };
 
 constexpr Configuration configurations[] = {
-#define VOXRT_CONFIGURATION(name, light, mirrors) {#name, make_##name, light, mirrors},
+#define VOXRT_CONFIGURATION(name, light, mirrors, lod) {#name, make_##name, light, mirrors, lod},
 #include "configurations.inc"
 #undef VOXRT_CONFIGURATION
 };
@@ -102,6 +104,8 @@ std::vector<std::string> features_of(const Configuration& configuration) {
         names.emplace_back("light");
     if (configuration.mirrors)
         names.emplace_back("mirrors");
+    if (configuration.lod)
+        names.emplace_back("lod");
     return names;
 }
 
@@ -121,16 +125,19 @@ public:
     int position_limit() const { return 1 << (design_->limits().position_bits - 1); }
     int light_limit() const { return 1 << (design_->limits().light_bits() - 1); }
 
-    void load(const Words& words, bool through_port) {
+    void load(const Words& words, bool lod_words, bool through_port) {
         if (words.size() < 1 || words.size() > memory_words())
             throw std::invalid_argument(std::to_string(words.size()) + " words do not fit this memory of " +
                                         range(1, static_cast<long>(memory_words())));
         if (through_port)
             check_port();
+        if (lod_words && !design_->limits().lod)
+            throw std::invalid_argument("this configuration has not been built with that feature: see FEATURES");
         OneCall call(busy_);
+        lod_words_ = lod_words;
         loaded_ = cached() ? words : Words();
         nb::gil_scoped_release released;
-        design_->load({words.data(), words.size()}, through_port);
+        design_->load({words.data(), words.size()}, lod_words, through_port);
     }
 
     nb::object read_back(std::size_t count) {
@@ -150,8 +157,8 @@ public:
 
     nb::dict render(const CameraRegisters& camera, long width, long height, long depth, const Materials& materials,
                     bool flat, const std::optional<Faces>& brightness, const std::optional<Place>& light, long ambient,
-                    long bounces, const std::optional<Flags>& mirrors, uint32_t root, uint32_t stall_seed, long latency,
-                    long interval, long jitter, uint32_t dram_seed) {
+                    long bounces, const std::optional<Flags>& mirrors, long lod_scale, uint32_t root,
+                    uint32_t stall_seed, long latency, long interval, long jitter, uint32_t dram_seed) {
         const Limits& limits = design_->limits();
         check("width", width, 1, (1 << size_bits) - 1);
         check("height", height, 1, (1 << size_bits) - 1);
@@ -185,6 +192,8 @@ public:
             check("light position", (*light)(axis), -light_limit(), light_limit() - 1);
             request.light_position[axis] = (*light)(axis);
         }
+        check("lod_scale", lod_scale, 0, lod_words_ ? (1 << 20) - 1 : 0);
+        request.lod_scale = static_cast<uint32_t>(lod_scale);
         request.root = root;
         request.stall_seed = stall_seed;
         check("latency", latency, 0, clock_limit);
@@ -244,6 +253,7 @@ private:
 
     std::unique_ptr<Design> design_;
     Words loaded_; // a cached memory is the caller's
+    bool lod_words_ = false;
     bool busy_ = false;
 };
 
@@ -267,11 +277,11 @@ NB_MODULE(_rtl, m) {
         .def_prop_ro("max_depth", &Tracer::max_depth)
         .def_prop_ro("position_limit", &Tracer::position_limit)
         .def_prop_ro("light_limit", &Tracer::light_limit)
-        .def("load", &Tracer::load, "words"_a, nb::kw_only(), "through_port"_a = false)
+        .def("load", &Tracer::load, "words"_a, nb::kw_only(), "lod_words"_a = false, "through_port"_a = false)
         .def("read_back", &Tracer::read_back, "count"_a)
         .def("render", &Tracer::render, "camera"_a, "width"_a, "height"_a, "depth"_a, "materials"_a, nb::kw_only(),
              "flat"_a = false, "brightness"_a.none() = nb::none(), "light"_a.none() = nb::none(), "ambient"_a = 0,
-             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "root"_a = 0, "stall_seed"_a = 0, "latency"_a = 50,
-             "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
+             "bounces"_a = 0, "mirrors"_a.none() = nb::none(), "lod_scale"_a = 0, "root"_a = 0, "stall_seed"_a = 0,
+             "latency"_a = 50, "interval"_a = 3, "jitter"_a = 0, "dram_seed"_a = 0);
     voxrt::rtl::bind_core(m);
 }

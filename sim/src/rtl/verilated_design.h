@@ -35,8 +35,10 @@ public:
 
     const Limits& limits() const override { return limits_; }
 
-    void load(std::span<const uint32_t> words, bool through_port) override {
+    void load(std::span<const uint32_t> words, bool lod_words, bool through_port) override {
         enter();
+        lod_words_ = lod_words;
+        put_lod(0);
         if (limits_.form == MemoryForm::cached)
             return dram_.map(words);
         if (through_port) {
@@ -194,7 +196,7 @@ private:
         }
         model_->material_write_i = 0;
         // voxrt_pkg::frame_t.
-        BitFields frame(model_->frame_i);
+        auto frame = put_lod(request.lod_scale);
         for (const int32_t place : request.light_position)
             frame.put(static_cast<uint32_t>(place), 32);
         frame.put(request.bounces, 4);
@@ -216,10 +218,23 @@ private:
         frame.put(Dram::base, 32);
     }
 
-    // What voxrt_octree_memory keeps for a word of the report dialect.
+    // The lowest fields of frame_t; the memory's port takes words of that dialect at any time.
+    auto put_lod(uint32_t scale) {
+        BitFields frame(model_->frame_i);
+        frame.put(scale, 20);
+        frame.put(lod_words_, 1);
+        return frame;
+    }
+
+    // What voxrt_octree_memory keeps for a word.
     uint32_t memory_word(uint32_t word) const {
-        const unsigned payload_bits = limits_.block_bits > 9 ? limits_.block_bits : 9;
-        const uint32_t leaf = 1u << payload_bits;
+        const unsigned pointer_bits = limits_.block_bits > 9 ? limits_.block_bits : 9;
+        const uint32_t leaf = 1u << (pointer_bits + (limits_.lod ? 8 : 0));
+        if (lod_words_) {
+            if (word >> 8 == 0xFFFFFF)
+                return leaf | (word & 0xFF);
+            return word >> (limits_.block_bits + 8) ? leaf | 0x100 : (word & 0xFF) << pointer_bits | word >> 8;
+        }
         if (word >> 31)
             return leaf | (word & 0xFF);
         if ((word & 7) != 1 || word >> (limits_.block_bits + 3))
@@ -245,6 +260,7 @@ private:
     }
 
     Limits limits_;
+    bool lod_words_ = false;
     VerilatedContext context_;
     std::unique_ptr<Model> model_;
     Dram dram_;

@@ -1,0 +1,34 @@
+"""The scale of the level of detail for a camera: the register ``lod.scale``."""
+
+from __future__ import annotations
+
+from math import isqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .camera import Camera
+
+LOD_SCALE_BITS = 20
+
+
+def lod_scale(camera: Camera) -> int:
+    """Compute 2**20 / |right|, rounded down: what tells rays how wide a pixel is.
+
+    Parameters
+    ----------
+    camera
+        The camera. All its pixels are as wide as those in the middle, along right.
+
+    Returns
+    -------
+    int
+        1 … 2**20 - 1; 0, which switches the level of detail off, if right is zero.
+
+    Examples
+    --------
+    >>> from voxrt.octree.camera import Camera
+    >>> lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 8000), right=(-16, 0, 0), up=(0, 16, 0)))
+    65536
+    """
+    square = sum(component * component for component in camera.right)
+    return min((1 << LOD_SCALE_BITS) - 1, isqrt((1 << 2 * LOD_SCALE_BITS) // square)) if square else 0
