@@ -140,7 +140,7 @@ def voxelize_in_blocks(
     >>> blocks = []
     >>> report = voxelize_in_blocks(scene, fit_grid(scene, depth=7), blocks.append, block_side=64)
     >>> len(blocks), sum(one.voxels for one in report.objects)
-    (4, 903648)
+    (4, 1082472)
     """
     parts, reports = _parts_of(scene, grid, fill, geometry, pow2)
 

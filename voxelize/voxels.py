@@ -150,6 +150,14 @@ class VoxelizationReport:
     ----------
     objects, warnings, seconds
         As in :class:`Voxelization`.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import fit_grid, load, voxelize_in_blocks
+    >>> scene = load("examples/house.obj")
+    >>> report = voxelize_in_blocks(scene, fit_grid(scene, depth=7), lambda block: None, block_side=64)
+    >>> [one.name for one in report.objects]
+    ['door', 'windows', 'chimney', 'walls', 'roof']
     """
 
     objects: tuple[ObjectReport, ...]

@@ -228,7 +228,7 @@ class _Frames:
             self.words.append(len(tree.words))
             yield tree
         if not solid and not options.allow_empty:
-            refuse_empty(self._label, self._grid, made)
+            refuse_empty(self._label, self._grid, made.objects)
 
     def _with_interior(self, tree: Octree) -> Octree:
         """Give hidden voxels the material that is asked for."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt import octree, voxelize
 from voxrt.estimate import estimate_build
 from voxrt.voxelize import VoxelizationReport
+from voxrt.voxelize.free_memory import free_memory
 
 if TYPE_CHECKING:
     from voxrt.build_options import BuildOptions
@@ -22,25 +21,6 @@ _LEAST_DEPTH = 11
 
 _LEAST_SIDE = 256
 _UNEVEN = 8  # a square may have so many times its share of the surface
-
-
-_FREE_ELSEWHERE = 4 << 30  # systems that do not say
-_CGROUP = Path("/sys/fs/cgroup")
-
-
-def free_memory() -> int:
-    """Return the bytes of memory that a process may still take: those that are free, within a container's limit."""
-    try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        free = next(int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable:"))
-    except (OSError, ValueError, StopIteration):
-        pages = "SC_PHYS_PAGES" in getattr(os, "sysconf_names", {})
-        free = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") if pages else _FREE_ELSEWHERE
-    try:
-        limit, used = (int((_CGROUP / name).read_text(encoding="ascii")) for name in ("memory.max", "memory.current"))
-    except (OSError, ValueError):  # no container, or none with a limit
-        return free
-    return min(free, max(limit - used, 0))
 
 
 def block_side(grid: Grid, estimate: BuildEstimate, memory: int | None) -> int | None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from voxrt.build_options import BuildOptions
-    from voxrt.voxelize import Grid, Scene, Voxelization, VoxelizationReport
+    from voxrt.voxelize import Grid, ObjectReport, Scene
 
 
 def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
@@ -73,7 +73,7 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
     return (SceneWarning("dominant-object", message, len(names)),)
 
 
-def refuse_empty(label: str, grid: Grid, voxelization: Voxelization | VoxelizationReport) -> None:
+def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> None:
     """Refuse a scene of which no object got a voxel.
 
     Raises
@@ -87,9 +87,9 @@ def refuse_empty(label: str, grid: Grid, voxelization: Voxelization | Voxelizati
     >>> from voxrt.voxelize import voxelize
     >>> scene = load("examples/house.obj")
     >>> grid = fit_grid(scene, depth=4)
-    >>> refuse_empty("house.obj", grid, voxelize(scene, grid))
+    >>> refuse_empty("house.obj", grid, voxelize(scene, grid).objects)
     """
-    if any(one.voxels for one in voxelization.objects):
+    if any(one.voxels for one in objects):
         return
     raise DoesNotFitError(
         f"{label}: the memory is empty: no object has a voxel in the grid, which is "

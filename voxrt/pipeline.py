@@ -114,7 +114,7 @@ def build(
     refuse_warnings(asset, loaded.warnings, options)
     scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated)
     if not options.allow_empty:
-        refuse_empty(asset_label(asset), grid, voxelization)
+        refuse_empty(asset_label(asset), grid, voxelization.objects)
     rom = octree.Rom(files.name, tree, scene.materials, grid)
     rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
     if options.lod or options.dialect == "lod":

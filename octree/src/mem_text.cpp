@@ -72,8 +72,8 @@ std::uint32_t crc_register(const Word* words, std::size_t count, std::uint32_t c
     const CrcTables& t = tables();
     for (std::size_t i = 0; i < count; ++i) {
         const Word w = words[i];
-        const std::uint32_t line = t.line[0][w & 255] ^ t.line[1][w >> 8 & 255] ^ t.line[2][w >> 16 & 255] ^
-                                   t.line[3][w >> 24];
+        const std::uint32_t line =
+            t.line[0][w & 255] ^ t.line[1][w >> 8 & 255] ^ t.line[2][w >> 16 & 255] ^ t.line[3][w >> 24];
         crc = t.shifted[0][crc & 255] ^ t.shifted[1][crc >> 8 & 255] ^ t.shifted[2][crc >> 16 & 255] ^
               t.shifted[3][crc >> 24] ^ line;
     }

@@ -112,7 +112,12 @@ def test_obj_and_ply_colours_are_those_of_the_native_module(tmp_path: Path) -> N
     header += ["property list uchar int vertex_indices", "end_header"]
     faces = [f"3 {i} {i + 1} {i + 2}" for i in range(0, 36, 3)]
     (tmp_path / "tinted.ply").write_text("\n".join([*header, *rows, *faces]) + "\n")
-    files = [["box.obj", "box.mtl", "my map.png"], ["tinted.obj"], ["tinted.ply"]]
+    header = ["ply", "format binary_little_endian 1.0", "element vertex 36", *(f"property float {a}" for a in "xyz")]
+    header += ["element face 12", "property list uchar int vertex_indices", "end_header\r"]
+    faces = [struct.pack("<Biii", 3, i, i + 1, i + 2) for i in range(0, 36, 3)]
+    data = (corners * [1, 0.75, 0.5]).astype("<f4").tobytes() + b"".join(faces)
+    (tmp_path / "returned.ply").write_bytes(("\n".join(header) + "\n").encode() + data)
+    files = [["box.obj", "box.mtl", "my map.png"], ["tinted.obj"], ["tinted.ply"], ["returned.ply"]]
     for native, found in build_both([[tmp_path / name for name in group] for group in files], 6):
         assert_same(native, found)
 

@@ -318,19 +318,14 @@ void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fil
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
     SparseVoxels all;
-    const int side = 1 << depth;
-    SparseVoxels found = voxelize_in_blocks(depth, parts, objects, fill, threads, side,
-                                            [&](SparseVoxels&& block) { all = std::move(block); });
-    found.depth = all.depth;
-    found.brick_codes = std::move(all.brick_codes);
-    found.brick_masks = std::move(all.brick_masks);
-    found.brick_materials = std::move(all.brick_materials);
-    found.brick_rows = std::move(all.brick_rows);
-    found.cells = std::move(all.cells);
-    found.octant_codes = std::move(all.octant_codes);
-    found.octant_levels = std::move(all.octant_levels);
-    found.octant_materials = std::move(all.octant_materials);
-    return found;
+    SparseVoxels report = voxelize_in_blocks(depth, parts, objects, fill, threads, 1 << depth,
+                                             [&](SparseVoxels&& block) { all = std::move(block); });
+    all.object_voxels = std::move(report.object_voxels);
+    all.object_modes = std::move(report.object_modes);
+    all.object_flipped = std::move(report.object_flipped);
+    all.object_mostly_filled = std::move(report.object_mostly_filled);
+    all.seconds = report.seconds;
+    return all;
 }
 
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,

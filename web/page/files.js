@@ -174,9 +174,20 @@ async function readStl(main, _folder, voxrt) {
   return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt);
 }
 
+// Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early.
+function withoutReturn(bytes) {
+  const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16));
+  const at = header.indexOf("end_header\r\n") + "end_header".length;
+  if (!header.startsWith("ply\n") || header[at] !== "\r") return bytes;
+  const made = new Uint8Array(bytes.length - 1);
+  made.set(bytes.subarray(0, at));
+  made.set(bytes.subarray(at + 1), at);
+  return made;
+}
+
 async function readPly(main, folder, voxrt) {
   const { PLYLoader } = await addon("loaders/PLYLoader");
-  const geometry = readsColours(new PLYLoader()).parse(main.bytes.buffer);
+  const geometry = readsColours(new PLYLoader()).parse(withoutReturn(main.bytes).buffer);
   const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);
   const scene = await bare(geometry, main, voxrt, rules);
   scene.warnings.push(...warnings);

@@ -47,7 +47,7 @@ export class GltfLooks {
     const source = texture.extensions?.EXT_texture_webp?.source ?? texture.source;
     const factor = "its materials took the colour of their factor";
     if (source === undefined) {
-      const kind = Object.keys(UNREADABLE).find((name) => texture.extensions?.[name]);
+      const kind = Object.keys(UNREADABLE).find((name) => name in (texture.extensions ?? {}));
       this.warn("texture", kind ? `textures[${index}] has only a ${UNREADABLE[kind]} image: ${factor}; convert its images to PNG or JPEG` : `textures[${index}] has no image: ${factor}`);
       return null;
     }

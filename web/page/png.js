@@ -96,7 +96,7 @@ function colouring({ type, depth }, palette, clear) {
   if (type === 3) return (line, column, out, at) => {
     const entry = value(line, column);
     for (let channel = 0; channel < 3; channel++) out[at + channel] = palette[3 * entry + channel] ?? 0;
-    out[at + 3] = clear?.[entry] ?? 255;
+    out[at + 3] = clear ? (clear[entry] ?? 255) : 255;
   };
   if (type === 0 || type === 4) return (line, column, out, at) => {
     const first = type === 4 ? 2 * column : column;

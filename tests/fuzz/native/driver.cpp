@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -22,6 +23,7 @@ constexpr unsigned kDaytimePerRun = 3600; // seconds, for an input that waits fo
 uint8_t visits[1 << 16]; // by place, of the current input
 uint8_t seen[1 << 16];   // the ranges of numbers of visits, of all inputs
 std::vector<uint8_t> current;
+volatile std::sig_atomic_t stopped = 0;
 std::filesystem::path folder;
 
 using Random = std::mt19937_64;
@@ -67,6 +69,26 @@ bool is_new() {
     return found;
 }
 
+void stop(int) { stopped = 1; }
+
+double seconds_of_processor() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Input {
+    std::vector<uint8_t> bytes;
+    double seconds; // of the processor
+};
+
+/// The fastest of a few: otherwise slow inputs, which visit more, would soon be most of the corpus.
+const std::vector<uint8_t>& choose(const std::vector<Input>& corpus, std::mt19937_64& random) {
+    const Input* chosen = &corpus[random() % corpus.size()];
+    for (int i = 0; i < 3; ++i) {
+        const Input& other = corpus[random() % corpus.size()];
+        if (other.seconds < chosen->seconds)
+            chosen = &other;
+    }
+    return chosen->bytes;
+}
+
 /// A busy machine must not make a finding of an input: what counts is the time of the processor.
 void limit_time(unsigned processor, unsigned daytime) {
     const itimerval limit{{0, 0}, {time_t(processor), 0}};
@@ -74,15 +96,18 @@ void limit_time(unsigned processor, unsigned daytime) {
     alarm(daytime);
 }
 
-void run(std::span<const uint8_t> data) {
+/// The seconds of the processor that the input takes.
+double run(std::span<const uint8_t> data) {
     current.assign(data.begin(), data.end());
     std::memset(visits, 0, sizeof visits);
     limit_time(kSecondsPerRun, kDaytimePerRun);
+    const double start = seconds_of_processor();
     fuzz_one(current);
     limit_time(0, 0);
+    return seconds_of_processor() - start;
 }
 
-void mutate(std::vector<uint8_t>& data, const std::vector<std::vector<uint8_t>>& corpus, Random& random) {
+void mutate(std::vector<uint8_t>& data, const std::vector<Input>& corpus, Random& random) {
     static constexpr double kNumbers[] = {0, 1, -1, 0.5, 4096, 1e-300, 1e300, 262144, 1.0 / 4096, -0.0};
     const auto below = [&random](size_t n) { return n == 0 ? 0 : size_t(random() % n); };
     for (size_t step = 0, steps = 1 + below(4); step < steps; ++step) {
@@ -107,7 +132,7 @@ void mutate(std::vector<uint8_t>& data, const std::vector<std::vector<uint8_t>>&
                        data.begin() + ptrdiff_t(std::min(data.size(), at + 1 + below(32))));
             break;
         case 4: {
-            const auto& other = corpus[below(corpus.size())];
+            const auto& other = choose(corpus, random);
             const size_t from = below(other.size()), count = below(other.size() - from + 1);
             data.insert(data.begin() + ptrdiff_t(at), other.begin() + ptrdiff_t(from),
                         other.begin() + ptrdiff_t(from + count));
@@ -150,37 +175,40 @@ int main(int count, char** arguments) {
         return 2;
     }
     const uint64_t runs = std::strtoull(arguments[1], nullptr, 10);
-    std::vector<std::vector<uint8_t>> corpus = {fuzz_seed()};
+    std::vector<Input> corpus = {{fuzz_seed(), 0}};
     if (count > 2) {
         folder = arguments[2];
         std::filesystem::create_directories(folder);
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
             std::ifstream file(entry.path(), std::ios::binary);
-            corpus.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+            corpus.push_back({{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, 0});
         }
     }
     std::signal(SIGABRT, aborted);
     std::signal(SIGALRM, too_slow);
     std::signal(SIGPROF, too_slow);
+    std::signal(SIGINT, stop);
+    std::signal(SIGTERM, stop);
     std::set_terminate([] { fuzz_fail("an exception that nobody caught"); });
     std::random_device entropy;
     Random random((uint64_t(entropy()) << 32) | entropy());
-    for (const auto& input : corpus) {
-        run(input);
+    for (auto& input : corpus) {
+        input.seconds = run(input.bytes);
         is_new();
     }
     const auto start = std::chrono::steady_clock::now();
-    for (uint64_t done = 0; done < runs; ++done) {
-        std::vector<uint8_t> input = corpus[random() % corpus.size()];
+    uint64_t done = 0;
+    for (; done < runs && !stopped; ++done) {
+        std::vector<uint8_t> input = choose(corpus, random);
         mutate(input, corpus, random);
-        run(input);
+        const double seconds = run(input);
         if (is_new()) {
             keep(std::to_string(corpus.size()) + "-" + std::to_string(random()), input);
-            corpus.push_back(std::move(input));
+            corpus.push_back({std::move(input), seconds});
         }
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::printf("%llu executions in %.0f s, a corpus of %zu inputs, no finding\n",
-                static_cast<unsigned long long>(runs), seconds.count(), corpus.size());
+                static_cast<unsigned long long>(done), seconds.count(), corpus.size());
     return 0;
 }

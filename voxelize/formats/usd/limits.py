@@ -12,11 +12,11 @@ waits for ever.
 
 from __future__ import annotations
 
-import os
 import resource
 import signal
 from dataclasses import dataclass
-from pathlib import Path
+
+from voxrt.voxelize.free_memory import free_memory
 
 _MEMORY = 2 << 30
 _LEAST_MEMORY = 256 << 20
@@ -79,19 +79,3 @@ def _set(kind: int, wanted: int) -> None:
     _, hard = resource.getrlimit(kind)
     soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
     resource.setrlimit(kind, (soft, hard))
-
-
-def free_memory() -> int:
-    """Return the bytes that processes may still take: of the machine, and of the container that this process is in."""
-    free = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        free = next(int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable:"))
-        most, used = (Path("/sys/fs/cgroup", name).read_text(encoding="ascii") for name in _GROUP)
-        free = min(free, max(int(most) - int(used), 0))
-    except (OSError, ValueError, StopIteration):  # another system, no container, or one without a limit ("max")
-        pass
-    return free
-
-
-_GROUP = ("memory.max", "memory.current")
