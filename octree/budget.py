@@ -33,7 +33,13 @@ if TYPE_CHECKING:
 
     _SightCosts = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]
 
-BOARDS = {"pynq-z1": 1 + 8 * 4096, "ulx3s-85f": 1 + 8 * 4096}
+BOARDS = {
+    "icepi-zero": 1 + 8 * 2048,
+    "pynq-z1": 1 + 8 * 4096,
+    "ulx3s-12f": 1 + 8 * 2048,
+    "ulx3s-45f": 1 + 8 * 4096,
+    "ulx3s-85f": 1 + 8 * 4096,
+}
 """Words of the octree memory of each board's design: 2**BlockBits blocks of 8, and the root."""
 
 _LEVELS_KEPT = 3

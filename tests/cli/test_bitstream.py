@@ -28,7 +28,7 @@ def test_refused(voxrt, arguments, code, message):
 
 
 def test_other_boards_are_refused(voxrt):
-    assert "there are ulx3s-85f" in voxrt("bitstream", "house.obj", "--board", "pynq-z1").err
+    assert "there are icepi-zero, ulx3s-12f" in voxrt("bitstream", "house.obj", "--board", "pynq-z1").err
     assert voxrt("bitstream", "house.obj", "--board", "pynq-z1").code == 2
 
 
