@@ -78,8 +78,35 @@ def _bound(monkeypatch, read, arguments):
 
 
 WORDS = st.sampled_from(
-    "a.obj b.glb x.mem out -o --output --depth 4 16 17 04 --depth=5 --fill solid surface Solid "
-    " --json --no-json -q --quiet -v --verbose -qv --strict - --".split(" ")
+    [
+        "a.obj",
+        "b.glb",
+        "x.mem",
+        "out",
+        "-o",
+        "--output",
+        "--depth",
+        "4",
+        "16",
+        "17",
+        "04",
+        "--depth=5",
+        "--fill",
+        "solid",
+        "surface",
+        "Solid",
+        "",
+        "--json",
+        "--no-json",
+        "-q",
+        "--quiet",
+        "-v",
+        "--verbose",
+        "-qv",
+        "--strict",
+        "-",
+        "--",
+    ]
 )
 
 
