@@ -8,6 +8,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <cstdio>
+#include <ctime>
+static double cpu(){timespec t;clock_gettime(CLOCK_THREAD_CPUTIME_ID,&t);return t.tv_sec+1e-9*t.tv_nsec;}
+static double pcpu(){timespec t;clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&t);return t.tv_sec+1e-9*t.tv_nsec;}
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -187,7 +191,9 @@ struct Scratch {
 } // namespace
 
 std::vector<Word> build(const VoxelsView& voxels, int threads) {
+    double c0=cpu(),p0=pcpu();
     const std::vector<Chunk> chunks = cut_into_chunks(voxels);
+    double c1=cpu();
     const unsigned top = std::min(voxels.depth, kChunkLevel);
     const voxelize::Workers workers(threads);
     std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(workers.threads()));
@@ -209,11 +215,14 @@ std::vector<Word> build(const VoxelsView& voxels, int threads) {
                   last ? voxels.octants : chunks[i + 1].octant, own->bricks, octree);
     });
 
+    double c2=cpu(),p2=pcpu();
     BlockPool& pool = scratch[0]->pool;
+    size_t own=pool.size();
     std::vector<std::vector<Node>> translation(scratch.size());
     for (std::size_t thread = 1; thread < scratch.size(); ++thread)
         if (scratch[thread])
             translation[thread] = pool.absorb(scratch[thread]->pool);
+    double c3=cpu();
     Node root = kEmpty;
     OctreeBuilder octree(pool, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
     for (std::size_t i = 0; i < chunks.size(); ++i)
@@ -222,7 +231,11 @@ std::vector<Word> build(const VoxelsView& voxels, int threads) {
             octree.add(part.level, part.code, foreign ? translation[thread_of[i]][part.node] : part.node);
         }
     octree.finish();
-    return breadth_first_words(pool, root);
+    double c4=cpu();
+    auto w= breadth_first_words(pool, root);
+    double c5=cpu();
+    fprintf(stderr,"bricks %zu octants %zu own %zu all %zu words %zu | cut %.3f chunks main %.3f all %.3f absorb %.3f top %.3f bfs %.3f\n",voxels.bricks,voxels.octants,own,pool.size(),w.size(),c1-c0,c2-c1,p2-p0,c3-c2,c4-c3,c5-c4);
+    return w;
 }
 
 std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
