@@ -281,6 +281,53 @@ def test_a_ray_is_followed_as_voxrt_trace_does(browser: Browser) -> None:
     assert browser.run("return document.querySelectorAll('#octants path').length") > 0
 
 
+def hardware_says(browser: Browser) -> str:
+    return browser.run("return document.querySelector('#hardware-says').textContent")
+
+
+def test_the_real_hardware_renders_the_view_with_no_wrong_pixel(browser: Browser, asked: list[str]) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    assert not any("hardware.wasm" in path for path in asked)
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.until("!document.querySelector('#hardware-result').hidden", 60), hardware_says(browser)
+    assert hardware_says(browser).startswith("0 wrong pixels of 76,800")
+    assert any("hardware.wasm" in path for path in asked)
+    # The circuit counts the clocks that it takes natively, for the same view.
+    script = """
+        const { toRegisters } = await import("./camera.js");
+        arguments[0](toRegisters(window.voxrt.view(), [320, 240]));
+    """
+    camera = browser.run_async(f"(async (...arguments) => {{ {script} }})(...arguments)")
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    rom = voxrt.build(EXAMPLES / "courtyard.glb", depth=7).rom
+    native = render(rom, registers, (320, 240), engine="rtl", config="tiny")
+    facts = browser.run("return document.querySelector('#hardware-facts').innerText")
+    assert f"{native.cost.cycles:,}" in facts
+    assert f"{native.cost.cycles / 76800:.2f}" in facts
+    assert browser.faults() == []
+
+
+def test_a_run_of_the_hardware_can_be_cancelled_and_the_page_stays_usable(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.run("return document.querySelector('#run-hardware').textContent") == "Cancel"
+    x, y = browser.middle("#picture")
+    before = browser.run("return window.voxrt.newest.camera.look")
+    browser.mouse([(x, y), (x + 60, y)])
+    browser.draws()
+    assert browser.until(RESTS)
+    assert browser.run("return window.voxrt.newest.camera.look") != before
+    browser.run("const run = document.querySelector('#run-hardware'); if (run.textContent === 'Cancel') run.click()")
+    assert browser.until("document.querySelector('#run-hardware').textContent === 'Run the real hardware'")
+    assert browser.run("return document.querySelector('#hardware-progress').hidden")
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.until("!document.querySelector('#hardware-result').hidden", 60), hardware_says(browser)
+    assert hardware_says(browser).startswith("0 wrong pixels")
+    assert browser.faults() == []
+
+
 def test_bad_files_are_refused_and_the_page_lives_on(browser: Browser, tmp_path: Path) -> None:
     opened(browser)
     assert browser.until(shown("courtyard", 7))

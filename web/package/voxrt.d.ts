@@ -143,6 +143,8 @@ export class Voxrt {
   setMemory(words: ArrayLike<number>, depth: number): void;
   /** The least depth of the world that words describe. */
   depthOf(words: ArrayLike<number>): number;
+  /** The least number of levels by which the memory must be coarser to have at most so many words. */
+  levelThatFits(words: number): number;
   /** How hits are coloured. */
   shade(look: Look): void;
   /** Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. */

@@ -8,6 +8,7 @@ import { $, isPressed, makeButton, makeToolbar, pressed } from "./elements.js";
 import { Figures } from "./figures.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Glide } from "./glide.js";
+import { HardwarePanel } from "./hardware_panel.js";
 import { Inspector } from "./inspector.js";
 import { Light } from "./light.js";
 import { memBytes } from "./mem.js";
@@ -43,6 +44,7 @@ const app = {
   side: () => 2 ** memory.depth,
   bounds: () => memory.bounds,
   limit: () => 8 * app.side() + 512,
+  plainLook: () => ({ ...shading(), mirrors: [], light: null, bounces: 0 }),
   change(how) {
     if (!view) return;
     glide.stop();
@@ -333,8 +335,9 @@ async function start() {
   light = new Light(app);
   light.hello(painter.hello);
   inspector = new Inspector(app);
+  new HardwarePanel(app, module);
   painter.addEventListener("frame", ({ detail }) => {
-    window.voxrt = { newest: detail, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
+    window.voxrt = { newest: detail, view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
     const samples = frames.receive(detail);
     picture.show(detail, samples, false);
     figures.add(detail, samples);
