@@ -19,6 +19,7 @@ export const FILLS = ["surface", "solid", "auto"];
 export const DEPTH_LIMIT = 16;
 export const BACKGROUND = [24, 28, 36];
 export const WRAPS = ["repeat", "mirror", "clamp"];
+export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };
 export const COLOURS = 32; // for all textures and vertex colours of a scene
 
 export class Voxrt extends Instance {
@@ -31,7 +32,11 @@ export class Voxrt extends Instance {
   // corners. factor: linear red, green, blue, alpha. texture: {image: {width, height, pixels}, wrap: [along u, along v],
   // nearest}, 4 bytes per pixel. cutoff: the surface is cut away where its alpha is below it.
   // scene.objects: [{name, mesh: index, transform: 12 numbers, rows of 3 x 4, to metres with y up}].
-  voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS } = {}) {
+  // Meshes may have normals, for baked light: {directions, rows}, three numbers per direction, of any length, zeros for
+  // none; and the direction of each corner of each triangle, or -1.
+  // bake: null, or {sun, sky, samples}: the direction towards the sun, linear light of the sky (red, green, blue), rays
+  // to the sky per voxel.
+  voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null } = {}) {
     if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT) throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
     if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
     const { wasm } = this;
@@ -45,6 +50,9 @@ export class Voxrt extends Instance {
         const [vertices, triangles] = [mesh.positions.length / 3, mesh.triangles.length / 3];
         this.with(Float64Array, mesh.positions, (at) => this.with(Int32Array, mesh.triangles, (corners) => this.with(Uint8Array, mesh.materials, (ids) =>
           this.checked(wasm.vx_mesh(at, vertices, corners, triangles, ids)))));
+        if (bake && mesh.normals)
+          this.with(Float64Array, mesh.normals.directions, (at) => this.with(Int32Array, mesh.normals.rows, (rows) =>
+            this.checked(wasm.vx_normals(at, mesh.normals.directions.length / 3, rows))));
         if (!mesh.surface) continue;
         const { entries, rows, uv, colours: light } = mesh.surface;
         const numbers = entries.map((entry) => {
@@ -58,6 +66,7 @@ export class Voxrt extends Instance {
         this.with(Float64Array, transform, (at) => this.text(name, (text) => this.checked(wasm.vx_object(mesh, at, text))));
       const transparent = this.checked(wasm.vx_scene_end());
       this.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
+      const baked = bake && this.#bake(bake);
       const words = this.view(Uint32Array, wasm.vx_words(), wasm.vx_word_count()).slice();
       const voxels = this.view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
       const objects = Array.from(voxels, (count, i) => ({ name: this.string(wasm.vx_object_name(i)), mode: this.string(wasm.vx_object_mode(i)), voxels: Number(count) }));
@@ -70,8 +79,16 @@ export class Voxrt extends Instance {
         warnings.push({ kind: this.string(wasm.vx_warning_kind(i)), message: this.string(wasm.vx_warning_message(i)), count: wasm.vx_warning_objects(i) });
       const grid = { origin: [...this.view(Float64Array, wasm.vx_origin(), 3)], voxelSize: wasm.vx_voxel_size() };
       wasm.vx_scene_begin();
-      return { words, depth, grid, materials, objects, warnings };
+      return { words, depth, grid, materials, objects, warnings, baked };
     });
+  }
+
+  // Put light into the colours. Returns what the manifest says of it.
+  #bake({ sun, sky, samples }) {
+    const { wasm } = this;
+    const wordsBefore = wasm.vx_word_count();
+    const voxels = this.with(Float64Array, sun, (towards) => this.with(Float64Array, sky, (light) => this.checked(wasm.vx_bake(towards, light, samples))));
+    return { sun, sky, samples, voxels, wordsBefore, words: wasm.vx_word_count() };
   }
 
   #appearance({ name, factor = [1, 1, 1, 1], texture = null, cutoff = 0, mirror = false }, images) {
