@@ -19,7 +19,7 @@ from PIL import Image
 
 import voxrt
 from voxrt.export.vox import read_vox, write_vox
-from voxrt.octree.camera import Camera
+from voxrt.octree.camera import Camera, Lighting
 from voxrt.sim import render
 
 if TYPE_CHECKING:
@@ -224,6 +224,34 @@ def test_downloads_equal_the_files_of_build(browser: Browser, tmp_path: Path) ->
         native.pop(name)
     assert page == native
     assert saved(browser, got, "#save", "house.png").startswith(b"\x89PNG")
+
+
+def test_baked_light_is_shown_and_saved_as_natively(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, "#scene=house&depth=6&bake=-2,1,0.5,0.3,20")
+    assert browser.until(shown("house", 6)), notice(browser)
+    options = {"bake": True, "sun": (-2, 1, 0.5), "sky": 0.3, "bake_samples": 20}
+    native = voxrt.build(EXAMPLES / "house.obj", tmp_path / "native", depth=6, **options)
+    got = tmp_path / "page"
+    got.mkdir()
+    assert saved(browser, got, "#save-mem", "house.mem") == native.outputs["mem"].read_bytes()
+    page = json.loads(saved(browser, got, "#save-manifest", "house.json"))
+    manifest = json.loads(native.outputs["manifest"].read_bytes())
+    for name in ("seconds", "source"):
+        page.pop(name)
+        manifest.pop(name)
+    assert page == manifest
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    flat = render(native.rom, registers, tuple(size), engine="model", lighting=Lighting(flat=True))
+    assert np.array_equal(colours, flat.colour)
+    browser.run("document.querySelector('#bake').click()")
+    plain = voxrt.build(EXAMPLES / "house.obj", depth=6).rom
+    words = f"{len(plain.octree.words):,}"
+    assert browser.until(f"document.querySelector('#facts').innerText.includes('{words}') && {RESTS}")
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(plain, registers, tuple(size), engine="model").colour)
+    assert browser.faults() == []
 
 
 def test_the_depth_slider_builds_anew_and_keeps_the_view(browser: Browser) -> None:

@@ -3,6 +3,7 @@
 
 import { Builder } from "./builder.js";
 import { FIELD_OF_VIEW, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
+import { DaylightControl } from "./daylight.js";
 import { linkOf, manifestOf, readLink, save } from "./downloads.js";
 import { $, isPressed, makeButton, makeToolbar, pressed } from "./elements.js";
 import { Figures } from "./figures.js";
@@ -28,7 +29,7 @@ const canvas = $("picture");
 const picture = new Picture(canvas);
 const figures = new Figures($("figures"));
 const glide = new Glide();
-let painter, builder, frames, light, inspector;
+let painter, builder, frames, light, inspector, daylight;
 let view = null; // the camera for people of camera.js
 let memory = null; // what worker.js built, with voxels and bounds
 let source = null; // {files, example}
@@ -85,7 +86,7 @@ async function build(first) {
   const timer = setTimeout(() => show("Building"), 250);
   let stage = "";
   try {
-    const built = await builder.build(source.files, { depth, fill: "auto" }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
+    const built = await builder.build(source.files, { depth, fill: "auto", bake: daylight.options }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
     if (source !== wanted) return;
     clearTimeout(timer);
     await showMemory(built, first);
@@ -98,6 +99,9 @@ async function build(first) {
 }
 
 async function showMemory(built, first) {
+  // Baked light is shown flat; other memories not, unless the user has chosen so.
+  if (built.baked) look.shading = "flat";
+  else if (memory?.baked) look.shading = "faces";
   memory = built;
   memory.bounds = [[0, 0, 0], Array(3).fill(2 ** built.depth)];
   look.light = LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
@@ -147,7 +151,7 @@ function describe() {
   $("scene").textContent = name;
   $("details").textContent = `${(2 ** depth).toLocaleString("en")}³ voxels · ${words.length.toLocaleString("en")} words${seconds ? ` · ${seconds.toFixed(2)} s` : ""}`;
   document.title = `${name} · voxrt`;
-  $("depth").disabled = Boolean(fixed);
+  for (const control of ["depth", "bake"]) $(control).disabled = Boolean(fixed);
   if (fixed) $("depth").value = depth;
   showDepth();
   const facts = { words: words.length.toLocaleString("en"), memory: kib(words.length), "solid voxels": short.format(solid) };
@@ -291,7 +295,7 @@ function listen() {
   $("save").onclick = () => memory && picture.save(memory.name);
   $("copy").onclick = async () => {
     if (!memory) return;
-    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, view }));
+    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, view }));
     const done = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
     $("copy").textContent = done ? "Copied" : "In the address bar";
     setTimeout(() => { $("copy").textContent = "Copy link"; }, 1500);
@@ -343,9 +347,11 @@ async function start() {
     figures.add(detail, samples);
   });
   painter.addEventListener("trouble", ({ detail }) => notice("error", "There are no frames", detail));
+  daylight = new DaylightControl(() => source && build(false));
   const pilot = listen();
   const link = readLink(location.hash);
   if (link.depth) $("depth").value = link.depth;
+  if (link.bake) daylight.set(link.bake);
   showDepth();
   await openExample(link.example in examples ? link.example : "courtyard");
   if (link.camera && memory) {
