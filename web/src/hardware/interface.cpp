@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace voxrt::rtl {
-std::unique_ptr<Design> make_design(); // web/build_hardware.py makes its source
+std::unique_ptr<Design> make_tiny(); // sim/src/rtl/configuration.cpp.in
 }
 
 /// What the C++ library lacks here: destructors of a thread's variables, of a thread that does not end.
@@ -39,7 +39,7 @@ struct Frame {
 Frame frame;
 
 rtl::Design& design() {
-    static const std::unique_ptr<rtl::Design> made = rtl::make_design();
+    static const std::unique_ptr<rtl::Design> made = rtl::make_tiny();
     return *made;
 }
 
