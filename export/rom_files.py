@@ -26,6 +26,9 @@ from voxrt.voxelize.arguments import choice, instance
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from voxrt.export.blob import Blob
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source

@@ -65,7 +65,7 @@ Likeness FitViews::likeness(const octree::VerifiedMemory& fitted) const {
 std::vector<uint8_t> FitViews::render_view(const octree::VerifiedMemory& memory, const Camera& camera) const {
     static constexpr uint8_t kNoMirrors[256] = {};
     std::vector<uint8_t> colour(3 * kPixels), material(kPixels), face(kPixels);
-    render(memory, {materials_, kNoMirrors, 0, flat_, {}, {}}, camera,
+    render(memory, {materials_, kNoMirrors, 0, flat_, {}, {}}, Lod{}, camera,
            {width, height, colour.data(), material.data(), face.data()}, threads_, tile_engines()[0].render_tile);
     return colour;
 }
