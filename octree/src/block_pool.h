@@ -4,9 +4,8 @@
 // Cost: for a block that is already there, one probe (a cache line of slots) and one comparison (half a line).
 #pragma once
 
-#include "words.h"
+#include "block_hash.h"
 
-#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -69,35 +68,20 @@ private:
     static constexpr Word kFree = 0xFFFFFFFFu;
     static constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
 
-    // Blocks are compared and hashed two words at a time.
-    static std::uint64_t pair(const Block& block, unsigned i) {
-        std::uint64_t words;
-        std::memcpy(&words, &block[2 * i], sizeof words);
-        return words;
-    }
-
     static bool all_equal(const Block& children) {
-        const std::uint64_t first = pair(children, 0);
-        return ((first ^ pair(children, 1)) | (first ^ pair(children, 2)) | (first ^ pair(children, 3)) |
+        const std::uint64_t first = word_pair(children, 0);
+        return ((first ^ word_pair(children, 1)) | (first ^ word_pair(children, 2)) | (first ^ word_pair(children, 3)) |
                 (children[0] ^ children[1])) == 0;
     }
 
     static bool same(const Block& a, const Block& b) {
-        return ((pair(a, 0) ^ pair(b, 0)) | (pair(a, 1) ^ pair(b, 1)) | (pair(a, 2) ^ pair(b, 2)) |
-                (pair(a, 3) ^ pair(b, 3))) == 0;
+        return ((word_pair(a, 0) ^ word_pair(b, 0)) | (word_pair(a, 1) ^ word_pair(b, 1)) | (word_pair(a, 2) ^ word_pair(b, 2)) |
+                (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
     }
 
-    // Multiply-fold mixing (Wang Yi, wyhash, 2019), in two chains that run side by side.
     static Word hash_of(const Block& children) {
-        const std::uint64_t hash = fold(fold(pair(children, 0) ^ 0x9E3779B97F4A7C15u, pair(children, 1)) ^
-                                            fold(pair(children, 2) ^ 0xA0761D6478BD642Fu, pair(children, 3)),
-                                        0);
+        const std::uint64_t hash = block_hash(children);
         return static_cast<Word>(hash ^ hash >> 32);
-    }
-
-    static std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
-        const __uint128_t product = static_cast<__uint128_t>(a) * (b ^ 0xD6E8FEB86659FD93u);
-        return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
     }
 
     void grow() {

@@ -19,6 +19,7 @@ struct TriangleBins {
 
 /// Analyses and bins the parts for a grid of `side` voxels. `fill`: find what open parts need to be filled. Throws
 /// OutOfRange, and std::length_error where the tiles would list 2^32 triangles or more.
-TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, Fill fill, const Workers& workers);
+TriangleBins bin_triangles(const std::vector<PartView>& parts, std::span<const uint8_t> wanted_objects, int side,
+                           Fill fill, const Workers& workers);
 
 } // namespace voxrt::voxelize
