@@ -20,7 +20,7 @@ from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
 from voxrt.export.mem import read_mem
 from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
-from voxrt.export.raw import raw_bytes, read_raw
+from voxrt.export.raw import raw_pieces, read_raw
 from voxrt.export.word_file import mem_crc32, mem_pieces
 from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
@@ -46,7 +46,7 @@ _WRITERS: dict[str, Callable[[NDArray[np.uint32]], bytes | Iterable[bytes]]] = {
     ".mem": mem_pieces,
     ".coe": coe_bytes,
     ".mif": mif_bytes,
-    ".bin": raw_bytes,
+    ".bin": raw_pieces,
 }
 
 WORD_SUFFIXES = tuple(_WRITERS)

@@ -32,20 +32,34 @@ class BuildEstimate:
         Wall-clock seconds.
     bytes
         Memory at the peak.
+    disk
+        Bytes on the disk while it is built, besides the output.
+    surface
+        Voxels of the surface.
+    least
+        Bytes of memory that the program and the triangles take in any case.
 
     Examples
     --------
     >>> str(BuildEstimate(200.0, 6 << 30))
     '3 minutes and 6.0 GB of memory'
+    >>> str(BuildEstimate(200.0, 2 << 30, disk=9 << 30))
+    '3 minutes, 2.0 GB of memory and 9.0 GB of disk'
     """
 
     seconds: float
     bytes: int
+    disk: int = 0
+    surface: int = 0
+    least: int = 0
 
     def __str__(self) -> str:
         minutes = round(self.seconds / 60)
         time = f"{minutes} minute{'s' * (minutes > 1)}" if minutes else f"{self.seconds:.0f} seconds"
-        return f"{time} and {self.bytes / (1 << 30):.1f} GB of memory"
+        memory = f"{self.bytes / (1 << 30):.1f} GB of memory"
+        if not self.disk:
+            return f"{time} and {memory}"
+        return f"{time}, {memory} and {self.disk / (1 << 30):.1f} GB of disk"
 
 
 def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEstimate:
@@ -90,10 +104,6 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     if options.preview and options.engine == "rtl":
         rays = options.size[0] * options.size[1] * options.samples**2
         seconds += rays * _SECONDS_PER_HARDWARE_RAY
-    taken = (
-        _BYTES_AT_START
-        + triangles * _BYTES_PER_TRIANGLE
-        + surface * _BYTES_PER_SURFACE_VOXEL
-        + coloured * _BYTES_PER_COLOURED_VOXEL
-    )
-    return BuildEstimate(seconds, int(taken))
+    least = _BYTES_AT_START + triangles * _BYTES_PER_TRIANGLE
+    taken = least + surface * _BYTES_PER_SURFACE_VOXEL + coloured * _BYTES_PER_COLOURED_VOXEL
+    return BuildEstimate(seconds, int(taken), surface=int(surface), least=least)

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import os
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
-from voxrt.blockwise import build_octree
+from voxrt.blockwise import build_octree, plan_build
 from voxrt.build_grid import build_grid
 from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
 from voxrt.build_view import authored_view, preview
 from voxrt.build_writing import named_settings, write_build
-from voxrt.estimate import estimate_build
 from voxrt.from_arrays import mesh_scene
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import output_files, refuse_other_asset
 from voxrt.sim import SimulatorError
 from voxrt.stage_clock import StageClock
+from voxrt.tile_store import TileStore
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, named_camera
 
 if TYPE_CHECKING:
@@ -112,39 +113,41 @@ def build(
             viewpoint = named_camera(asset_label(asset), loaded, options.camera)
             loaded = replace(loaded, viewpoint=viewpoint)
     refuse_warnings(asset, loaded.warnings, options)
-    scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated)
-    if not options.allow_empty:
-        refuse_empty(asset_label(asset), grid, voxelization.objects)
-    rom = octree.Rom(files.name, tree, scene.materials, grid)
-    rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
-    view, lighting, unseen = authored_view(scene, rom, options)
-    warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
-    refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
-    if files.preview is not None:
-        with clock.stage("preview"):
-            try:
-                picture = preview(rom, _camera(rom, view, scene, options), lighting, options)
-            except (SimulatorError, ViewpointError) as error:
-                unseen_picture = error  # the memory is sound: it is written first
-    result = BuildResult(
-        rom,
-        scene,
-        voxelization.objects,
-        warnings,
-        {},
-        picture,
-        interior_fit,
-        budget_fit,
-        clock.seconds,
-        {"voxelize": voxelization.seconds},
-        view,
-        lighting,
-        export.Source(source, named_settings(options)),
-        baked,
-    )
-    with clock.stage("write"):
-        result.outputs.update(write_build(files, result, options))
+    with ExitStack() as stack:
+        store = None if files.words is None else stack.enter_context(TileStore(_tiles_folder(files.words)))
+        scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated, store)
+        if not options.allow_empty:
+            refuse_empty(asset_label(asset), grid, voxelization.objects)
+        rom = octree.Rom(files.name, tree, scene.materials, grid)
+        rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
+        view, lighting, unseen = authored_view(scene, rom, options)
+        warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
+        refuse_warnings(asset, warnings, options)
+        if files.preview is not None:
+            with clock.stage("preview"):
+                try:
+                    picture = preview(rom, _camera(rom, view, scene, options), lighting, options)
+                except (SimulatorError, ViewpointError) as error:
+                    unseen_picture = error  # the memory is sound: it is written first
+        result = BuildResult(
+            rom,
+            scene,
+            voxelization.objects,
+            warnings,
+            {},
+            picture,
+            interior_fit,
+            budget_fit,
+            clock.seconds,
+            {"voxelize": voxelization.seconds},
+            view,
+            lighting,
+            export.Source(source, named_settings(options)),
+            baked,
+        )
+        with clock.stage("write"):
+            result.outputs.update(write_build(files, result, options))
     if picture is not None:  # what programs read keeps its order
         clock.seconds["preview"] = clock.seconds.pop("preview")
     if unseen_picture is not None:
@@ -203,17 +206,26 @@ def voxelize_mesh(
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
 
 
+def _tiles_folder(words: Path) -> Path:
+    return words.with_name(f"{words.stem}.tiles")
+
+
 def _voxelize(
-    scene: Scene, options: BuildOptions, clock: StageClock, estimated: Callable[[BuildEstimate], None] | None
+    scene: Scene,
+    options: BuildOptions,
+    clock: StageClock,
+    estimated: Callable[[BuildEstimate], None] | None,
+    store: TileStore | None,
 ) -> tuple[Scene, Grid, Octree, VoxelizationReport]:
     """Fit a grid, reduce colours to materials, voxelize, build the octree."""
     with clock.stage("fit"):
         grid = build_grid(scene, options)
+        plan = plan_build(scene, grid, options, on_disk=store is not None)
     if estimated is not None:
-        estimated(estimate_build(scene, grid, options))
+        estimated(plan.estimate)
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
-    return scene, grid, *build_octree(scene, grid, options, clock)
+    return scene, grid, *build_octree(scene, grid, options, clock, plan, store)
 
 
 def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:
