@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+from functools import cached_property
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -25,36 +27,33 @@ if TYPE_CHECKING:
 
 
 class ColumnBlock(NamedTuple):
-    """A square of columns over the grid's whole height, by its lowest column.
+    """A square of columns over the grid's whole height.
 
     Attributes
     ----------
     x, y
-        Voxels along the grid's axes.
+        Its lowest column, in voxels along the grid's axes.
+    side
+        Columns per side.
     """
 
     x: int
     y: int
+    side: int
 
 
 class BlockVoxelizer:
     """A scene that is ready to be voxelized, one square of columns at a time and in any order.
 
-    What is done for all squares together, the analysis of the meshes and the binning of their triangles, is done once.
+    What is done for all squares together, the analysis of the meshes and the binning of their triangles, is done once,
+    when it is first needed.
 
     Parameters
     ----------
     scene, grid, fill, geometry, pow2, threads
         As :func:`voxrt.voxelize.voxelize` takes them.
-    block_side
-        Columns per side of a square, a multiple of 64.
     objects
         Numbers of the objects to voxelize, for squares that no other object reaches; None for all.
-
-    Attributes
-    ----------
-    block_side
-        As it was given.
 
     Raises
     ------
@@ -65,10 +64,11 @@ class BlockVoxelizer:
     --------
     >>> from voxrt.voxelize import BlockVoxelizer, fit_grid, load
     >>> scene = load("examples/house.obj")
-    >>> voxelizer = BlockVoxelizer(scene, fit_grid(scene, depth=7), block_side=64)
-    >>> voxelizer.blocks[:2]
-    (ColumnBlock(x=0, y=0), ColumnBlock(x=64, y=0))
-    >>> voxels, tallies = voxelizer.voxelize(voxelizer.blocks[0])
+    >>> voxelizer = BlockVoxelizer(scene, fit_grid(scene, depth=7))
+    >>> blocks = voxelizer.blocks(64)
+    >>> blocks[:2]
+    (ColumnBlock(x=0, y=0, side=64), ColumnBlock(x=64, y=0, side=64))
+    >>> voxels, tallies = voxelizer.voxelize(blocks[0])
     >>> tallies.shape
     (5, 4)
     """
@@ -78,41 +78,57 @@ class BlockVoxelizer:
         scene: Scene,
         grid: Grid,
         *,
-        block_side: int,
         fill: Literal["solid", "surface", "auto"] = "solid",
         geometry: Geometry = "auto",
         pow2: Pow2 = "box",
         threads: int = 0,
         objects: Iterable[int] | None = None,
     ) -> None:
-        self.block_side = arguments.whole("block_side", block_side, 64, 1 << 16)
         threads = arguments.whole("threads", threads, 0, MOST_THREADS)
         self._parts = SceneParts(scene, grid, fill, geometry, pow2)
         self._native_arguments = (*self._parts.native_arguments(), fill)
-        wanted = np.zeros(0 if objects is None else len(scene.objects), np.uint8)
-        if objects is not None:
-            wanted[list(objects)] = 1
+        self._threads = threads
+        self._objects = None if objects is None else tuple(objects)
+
+    def restricted(self, objects: Iterable[int]) -> BlockVoxelizer:
+        """Return a voxelizer of the same scene for squares that no other object than these reaches."""
+        made = copy(self)
+        made.__dict__.pop("_native", None)
+        made._objects = tuple(objects)  # noqa: SLF001 - one of us
+        return made
+
+    @cached_property
+    def _native(self) -> _native.BlockVoxelizer:
+        wanted = np.zeros(0 if self._objects is None else len(self._parts.scene.objects), np.uint8)
+        if self._objects is not None:
+            wanted[list(self._objects)] = 1
         try:
-            self._native = _native.BlockVoxelizer(*self._native_arguments, threads, wanted)
+            return _native.BlockVoxelizer(*self._native_arguments, self._threads, wanted)
         except _native.OutOfRangeError as error:
-            raise unreachable(scene, int(error.args[0])) from None
+            raise unreachable(self._parts.scene, int(error.args[0])) from None
 
     @property
     def key(self) -> str:
-        """A digest of all that decides the voxels of each square, as 32 hexadecimal digits."""
-        digest = blake2b(repr(self.block_side).encode(), digest_size=16)
+        """A digest of all that decides the voxels, as 32 hexadecimal digits."""
+        digest = blake2b(digest_size=16)
         for argument in self._native_arguments:
             _feed(digest, argument)
         return digest.hexdigest()
 
-    @property
-    def blocks(self) -> tuple[ColumnBlock, ...]:
-        """The squares with geometry, in Morton order."""
-        return tuple(ColumnBlock(int(x), int(y)) for x, y in self._native.blocks(self.block_side))
+    def blocks(self, side: int) -> tuple[ColumnBlock, ...]:
+        """Return the squares with geometry, in Morton order.
+
+        Parameters
+        ----------
+        side
+            Columns per side of a square, a multiple of 64.
+        """
+        side = arguments.whole("side", side, 64, 1 << 16)
+        return tuple(ColumnBlock(int(x), int(y), side) for x, y in self._native.blocks(side))
 
     def objects_of(self, block: ColumnBlock) -> tuple[int, ...]:
         """Return the numbers of the objects that may have a voxel in a square."""
-        return tuple(int(one) for one in np.flatnonzero(self._native.objects_of(*block, self.block_side)))
+        return tuple(int(one) for one in np.flatnonzero(self._native.objects_of(*block)))
 
     def voxelize(self, block: ColumnBlock) -> tuple[Voxels, NDArray[np.int64]]:
         """Voxelize a square.
@@ -124,7 +140,7 @@ class BlockVoxelizer:
         tallies
             What it found of each object, for :meth:`report`: int64, shape (O, 4).
         """
-        result = self._native.block(*block, self.block_side)
+        result = self._native.block(*block)
         return voxels_of(self._parts.grid.depth, result), result.object_tallies
 
     def report(self, tallies: NDArray[np.int64]) -> VoxelizationReport:
@@ -181,11 +197,10 @@ def voxelize_in_blocks(
     >>> len(blocks), sum(one.voxels for one in report.objects)
     (4, 1082472)
     """
-    voxelizer = BlockVoxelizer(
-        scene, grid, block_side=block_side, fill=fill, geometry=geometry, pow2=pow2, threads=threads
-    )
+    block_side = arguments.whole("block_side", block_side, 64, 1 << 16)
+    voxelizer = BlockVoxelizer(scene, grid, fill=fill, geometry=geometry, pow2=pow2, threads=threads)
     tallies = np.zeros((len(scene.objects), 4), np.int64)
-    for block in voxelizer.blocks:
+    for block in voxelizer.blocks(block_side):
         voxels, found = voxelizer.voxelize(block)
         take(voxels)
         tallies += found

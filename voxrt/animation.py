@@ -150,6 +150,8 @@ def build_animation(
 
 
 def _refuse_options(options: BuildOptions) -> None:
+    if options.scheduler is not None or options.workers is not None:
+        raise ValueError("an animation is built on one machine: leave scheduler and workers out")
     if options.bake:
         raise ValueError("light is not baked into animations: leave bake out")
     if options.budget is not None:

@@ -16,7 +16,7 @@ import voxrt
 from voxrt import octree, voxelize
 from voxrt.estimate import estimate_build
 from voxrt.outputs import OutputError
-from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies
+from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
 from voxrt.voxelize import BlockVoxelizer, VoxelizationReport
 from voxrt.voxelize.free_memory import free_memory
 
@@ -34,7 +34,7 @@ _LEAST_DEPTH = 11
 
 _LEAST_SIDE = 256
 _UNEVEN = 8  # a square may have so many times its share of the surface
-_BLOCKS_PER_SURFACE_VOXEL = 0.012
+_BLOCKS_PER_SURFACE_VOXEL = 0.0132  # of a scan with 2**28 surface voxels; it halves with 16 times as many
 _BYTES_PER_JOINED_BLOCK = 60
 _BYTES_PER_BLOCK_OF_TABLE = 20
 _BYTES_OF_BLOCK = 32
@@ -94,29 +94,35 @@ def tiles_key(voxelizer: BlockVoxelizer) -> str:
     return blake2b(f"{voxrt.__version__} {voxelizer.key}".encode(), digest_size=16).hexdigest()
 
 
-def tile_name(block: ColumnBlock) -> str:
-    """Return the name of a tile.
-
-    Examples
-    --------
-    >>> from voxrt.voxelize import ColumnBlock
-    >>> tile_name(ColumnBlock(0, 4096))
-    '0-4096'
-    """
-    return f"{block.x}-{block.y}"
-
-
-def block_voxelizer(scene: Scene, grid: Grid, options: BuildOptions, side: int) -> BlockVoxelizer:
-    """Make a scene ready to be voxelized tile by tile."""
+def block_voxelizer(
+    scene: Scene, grid: Grid, options: BuildOptions, objects: Iterable[int] | None = None
+) -> BlockVoxelizer:
+    """Make a scene ready to be voxelized tile by tile; `objects`: as :class:`voxrt.voxelize.BlockVoxelizer` has it."""
     return BlockVoxelizer(
         scene,
         grid,
-        block_side=side,
         fill=options.fill,
         geometry=options.geometry,
         pow2=options.pow2,
         threads=options.threads,
+        objects=objects,
     )
+
+
+def finish_tile(
+    voxelizer: BlockVoxelizer, block: ColumnBlock, clock: StageClock, store: TileStore | None, threads: int
+) -> Tile:
+    """Return a tile from the store, or make it and keep it there."""
+    tile = None if store is None else store.read(tile_name(block))
+    if tile is not None:
+        return tile
+    with clock.stage("voxelize"):
+        voxels, found = voxelizer.voxelize(block)
+    with clock.stage("octree"):
+        tile = Tile(octree.build(voxels, threads=threads), sparse_tallies(found))
+        if store is not None:
+            store.write(tile_name(block), tile)
+    return tile
 
 
 def build_octree(
@@ -197,22 +203,14 @@ def _build_tiles(
 ) -> tuple[Octree, VoxelizationReport]:
     side, cache = tiling
     with clock.stage("voxelize"):
-        voxelizer = block_voxelizer(scene, grid, options, side)
-        blocks = voxelizer.blocks
+        voxelizer = block_voxelizer(scene, grid, options)
         if store is not None:
-            store.claim(tiles_key(voxelizer))
+            side = store.claim(tiles_key(voxelizer), side)
+        blocks = voxelizer.blocks(side)
     tallies = np.zeros((len(scene.objects), 4), np.int64)
     whole = octree.Assembly(grid.depth)
     for block in blocks:
-        tile = None if store is None else store.read(tile_name(block))
-        if tile is None:
-            with clock.stage("voxelize"):
-                voxels, found = voxelizer.voxelize(block)
-            with clock.stage("octree"):
-                tile = Tile(octree.build(voxels, threads=options.threads), sparse_tallies(found))
-                del voxels
-                if store is not None:
-                    store.write(tile_name(block), tile)
+        tile = finish_tile(voxelizer, block, clock, store, options.threads)
         if store is None:
             with clock.stage("octree"):
                 whole.add(tile.octree)
@@ -227,7 +225,7 @@ def _build_tiles(
 
 def _in_tiles(estimate: BuildEstimate, tile: int, cache: int, *, on_disk: bool) -> BuildEstimate:
     """Return what a build takes whose voxels are in memory tile by tile, `tile` bytes each."""
-    blocks = int(_BLOCKS_PER_SURFACE_VOXEL * estimate.surface)
+    blocks = int(_BLOCKS_PER_SURFACE_VOXEL * estimate.surface * min(1.0, (2**28 / max(estimate.surface, 1)) ** 0.25))
     if not on_disk:
         return replace(estimate, bytes=estimate.least + tile + _BYTES_PER_JOINED_BLOCK * blocks)
     joined = _BYTES_PER_BLOCK_OF_TABLE * blocks + min(cache, _BYTES_OF_BLOCK * blocks)

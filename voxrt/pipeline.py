@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from voxrt.asset_source import Asset
     from voxrt.baking import Bake
     from voxrt.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
+    from voxrt.cluster import ClusterProgress
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
@@ -50,6 +51,7 @@ def build(
     *,
     progress: Callable[[str], None] | None = None,
     estimated: Callable[[BuildEstimate], None] | None = None,
+    clustered: Callable[[ClusterProgress], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build the octree memory of an asset, and write it with its manifest and its preview.
@@ -68,6 +70,8 @@ def build(
         Called with the name of each stage as it begins.
     estimated
         Called with what the build will take, once the scene is loaded and its grid is known.
+    clustered
+        Called with how far a cluster is, as tiles are finished.
     **keywords
         The options of :class:`BuildOptions` by name. They take precedence over `options`.
 
@@ -87,6 +91,8 @@ def build(
     OutputError
         A file cannot be written, or the folder has files of the same name that were built from another asset. Old
         files stay as they were.
+    ToolError
+        The cluster that was asked for is not there, or is lost. Its finished tiles stay.
     SimulatorError
         The preview cannot be rendered. The memory and the manifest are complete by then; an older preview is removed,
         for it shows another memory.
@@ -102,6 +108,7 @@ def build(
     True
     """
     options = merge_options("build", options, keywords)
+    _check_cluster(asset, output, options)
     files = output_files(asset_name(asset), output, options.preview)
     source = as_text(Path(asset).name if isinstance(asset, str | os.PathLike) else files.name)
     if files.words is not None and not files.named:
@@ -116,7 +123,7 @@ def build(
     picture, unseen_picture = None, None
     with ExitStack() as stack:
         store = None if files.words is None else stack.enter_context(TileStore(_tiles_folder(files.words)))
-        scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated, store)
+        scene, grid, tree, voxelization = _voxelize(asset, loaded, options, clock, (estimated, clustered), store)
         if not options.allow_empty:
             refuse_empty(asset_label(asset), grid, voxelization.objects)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
@@ -210,14 +217,26 @@ def _tiles_folder(words: Path) -> Path:
     return words.with_name(f"{words.stem}.tiles")
 
 
+def _check_cluster(asset: Asset, output: str | os.PathLike[str] | None, options: BuildOptions) -> None:
+    """Refuse a build on a cluster that has nowhere to put its tiles, or whose workers could not open the asset."""
+    if options.scheduler is None and options.workers is None:
+        return
+    if output is None:
+        raise ValueError("a cluster writes its tiles beside the output: name an output")
+    if not isinstance(asset, str | os.PathLike):
+        raise TypeError(f"the workers of a cluster open the asset's file: give its path, not {type(asset).__name__}")
+
+
 def _voxelize(
+    asset: Asset,
     scene: Scene,
     options: BuildOptions,
     clock: StageClock,
-    estimated: Callable[[BuildEstimate], None] | None,
+    told: tuple[Callable[[BuildEstimate], None] | None, Callable[[ClusterProgress], None] | None],
     store: TileStore | None,
 ) -> tuple[Scene, Grid, Octree, VoxelizationReport]:
     """Fit a grid, reduce colours to materials, voxelize, build the octree."""
+    estimated, clustered = told
     with clock.stage("fit"):
         grid = build_grid(scene, options)
         plan = plan_build(scene, grid, options, on_disk=store is not None)
@@ -225,7 +244,11 @@ def _voxelize(
         estimated(plan.estimate)
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
-    return scene, grid, *build_octree(scene, grid, options, clock, plan, store)
+    if store is None or not isinstance(asset, str | os.PathLike) or (options.scheduler, options.workers) == (None, None):
+        return scene, grid, *build_octree(scene, grid, options, clock, plan, store)
+    from voxrt.cluster import build_on_cluster  # noqa: PLC0415 - few builds do this
+
+    return scene, grid, *build_on_cluster(asset, scene, grid, options, clock, plan, store, clustered)
 
 
 def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:
@@ -276,7 +299,7 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
     """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
     for lesser in range(depth - 1, 0, -1):
         whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
-        whole = replace(whole, ignore=(), allow_empty=True)  # done by now
+        whole = replace(whole, ignore=(), allow_empty=True, scheduler=None, workers=None)  # done by now
         size = len(build(loaded, options=whole).octree.words)
         if size <= words:
             return lesser, size

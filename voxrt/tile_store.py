@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from voxrt.voxelize import ColumnBlock
+
 _HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of tallies
 _MAGIC = b"voxrtil1"
 _DIGEST = 16
@@ -120,6 +122,18 @@ def read_tile(path: Path, key: str) -> Tile | None:
     return Tile(Octree(depth, body[split:].view("<u4").astype(np.uint32, copy=False)), tallies)
 
 
+def tile_name(block: ColumnBlock) -> str:
+    """Return the name of a tile.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import ColumnBlock
+    >>> tile_name(ColumnBlock(0, 4096, 4096))
+    '0-4096'
+    """
+    return f"{block.x}-{block.y}"
+
+
 class TileStore:
     """The folder of the tiles of one build, locked from :meth:`claim` to the end of the ``with`` block.
 
@@ -130,10 +144,12 @@ class TileStore:
     ----------
     folder
         ``NAME.tiles`` beside the output.
+    key
+        What tells builds apart, for whoever reads and writes tiles while another process has the folder locked.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.key = folder, ""
+    def __init__(self, folder: Path, key: str = "") -> None:
+        self.folder, self.key = folder, key
         self._lock: int | None = None
 
     def __enter__(self) -> Self:
@@ -147,16 +163,26 @@ class TileStore:
         self.words.unlink(missing_ok=True)
         if kind is None or issubclass(kind, AssetError | DoesNotFitError):
             self._remove()
+        else:
+            for path in self.folder.glob(".*.tmp"):
+                path.unlink(missing_ok=True)
         os.close(self._lock)
         self._lock = None
 
-    def claim(self, key: str) -> None:
+    def claim(self, key: str, side: int) -> int:
         """Make the folder, lock it, and remove the tiles of another key.
 
         Parameters
         ----------
         key
             What tells builds apart: 32 hexadecimal digits.
+        side
+            Columns per side of a tile, for new tiles.
+
+        Returns
+        -------
+        int
+            Columns per side of the tiles that are there, if these take at most four times the memory; else `side`.
 
         Raises
         ------
@@ -170,11 +196,12 @@ class TileStore:
         except OSError as error:
             raise self._refused(f"cannot be used: {error.strerror or error}") from error
         try:
-            self._take(lock)
+            side = self._take(lock, side)
         except BaseException:
             os.close(lock)
             raise
         self._lock = lock
+        return side
 
     @property
     def words(self) -> Path:
@@ -205,23 +232,24 @@ class TileStore:
                 "build goes on from them"
             ) from error
 
-    def _take(self, lock: int) -> None:
+    def _take(self, lock: int, side: int) -> int:
         if fcntl is not None:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError:
                 raise self._refused("another build uses it") from None
         try:
-            there = self._key_file.read_text("ascii", "replace").strip() if self._key_file.is_file() else ""
-            if there == self.key:
-                return
-            if not there and any(self.folder.iterdir()):
+            there = self._key_file.read_text("ascii", "replace").split() if self._key_file.is_file() else []
+            if len(there) == 2 and there[0] == self.key and there[1].isdecimal() and int(there[1]) <= 2 * side:
+                return int(there[1])
+            if not self._key_file.is_file() and any(self.folder.iterdir()):
                 raise self._refused("has files that no build put there")
             for path in self._own_files():
                 path.unlink(missing_ok=True)
-            write_atomically(self._key_file, f"{self.key}\n".encode())
+            write_atomically(self._key_file, f"{self.key} {side}\n".encode())
         except OSError as error:
             raise self._refused(f"cannot be written: {error.strerror or error}") from error
+        return side
 
     def _refused(self, why: str) -> OutputError:
         return OutputError(f"{self.folder}: {why}; name another output")

@@ -25,6 +25,7 @@ from voxrt.cli.arguments import (
     metres,
     metres_per_unit,
     png,
+    processes,
     samples,
     seconds,
     shades,
@@ -116,6 +117,8 @@ def build(
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     memory: Annotated[int | None, _option("memory", converter=size_in_bytes, metavar="SIZE")] = BuildOptions.memory,
+    scheduler: Annotated[str | None, _option("scheduler", metavar="ADDRESS")] = BuildOptions.scheduler,
+    workers: Annotated[int | None, _option("workers", converter=processes, metavar="N")] = BuildOptions.workers,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -128,9 +131,18 @@ def build(
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
+    if scheduler is not None and workers is not None:
+        raise UsageError("--scheduler and --workers exclude each other; give one of them")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
+    told: dict[str, object] = {
+        "--time": time,
+        "--bake": bake or None,
+        "--budget": budget,
+        "--board": board,
+        "--scheduler": scheduler,
+        "--workers": workers,
+    }
     _check_company(assets, output, preview) if frames is None else _check_frames(assets, frames, told)
     options = BuildOptions(
         depth=depth,
@@ -162,6 +174,8 @@ def build(
         background=background,
         engine=engine,
         memory=memory,
+        scheduler=scheduler,
+        workers=workers,
         strict=strict,
     )
     reports = []
@@ -206,7 +220,7 @@ def _build(
     """Build an asset, or the animation of one or all."""
     with build_bar() as bar:
         if frames is None:
-            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
         made: Path | list[Path] = asset
         if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
             from voxrt.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it
