@@ -86,7 +86,7 @@ class BlockVoxelizer:
     ) -> None:
         threads = arguments.whole("threads", threads, 0, MOST_THREADS)
         self._parts = SceneParts(scene, grid, fill, geometry, pow2)
-        self._native_arguments = (*self._parts.native_arguments(), fill)
+        self._native_arguments = self._parts.native_arguments()
         self._threads = threads
         self._objects = None if objects is None else tuple(objects)
 
@@ -103,14 +103,16 @@ class BlockVoxelizer:
         if self._objects is not None:
             wanted[list(self._objects)] = 1
         try:
-            return _native.BlockVoxelizer(*self._native_arguments, self._threads, wanted)
+            return _native.BlockVoxelizer(
+                *self._native_arguments, fill=self._parts.fill, threads=self._threads, wanted=wanted
+            )
         except _native.OutOfRangeError as error:
             raise unreachable(self._parts.scene, int(error.args[0])) from None
 
     @property
     def key(self) -> str:
         """A digest of all that decides the voxels, as 32 hexadecimal digits."""
-        digest = blake2b(digest_size=16)
+        digest = blake2b(self._parts.fill.encode(), digest_size=16)
         for argument in self._native_arguments:
             _feed(digest, argument)
         return digest.hexdigest()

@@ -63,6 +63,7 @@ class SceneParts:
             self._placements.append(_add_object(self, item, geometry, pow2))
 
     def warn(self, kind: str, message: str, count: int = 1) -> None:
+        """Count a warning."""
         self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def to_grid(self, transform: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -73,6 +74,7 @@ class SceneParts:
             return np.asarray(frame * self._scale)
 
     def add(self, kind: int, frame: NDArray[np.float64], material: int, mesh: int = -1) -> None:
+        """Add a part of the last object: its kind, frame, material, and mesh if it has one."""
         padded = np.zeros(12)
         padded[: frame.size] = frame.ravel()
         self._rows.append((kind, mesh, material, self._objects - 1))
@@ -181,7 +183,9 @@ def _triple(vector: NDArray[np.float64]) -> tuple[float, float, float]:
     return float(vector[0]), float(vector[1]), float(vector[2])
 
 
-def _add_collider(parts: SceneParts, item: SceneObject, collider: Collider, material: int, pow2: Pow2) -> ObjectPlacement:
+def _add_collider(
+    parts: SceneParts, item: SceneObject, collider: Collider, material: int, pow2: Pow2
+) -> ObjectPlacement:
     if isinstance(collider, BoxCollider):
         return _add_box(parts, item, collider, material, pow2)
     if isinstance(collider, SphereCollider):

@@ -130,6 +130,7 @@ def build_octree(
     grid: Grid,
     options: BuildOptions,
     clock: StageClock,
+    *,
     plan: BuildPlan | None = None,
     store: TileStore | None = None,
 ) -> tuple[Octree, VoxelizationReport]:
@@ -160,7 +161,7 @@ def build_octree(
     """
     plan = plan_build(scene, grid, options, on_disk=store is not None) if plan is None else plan
     if plan.side is not None:
-        return _build_tiles(scene, grid, options, clock, (plan.side, plan.cache), store)
+        return _build_tiles(scene, grid, options, clock, tiling=(plan.side, plan.cache), store=store)
     with clock.stage("voxelize"):
         made = voxelize.voxelize(
             scene, grid, fill=options.fill, geometry=options.geometry, pow2=options.pow2, threads=options.threads
@@ -198,6 +199,7 @@ def _build_tiles(
     grid: Grid,
     options: BuildOptions,
     clock: StageClock,
+    *,
     tiling: tuple[int, int],  # columns per side of a tile, and the cache
     store: TileStore | None,
 ) -> tuple[Octree, VoxelizationReport]:

@@ -7,6 +7,7 @@ import os
 import signal
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
+from multiprocessing import resource_tracker
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from voxrt.errors import ToolError
 from voxrt.tile_store import sum_tallies, tile_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from distributed import Client, Future
 
@@ -89,7 +90,7 @@ def connected(options: BuildOptions) -> Iterator[Client]:
         try:
             if address is None:
                 address = stack.enter_context(_local_cluster(LocalCluster, options))
-            client = stack.enter_context(Client(address, timeout=_WAIT, set_as_default=False))
+            client = stack.enter_context(Client(address, timeout=_WAIT, set_as_default=False))  # type: ignore[no-untyped-call]
             client.wait_for_workers(1, timeout=_WAIT)
         except (OSError, TimeoutError, ValueError) as error:
             where = options.scheduler or "this machine"
@@ -106,6 +107,7 @@ def build_on_cluster(
     grid: Grid,
     options: BuildOptions,
     clock: StageClock,
+    *,
     plan: BuildPlan,
     store: TileStore,
     told: Callable[[ClusterProgress], None] | None = None,
@@ -155,7 +157,7 @@ def _run(
     """Make all tiles and join them to few; returns these."""
     from distributed import as_completed  # noqa: PLC0415 - the extra `cluster`
 
-    tiles: dict[tuple[int, int], Future] = {}
+    tiles: dict[tuple[int, int], Future[Any]] = {}
     for block, reached in objects.items():
         future = client.submit(make_tile, job, block, reached, key=f"tile-{tile_name(block)}-{job.key}", pure=False)
         tiles[block.x // block.side, block.y // block.side] = future
@@ -164,22 +166,18 @@ def _run(
     while len(pieces) > _MOST_PIECES:
         level += 1
         pieces = _submit_merges(client, job, pieces, level)
-    total, names, size = len(made), {future.key for future in made}, 0
-    finished = 0
-    done: dict[str, TileDone] = {}
+    wanted = {future.key: future for future in (*made, *pieces.values())}
+    done: dict[object, TileDone] = {}
+    finished, size = 0, 0
+    names = {future.key for future in made}
     try:
-        wanted = [*made, *(future for future in pieces.values() if future.key not in names)]
-        for future in as_completed(wanted, loop=client.loop):
-            result = future.result()
-            if isinstance(result, str):
-                raise ToolError(result)
-            done[future.key] = result
+        for future in as_completed(list(wanted.values()), loop=client.loop):  # type: ignore[no-untyped-call]
+            done[future.key] = tile = _checked(future.result())
             if future.key in names:
-                finished += 1
-                size += result.bytes
+                finished, size = finished + 1, size + tile.bytes
                 if told is not None:
                     workers = len(client.scheduler_info(n_workers=-1)["workers"])
-                    told(ClusterProgress(finished, total, workers, size))
+                    told(ClusterProgress(finished, len(made), workers, size))
         return [done[future.key] for future in pieces.values()]
     except ToolError:
         raise
@@ -190,14 +188,20 @@ def _run(
         ) from error
 
 
+def _checked(result: TileDone | str) -> TileDone:
+    if isinstance(result, str):
+        raise ToolError(result)
+    return result
+
+
 def _submit_merges(
-    client: Client, job: TileJob, pieces: dict[tuple[int, int], Future], level: int
-) -> dict[tuple[int, int], Future]:
+    client: Client, job: TileJob, pieces: dict[tuple[int, int], Future[Any]], level: int
+) -> dict[tuple[int, int], Future[Any]]:
     """Submit tasks that join the pieces of each square; pieces that stand alone stay as they are."""
-    groups: dict[tuple[int, int], list[Future]] = {}
+    groups: dict[tuple[int, int], list[Future[Any]]] = {}
     for (x, y), piece in pieces.items():
         groups.setdefault((x // _FAN_IN, y // _FAN_IN), []).append(piece)
-    joined: dict[tuple[int, int], Future] = {}
+    joined: dict[tuple[int, int], Future[Any]] = {}
     for (x, y), parts in groups.items():
         name = f"joined-{level}-{x}-{y}"
         joined[x, y] = client.submit(merge_tiles, job, name, parts, key=f"{name}-{job.key}", pure=False)
@@ -207,7 +211,11 @@ def _submit_merges(
 @contextmanager
 def _local_cluster(cluster: Any, options: BuildOptions) -> Iterator[Any]:  # noqa: ANN401 - a class of Dask
     """Start workers on this machine. Ctrl-C is for this process alone: it ends them."""
+    import dask  # noqa: PLC0415 - the extra `cluster`
+
+    resource_tracker.ensure_running()  # which unblocks SIGINT, and would do so below
     with TemporaryDirectory(prefix="voxrt-") as scratch, ExitStack() as stack:
+        stack.enter_context(dask.config.set({"temporary-directory": scratch}))
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
             started = cluster(

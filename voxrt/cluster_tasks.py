@@ -120,10 +120,11 @@ def merge_tiles(job: TileJob, name: str, parts: Sequence[TileDone | str]) -> Til
             store = _store(job)
             done = store.read(name)
             if done is None:
-                done = _joined(job, store, [part.name for part in parts if isinstance(part, TileDone)])
-                if isinstance(done, str):
-                    return done
-                store.write(name, done)
+                joined = _joined(job, store, [part.name for part in parts if isinstance(part, TileDone)])
+                if isinstance(joined, str):
+                    return joined
+                store.write(name, joined)
+                done = joined
         except Exception as error:  # noqa: BLE001 - as above
             return _problem(error)
         return TileDone(name, done.octree.words.nbytes, done.tallies)

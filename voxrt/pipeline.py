@@ -123,7 +123,9 @@ def build(
     picture, unseen_picture = None, None
     with ExitStack() as stack:
         store = None if files.words is None else stack.enter_context(TileStore(_tiles_folder(files.words)))
-        scene, grid, tree, voxelization = _voxelize(asset, loaded, options, clock, (estimated, clustered), store)
+        scene, grid, tree, voxelization = _voxelize(
+            asset, loaded, options, clock, told=(estimated, clustered), store=store
+        )
         if not options.allow_empty:
             refuse_empty(asset_label(asset), grid, voxelization.objects)
         rom = octree.Rom(files.name, tree, scene.materials, grid)
@@ -232,6 +234,7 @@ def _voxelize(
     scene: Scene,
     options: BuildOptions,
     clock: StageClock,
+    *,
     told: tuple[Callable[[BuildEstimate], None] | None, Callable[[ClusterProgress], None] | None],
     store: TileStore | None,
 ) -> tuple[Scene, Grid, Octree, VoxelizationReport]:
@@ -244,11 +247,15 @@ def _voxelize(
         estimated(plan.estimate)
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
-    if store is None or not isinstance(asset, str | os.PathLike) or (options.scheduler, options.workers) == (None, None):
-        return scene, grid, *build_octree(scene, grid, options, clock, plan, store)
+    if (
+        store is None
+        or not isinstance(asset, str | os.PathLike)
+        or (options.scheduler, options.workers) == (None, None)
+    ):
+        return scene, grid, *build_octree(scene, grid, options, clock, plan=plan, store=store)
     from voxrt.cluster import build_on_cluster  # noqa: PLC0415 - few builds do this
 
-    return scene, grid, *build_on_cluster(asset, scene, grid, options, clock, plan, store, clustered)
+    return scene, grid, *build_on_cluster(asset, scene, grid, options, clock, plan=plan, store=store, told=clustered)
 
 
 def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:

@@ -22,7 +22,15 @@ BUILD = ROOT / "build" / "web"
 WASM = BUILD / "voxrt.wasm"
 
 ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model"}
-LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp", "block_file.cpp", "disk_assembly.cpp", "frame_tile_avx2.cpp", "frame_tile_avx512.cpp"}
+LEFT_OUT = {
+    "module.cpp",
+    "colour_bindings.cpp",
+    "scene_bindings.cpp",
+    "block_file.cpp",
+    "disk_assembly.cpp",
+    "frame_tile_avx2.cpp",
+    "frame_tile_avx512.cpp",
+}
 
 EXCEPTIONS = ("-fwasm-exceptions", "-mexception-handling", "-fexceptions")
 TARGET = ("-target", "wasm32-wasi")

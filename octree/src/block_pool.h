@@ -75,8 +75,8 @@ private:
     }
 
     static bool same(const Block& a, const Block& b) {
-        return ((word_pair(a, 0) ^ word_pair(b, 0)) | (word_pair(a, 1) ^ word_pair(b, 1)) | (word_pair(a, 2) ^ word_pair(b, 2)) |
-                (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
+        return ((word_pair(a, 0) ^ word_pair(b, 0)) | (word_pair(a, 1) ^ word_pair(b, 1)) |
+                (word_pair(a, 2) ^ word_pair(b, 2)) | (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
     }
 
     static Word hash_of(const Block& children) {

@@ -128,8 +128,7 @@ public:
                     "a part needs a material");
             require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
             require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
-            parts.push_back(
-                {kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
+            parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
         }
     }
     SceneParts(const SceneParts&) = delete;
@@ -179,8 +178,8 @@ public:
     PythonBlockVoxelizer(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
                          const std::string& fill, int threads, InputOf<uint8_t> wanted)
-        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects),
-          side_(1 << depth), objects_(size_t(objects)) {
+        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects), side_(1 << depth),
+          objects_(size_t(objects)) {
         require_threads(threads);
         require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
                 "wanted must have an element per object, or none");

@@ -348,8 +348,7 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
     if (blocks.empty())
         report = voxelizer.report(tallies);
     for (const ColumnBlock& block : blocks)
-        take(&block == &blocks.back() ? voxelizer.last_block(block, tallies, report)
-                                      : voxelizer.block(block, tallies));
+        take(&block == &blocks.back() ? voxelizer.last_block(block, tallies, report) : voxelizer.block(block, tallies));
     report.seconds = voxelizer.seconds();
     return report;
 }
