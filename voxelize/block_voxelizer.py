@@ -104,7 +104,7 @@ class BlockVoxelizer:
             wanted[list(self._objects)] = 1
         try:
             return _native.BlockVoxelizer(
-                *self._native_arguments, fill=self._parts.fill, threads=self._threads, wanted=wanted
+                **self._native_arguments, fill=self._parts.fill, threads=self._threads, wanted=wanted
             )
         except _native.OutOfRangeError as error:
             raise unreachable(self._parts.scene, int(error.args[0])) from None
@@ -113,7 +113,7 @@ class BlockVoxelizer:
     def key(self) -> str:
         """A digest of all that decides the voxels, as 32 hexadecimal digits."""
         digest = blake2b(self._parts.fill.encode(), digest_size=16)
-        for argument in self._native_arguments:
+        for argument in self._native_arguments.values():
             _feed(digest, argument)
         return digest.hexdigest()
 

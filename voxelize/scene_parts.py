@@ -129,19 +129,19 @@ class SceneParts:
             counts[kind, message] = counts.get((kind, message), 0) + count
         return objects, tuple(SceneWarning(kind, message, count) for (kind, message), count in counts.items())
 
-    def native_arguments(self) -> tuple[Any, ...]:
-        """Return the parts as the native voxelizer takes them, from `depth` to `objects`."""
+    def native_arguments(self) -> dict[str, Any]:
+        """Return the parts as arguments of the native voxelizer, by name."""
         rows = np.array(self._rows, dtype=np.int32).reshape(-1, 4)
-        return (
-            self.grid.depth,
-            self._meshes,
-            rows[:, 0].astype(np.uint8),
-            np.ascontiguousarray(rows[:, 1]),
-            np.array(self._frames, dtype=np.float64).reshape(-1, 12),
-            rows[:, 2].astype(np.uint8),
-            np.ascontiguousarray(rows[:, 3]),
-            self._objects,
-        )
+        return {
+            "depth": self.grid.depth,
+            "meshes": self._meshes,
+            "kinds": rows[:, 0].astype(np.uint8),
+            "mesh_of": np.ascontiguousarray(rows[:, 1]),
+            "frames": np.array(self._frames, dtype=np.float64).reshape(-1, 12),
+            "materials": rows[:, 2].astype(np.uint8),
+            "objects_of": np.ascontiguousarray(rows[:, 3]),
+            "objects": self._objects,
+        }
 
 
 def _vertices(positions: NDArray[np.floating], triangles: NDArray[np.int32]) -> NDArray[np.float64]:

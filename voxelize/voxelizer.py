@@ -81,7 +81,7 @@ def voxelize(
     parts = SceneParts(scene, grid, fill, geometry, pow2)
     threads = arguments.whole("threads", threads, 0, MOST_THREADS)
     try:
-        result = _native.voxelize(*parts.native_arguments(), fill=fill, threads=threads)
+        result = _native.voxelize(**parts.native_arguments(), fill=fill, threads=threads)
     except _native.OutOfRangeError as error:
         raise unreachable(scene, int(error.args[0])) from None
     return Voxelization(voxels_of(grid.depth, result), *parts.told(result), result.seconds)

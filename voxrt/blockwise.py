@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from hashlib import blake2b
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-import voxrt
 from voxrt import octree, voxelize
 from voxrt.estimate import estimate_build
+from voxrt.octree import _native as octree_native
 from voxrt.outputs import OutputError
 from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
 from voxrt.voxelize import BlockVoxelizer, VoxelizationReport
+from voxrt.voxelize import _native as voxelize_native
 from voxrt.voxelize.free_memory import free_memory
 
 if TYPE_CHECKING:
@@ -90,8 +92,14 @@ def plan_build(scene: Scene, grid: Grid, options: BuildOptions, *, on_disk: bool
 
 
 def tiles_key(voxelizer: BlockVoxelizer) -> str:
-    """Return what tells the tiles of one build from those of another: 32 hexadecimal digits."""
-    return blake2b(f"{voxrt.__version__} {voxelizer.key}".encode(), digest_size=16).hexdigest()
+    """Return what tells the tiles of one build from those of another: 32 hexadecimal digits.
+
+    It is of the scene on its grid, and of the native modules that make tiles of it.
+    """
+    digest = blake2b(voxelizer.key.encode(), digest_size=16)
+    for module in (voxelize_native, octree_native):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return digest.hexdigest()
 
 
 def block_voxelizer(

@@ -1,8 +1,8 @@
 """The finished tiles of a build, in a folder beside its output, so that a build that was killed goes on from them.
 
 A tile is the octree of a square of columns, as words of the whole world, and what the square has of each object. Its
-file ends with a digest. The folder has the key of the build: what decides the voxels, and the version of the program.
-Tiles of another key are removed.
+file ends with a digest. The folder has the key of the build: of what decides the voxels, and of the program. Tiles of
+another key are removed.
 """
 
 from __future__ import annotations
