@@ -92,17 +92,21 @@ web: site $(VENV)/.tools
 
 # Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-SANITIZED := voxelize octree mesh_to_ray query_octree
+SANITIZED := voxelize colour octree mesh_to_ray query_octree
 sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
 comma := ,
-sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst -,$(comma),$*) -I$(CURDIR)/build/sanitize/include
-HEADERS := $(wildcard voxelize/src/*.h octree/src/*.h sim/src/model/*.h)
+# GCC leaves numbers that do not fit their integer out of "undefined".
+UNDEFINED := undefined,float-cast-overflow
+sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
+HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h)
+# $(call sources,FOLDER): what a folder has besides its bindings for Python.
+sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp $(1)/src/*/*.cpp))
 # $(call archive,FOLDER): the library of a folder's sources.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
-cd $(@:.a=) && $(sanitized) -c $(abspath $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp)))
+cd $(@:.a=) && $(sanitized) -c $(abspath $(call sources,$(1)))
 $(AR) rcs $@ $(@:.a=)/*.o
 endef
 
@@ -113,13 +117,16 @@ build/sanitize/include/voxrt:
 	@ln -sfn $(CURDIR)/octree/src $@/octree
 	@ln -sfn $(CURDIR)/sim/src/model $@/sim
 
-build/sanitize/%/libvoxelize.a: $(wildcard voxelize/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+build/sanitize/%/libvoxelize.a: $(call sources,voxelize) $(HEADERS) | build/sanitize/include/voxrt
 	$(call archive,voxelize)
 
-build/sanitize/%/liboctree.a: $(wildcard octree/src/*.cpp) $(HEADERS) | build/sanitize/include/voxrt
+build/sanitize/%/liboctree.a: $(call sources,octree) $(HEADERS) | build/sanitize/include/voxrt
 	$(call archive,octree)
 
 build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
+	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+
+build/sanitize/%/colour: tests/voxelize/native/colour.cpp build/sanitize/%/libvoxelize.a
 	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
 
 build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
@@ -137,8 +144,8 @@ RUNS := 1000000
 fuzz: build/fuzz/native/voxelize-fuzzer build/fuzz/native/octree-fuzzer
 	for program in voxelize octree; do build/fuzz/native/$$program-fuzzer $(RUNS) build/fuzz/native/$$program || exit 1; done
 
-covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,undefined -I$(CURDIR)/build/sanitize/include
-COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(filter-out %/module.cpp %_bindings.cpp,$(wildcard voxelize/src/*.cpp octree/src/*.cpp)))
+covered = $(CXX) -std=c++20 -O2 -g -fno-sanitize-recover=all -fsanitize=address,$(UNDEFINED) -I$(CURDIR)/build/sanitize/include
+COVERED := $(patsubst %.cpp,build/fuzz/native/objects/%.o,$(call sources,voxelize) $(call sources,octree))
 build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	@mkdir -p $(@D)
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<

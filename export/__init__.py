@@ -54,9 +54,10 @@ _HOMES = {
     "voxrt.export.palette": ("default_materials",),
     "voxrt.export.provenance": ("BakedLight", "Provenance", "Source"),
     "voxrt.export.raw": ("read_raw", "write_raw"),
-    "voxrt.export.rom_files": ("WORD_SUFFIXES", "RomFiles", "read_rom", "write_rom"),
+    "voxrt.export.rom_files": ("RomFiles", "read_rom", "write_rom"),
     "voxrt.export.vox": ("read_vox", "write_vox"),
     "voxrt.export.word_file": ("WordFile",),
+    "voxrt.export.word_formats": ("WORD_SUFFIXES",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -73,9 +74,10 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.export.palette import default_materials
     from voxrt.export.provenance import BakedLight, Provenance, Source
     from voxrt.export.raw import read_raw, write_raw
-    from voxrt.export.rom_files import WORD_SUFFIXES, RomFiles, read_rom, write_rom
+    from voxrt.export.rom_files import RomFiles, read_rom, write_rom
     from voxrt.export.vox import read_vox, write_vox
     from voxrt.export.word_file import WordFile
+    from voxrt.export.word_formats import WORD_SUFFIXES
 else:
 
     def __getattr__(name: str) -> object:

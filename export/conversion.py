@@ -12,8 +12,9 @@ from voxrt.export.blob import Blob, read_blob, write_blob
 from voxrt.export.listing import read_listing
 from voxrt.export.manifest import read_manifest
 from voxrt.export.provenance import Provenance
-from voxrt.export.rom_files import WORD_SUFFIXES, other_words, read_words, words_crc32, write_rom
+from voxrt.export.rom_files import other_words, read_words, words_crc32, write_rom
 from voxrt.export.vox import read_vox
+from voxrt.export.word_formats import WORD_SUFFIXES
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ _PIECE = 1 << 20
 """Words that are converted at a time."""
 
 
-def raw_pieces(words: NDArray[np.uint32]) -> Iterator[bytes]:
+def raw_bytes(words: NDArray[np.uint32]) -> Iterator[bytes]:
     """Return words (uint32, shape (N,)) as the bytes of a ``.bin`` file, piece by piece."""
     for first in range(0, len(words), _PIECE):
         yield words[first : first + _PIECE].astype("<u4").tobytes()
@@ -48,7 +48,7 @@ def write_raw(path: Path, words: NDArray[np.uint32]) -> None:
     >>> from voxrt.octree import from_points
     >>> write_raw(Path("dot.bin"), from_points([[1, 2, 3]], [7], depth=2).words)
     """
-    write_atomically(path, raw_pieces(words))
+    write_atomically(path, raw_bytes(words))
 
 
 def read_raw(path: Path) -> WordFile:

@@ -14,43 +14,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.export.atomic import new_folder, staged_files, write_together
-from voxrt.export.blob import Blob
-from voxrt.export.coe import coe_bytes, read_coe
 from voxrt.export.manifest import make_manifest, manifest_bytes, read_manifest
-from voxrt.export.mem import read_mem
-from voxrt.export.mif import mif_bytes, read_mif
 from voxrt.export.palette import default_materials
-from voxrt.export.raw import raw_pieces, read_raw
-from voxrt.export.word_file import mem_crc32, mem_pieces
+from voxrt.export.word_file import mem_crc32
+from voxrt.export.word_formats import WORD_SUFFIXES, format_words, read_word_file
 from voxrt.octree import Octree, Rom, RomError, census, check_roots, decode, detect_dialect, encode
 from voxrt.octree.dialects import as_dialect
 from voxrt.voxelize import SceneWarning
 from voxrt.voxelize.arguments import choice, instance
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Iterable, Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from voxrt.export.blob import Blob
     from voxrt.export.manifest import Manifest
     from voxrt.export.provenance import BakedLight, Source
     from voxrt.export.word_file import WordFile
     from voxrt.octree import Animation
     from voxrt.octree.camera import Camera, Lighting
     from voxrt.voxelize import Material, ObjectReport
-
-
-_READERS = {".mem": read_mem, ".coe": read_coe, ".mif": read_mif, ".bin": read_raw}
-_WRITERS: dict[str, Callable[[NDArray[np.uint32]], bytes | Iterable[bytes]]] = {
-    ".mem": mem_pieces,
-    ".coe": coe_bytes,
-    ".mif": mif_bytes,
-    ".bin": raw_pieces,
-}
-
-WORD_SUFFIXES = tuple(_WRITERS)
-"""The files of words that are read and written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +131,7 @@ def write_rom(
     with new_folder(folder):
         _refuse_foreign(files.manifest)
         contents: dict[Path, bytes | Iterable[bytes] | None] = {
-            files.mem: _WRITERS[suffix.lower()](words),
+            files.mem: format_words(words, suffix.lower()),
             files.manifest: manifest_bytes(manifest),
         }
         write_together(contents | dict(beside or {}))
@@ -163,12 +145,12 @@ def words_crc32(rom: Rom, dialect: str) -> str:
 
 def other_words(path: Path, manifest: Manifest) -> Path | None:
     """Find another file of words, ``NAME`` with another suffix, that a manifest beside `path` describes."""
-    for suffix, read in _READERS.items():
+    for suffix in WORD_SUFFIXES:
         other = path.with_suffix(suffix)
         if suffix == path.suffix.lower() or not other.is_file():
             continue
         try:
-            if _fits(manifest, read(other)):
+            if _fits(manifest, read_word_file(other)):
                 return other
         except RomError:  # damaged: nobody misses its manifest
             continue
@@ -217,7 +199,9 @@ def read_words(
     mem_path: Path, depth: int | None = None, dialect: str | None = None
 ) -> tuple[Blob, tuple[SceneWarning, ...]]:
     """Read as :func:`read_rom` does, with the camera, the lighting and the animation that the manifest names."""
-    if mem_path.suffix.lower() not in _READERS:
+    from voxrt.export.blob import Blob  # noqa: PLC0415 - builds write, and do not wait for what reads
+
+    if mem_path.suffix.lower() not in WORD_SUFFIXES:
         raise RomError(f"{mem_path}: is no file of octree words; name one that ends in {', '.join(WORD_SUFFIXES)}")
     mem, manifest = _read_pair(mem_path)
     if manifest is None:
@@ -248,7 +232,7 @@ def _read_pair(mem_path: Path) -> tuple[WordFile, Manifest | None]:
     path = mem_path.with_suffix(".json")
     while True:
         before = _state(mem_path, path)
-        mem = _READERS[mem_path.suffix.lower()](mem_path)
+        mem = read_word_file(mem_path)
         manifest, problem = _manifest_of(path, mem)
         if manifest is not None:
             return mem, manifest

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.octree import _native
-from voxrt.octree.budget import share
 from voxrt.octree.errors import RomError
 from voxrt.octree.octree import MAX_DEPTH, Octree
 from voxrt.octree.statistics import census
@@ -166,6 +165,8 @@ def join_frames(frames: Iterable[Octree]) -> tuple[Octree, tuple[int, ...]]:
         if groups[level]:
             _join_group(groups, level)
         level += 1
+    from voxrt.octree.budget import share  # noqa: PLC0415 - slow to import, and few builds are animations
+
     whole_octree = groups[level][0] if level else share(groups[level][0])
     words = whole_octree.words.copy()
     roots = _addresses(words, level, count)
@@ -314,6 +315,8 @@ def _join_group(groups: list[list[Octree]], level: int) -> None:
             raise DoesNotFitError(
                 f"frames of {start:,} words are too many for one memory; build fewer, or with less depth"
             )
+    from voxrt.octree.budget import share  # noqa: PLC0415 - as above
+
     joined = share(Octree(depth + 1, _with_table(np.concatenate(parts), np.array(roots, np.uint32), 1)))
     if level + 1 == len(groups):
         groups.append([])

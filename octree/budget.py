@@ -27,33 +27,12 @@ from voxrt.voxelize import DoesNotFitError
 from voxrt.voxelize.arguments import instance, whole, whole_array
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    _SightCosts = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]
-
 BOARDS = {"pynq-z1": 1 + 8 * 4096, "ulx3s-85f": 1 + 8 * 4096}
 """Words of the octree memory of each board's design: 2**BlockBits blocks of 8, and the root."""
-
-_LEVELS_KEPT = 3
-"""However small the budget, octants of more than 1/8 of the world's side are never filled up."""
-
-_MANY_BLOCKS = 30_000
-"""With fewer blocks there is time to start from a world four times as fine as what fits, not twice."""
-
-_FACES = np.array((0.21, 0.25, 0.54))
-"""How bright the faces along the three axes are in the default picture of a scene."""
-
-_STANDING_OUT = 6
-"""Another material's colour counts so many times: it stands out where a face that turns is lost among others."""
-
-_PASSED = 0.5
-"""A ray that is stopped by more than stopped it before would mostly have met a face close by: this share of the error
-of a face that turns, ..."""
-
-_BACKGROUND = 0.1
-"""... and this share of that of a face before the background."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -188,30 +167,29 @@ def fit(
     """
     instance("octree", octree, Octree)
     words = whole("words", words, 1, 1 << 32)
-    costs = _sight_costs(colours)
+    table = _colours(colours)
     shared = share(octree)
     if len(shared.words) <= words:
         return _measure(octree, shared, shared)
-    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, costs)]
+    fits = [_measure(octree, shared, candidate) for candidate in _candidates(shared, words, table)]
     return choose(fits) if choose else min(fits, key=lambda fit: (fit.changed + fit.appeared, len(fit.octree.words)))
 
 
-def _candidates(shared: Octree, words: int, costs: _SightCosts) -> Iterator[Octree]:
-    """Memories of at most `words` words: the finest plain coarser world, and finer ones with fewer different bricks."""
-    worlds = [shared]
-    while len(worlds[-1].words) > words and len(worlds) <= shared.depth - _LEVELS_KEPT:
-        worlds.append(coarsen(shared, len(worlds)))
-    if len(worlds[-1].words) > words:
-        raise DoesNotFitError(
-            f"the octree does not fit {words} words: as coarse as it may become it takes {len(worlds[-1].words)}; "
-            f"give it at least {len(worlds[-1].words)} words"
-        )
-    yield worlds[-1]
-    finest = max(0, len(worlds) - (2 if shared.blocks > _MANY_BLOCKS else 3))
-    world = worlds[finest]
-    hidden = _native.hidden_voxels(world.words, world.depth)
-    for found in _native.fit_bricks(world.words, hidden, world.depth, finest, *costs, words):
-        yield Octree(world.depth, found)
+def _candidates(shared: Octree, words: int, colours: NDArray[np.uint8]) -> list[Octree]:
+    """Return memories of at most `words` words: src/fit_candidates.h. The first is the plain coarser world."""
+    found, problem = _native.fit_candidates(shared.words, shared.depth, words, colours)
+    if problem:
+        raise DoesNotFitError(problem)
+    return [Octree(shared.depth, one) for one in found]
+
+
+def _colours(given: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+    if given is None:
+        return np.zeros((0, 3), np.uint8)
+    colours = whole_array("colours", given, ("M", 3), np.uint8, low=0, high=255)
+    if len(colours) > 256:
+        raise ValueError(f"colours must have shape (M, 3), M at most 256, not {colours.shape}")
+    return np.ascontiguousarray(colours)
 
 
 def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
@@ -226,37 +204,3 @@ def _measure(original: Octree, shared: Octree, result: Octree) -> Fit:
         appeared=difference.appeared,
         recoloured=difference.recoloured,
     )
-
-
-def _sight_costs(colours: NDArray[np.uint8] | None) -> _SightCosts:
-    """Mean squared differences of colour where a ray meets another material, another face, or a voxel that appeared.
-
-    Returns
-    -------
-    tuple
-        uint32 of the shapes (256, 256), (256, 256) and (256,): a material becomes another on a face that stays, on a
-        face that turns, and where a ray passed. 256 is a middling grey face that turns.
-    """
-    table = np.full((256, 3), 150.0)
-    if colours is not None:
-        given = whole_array("colours", colours, ("M", 3), np.int64, low=0, high=255)
-        if len(given) > 256:
-            raise ValueError(f"colours must have shape (M, 3), M at most 256, not {given.shape}")
-        table[: len(given)] = given
-    turns = [(a, b) for a in _FACES for b in _FACES if a != b]
-    unit = 256 / np.mean([3 * (150 * (a - b)) ** 2 for a, b in turns])
-    same = _STANDING_OUT * unit * np.mean(_FACES**2) * _squares(table, table)
-    turned = same + unit * np.mean([_squares(a * table, b * table) for a, b in turns], axis=0)
-    if colours is None:
-        other = 128 * (1 - np.eye(256))
-        same, turned = same + other, turned + other
-    behind = unit * np.mean([_squares(a * table, table[:1])[:, 0] for a in _FACES], axis=0)
-    covering = _PASSED * np.diag(turned) + _BACKGROUND * behind
-    same, turned, covering = (np.maximum(8, np.rint(cost)).astype(np.uint32) for cost in (same, turned, covering))
-    np.fill_diagonal(same, 0)
-    return same, turned, covering
-
-
-def _squares(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    squares: NDArray[np.float64] = ((a[:, None] - b[None]) ** 2).sum(axis=-1)
-    return squares

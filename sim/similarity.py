@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt.sim import _model
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-_LUMA = np.array([0.299, 0.587, 0.114])  # ITU-R BT.601
-_RADIUS = 5
-_SIGMA = 1.5
 
 
 def peak_signal_to_noise(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
@@ -41,8 +38,7 @@ def peak_signal_to_noise(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -
     24.05
     """
     _refuse_other_shape(picture, other)
-    error = float(np.mean((picture.astype(np.float64) - other.astype(np.float64)) ** 2))
-    return math.inf if error == 0 else 10 * math.log10(255**2 / error)
+    return _model.peak_signal_to_noise(np.ascontiguousarray(picture), np.ascontiguousarray(other))
 
 
 def structural_similarity(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
@@ -77,29 +73,9 @@ def structural_similarity(picture: NDArray[np.uint8], other: NDArray[np.uint8]) 
     1.0
     """
     _refuse_other_shape(picture, other)
-    x, y = picture @ _LUMA, other @ _LUMA
-    mean_x, mean_y = _blurred(x), _blurred(y)
-    variance_x = _blurred(x * x) - mean_x**2
-    variance_y = _blurred(y * y) - mean_y**2
-    covariance = _blurred(x * y) - mean_x * mean_y
-    c1, c2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
-    similarity = ((2 * mean_x * mean_y + c1) * (2 * covariance + c2)) / (
-        (mean_x**2 + mean_y**2 + c1) * (variance_x + variance_y + c2)
-    )
-    return float(similarity.mean())
+    return _model.structural_similarity(np.ascontiguousarray(picture), np.ascontiguousarray(other))
 
 
 def _refuse_other_shape(picture: NDArray[np.uint8], other: NDArray[np.uint8]) -> None:
     if picture.shape != other.shape:
         raise ValueError(f"pictures of shape {picture.shape} and {other.shape} cannot be compared")
-
-
-def _blurred(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    weights = np.exp(-(np.arange(-_RADIUS, _RADIUS + 1) ** 2) / (2 * _SIGMA**2))
-    weights /= weights.sum()
-    for axis in (0, 1):
-        margin = [(0, 0), (0, 0)]
-        margin[axis] = (_RADIUS, _RADIUS)
-        windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, margin, "symmetric"), len(weights), axis)
-        values = windows @ weights
-    return values

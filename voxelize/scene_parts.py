@@ -160,7 +160,7 @@ def _add_object(parts: SceneParts, item: SceneObject, geometry: Geometry, pow2: 
     colliders = proxies(item, geometry)
     mesh = item.mesh
     if colliders is None:
-        materials = np.unique(mesh.materials)
+        materials = np.flatnonzero(np.bincount(mesh.materials))
         only = int(materials[0]) if len(materials) == 1 and mesh.material_map is None else 0
         arrays = (mesh.positions, mesh.triangles, mesh.materials)
         parts.add_mesh(mesh, arrays, item.transform, only, mesh.material_map or _NO_MAP)

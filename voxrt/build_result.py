@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING
 
-from voxrt.export import BakedLight, Blob, Provenance
 from voxrt.octree import census
 
 if TYPE_CHECKING:
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.baking import Bake
-    from voxrt.export import Source
+    from voxrt.export import BakedLight, Blob, Source
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Animation, Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
@@ -100,13 +99,19 @@ class BuildResult:
     @property
     def blob(self) -> Blob:
         """The memory with all that its files say, as :func:`voxrt.convert` takes it."""
+        from voxrt.export import Blob, Provenance  # noqa: PLC0415 - few need it, and every build would wait for it
+
         told = Provenance(self.source, self.objects, self.warnings, self.seconds, self.baked)
         return Blob(self.rom, self.view, self.lighting, told, self.animation)
 
     @property
     def baked(self) -> BakedLight | None:
         """The light that was baked, as the manifest tells it; None if no light was."""
-        return None if self.bake is None else BakedLight(**asdict(self.bake))
+        if self.bake is None:
+            return None
+        from voxrt.export import BakedLight  # noqa: PLC0415 - as above
+
+        return BakedLight(**asdict(self.bake))
 
     @property
     def octree(self) -> Octree:
@@ -121,7 +126,7 @@ class BuildResult:
     @property
     def coordinates(self) -> NDArray[np.int32]:
         """The solid voxels: int32, shape (N, 3), grid frame, in Morton order. :func:`voxrt.octree.to_points`."""
-        from voxrt.octree import to_points  # noqa: PLC0415 - few need it, and every build would wait for it
+        from voxrt.octree import to_points  # noqa: PLC0415 - as above
 
         return to_points(self.rom.octree)[0]
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from voxrt.baking import FLAT
 from voxrt.build_options import PREVIEW_SIZE
-from voxrt.pictures import Picture, render
 from voxrt.viewpoint import ViewpointError, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
 
@@ -15,6 +13,7 @@ if TYPE_CHECKING:
     from voxrt.build_options import BuildOptions
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.pictures import Picture
     from voxrt.voxelize import Scene
 
 
@@ -26,6 +25,8 @@ def preview(rom: Rom, camera: Camera, lighting: Lighting | None, options: BuildO
     SimulatorError
         The engine cannot hold the memory, the camera or the light.
     """
+    from voxrt.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
+
     frame = render(
         rom,
         camera,
@@ -65,6 +66,8 @@ def authored_view(
     except ViewpointError as error:
         unseen.append(SceneWarning("light", str(error)))
     if options.bake:
+        from voxrt.baking import FLAT  # noqa: PLC0415 - slow to import, and few builds do this
+
         if lighting is not None and lighting.on:
             unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))
         lighting = FLAT if lighting is None else replace(FLAT, bounces=lighting.bounces)

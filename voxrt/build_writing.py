@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from voxrt import export
 from voxrt.export.atomic import write_together
 from voxrt.outputs import writing
-from voxrt.sim.image import encode_png
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -71,7 +70,11 @@ def write_build(files: OutputFiles, result: BuildResult, options: BuildOptions) 
     """
     pictures: dict[Path, bytes | None] = {}
     if files.preview is not None:
-        pictures[files.preview] = None if result.preview is None else encode_png(result.preview.frame.colour)
+        pictures[files.preview] = None
+        if result.preview is not None:
+            from voxrt.sim.image import encode_png  # noqa: PLC0415 - most builds make no picture
+
+            pictures[files.preview] = encode_png(result.preview.frame.colour)
     outputs: dict[str, Path] = {}
     with ExitStack() as stack:
         for path in (*pictures, files.words):

@@ -8,19 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim
-from voxrt.octree.camera import PLAIN_LIGHTING, THREE_QUARTER, Lighting
+from voxrt.octree.camera import PLAIN_LIGHTING
+from voxrt.sim import _model
+from voxrt.sim.engine_arguments import palette_of
 from voxrt.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from voxrt.octree import Octree, Rom
+    from voxrt.octree.camera import Lighting
     from voxrt.voxelize import Material
-
-_BY_ANGLE = Lighting(faces=None)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -101,7 +100,7 @@ def fit_budget(
     """Fit `rom` to a memory of so many words; pictures of `size` pixels tell how like it is to what it was."""
     # What is given up is chosen in pictures by the angle: they show every change of the surface.
     colours = np.array([material.colour for material in rom.materials], np.uint8)
-    views = Views(rom, threads, lighting if lighting.flat else _BY_ANGLE)
+    views = Views(rom, threads, flat=lighting.flat)
     fit = octree.fit(rom.octree, words, colours=colours, choose=views.choose)
     fitted = replace(rom, octree=fit.octree)
     camera = aim_camera(rom, size)
@@ -115,46 +114,20 @@ def fit_budget(
 class Views:
     """Pictures of a scene from all around: the default view, turned about the vertical in six steps of 60 degrees."""
 
-    size = (320, 240)
-    """Pixels."""
-
-    def __init__(self, rom: Rom, threads: int = 0, lighting: Lighting = _BY_ANGLE) -> None:
-        self._rom = rom
-        self._threads = threads
-        self._lighting = lighting
-        self._cameras = [aim_camera(rom, self.size, look=look) for look in _looks()]
-        self._pictures = self._render(rom)
+    def __init__(self, rom: Rom, threads: int = 0, *, flat: bool = False) -> None:
+        self._views = _model.FitViews(_memory(rom.octree), palette_of(rom), flat, threads)
 
     def likeness(self, fitted: Octree) -> tuple[float, float]:
         """Give the means over the views of the PSNR (dB) and SSIM of what is seen of `fitted`."""
-        pairs = list(zip(self._pictures, self._render(replace(self._rom, octree=fitted)), strict=True))
-        return (
-            float(np.mean([sim.peak_signal_to_noise(*pair) for pair in pairs])),
-            float(np.mean([sim.structural_similarity(*pair) for pair in pairs])),
-        )
+        return self._views.likeness(_memory(fitted))
 
     def choose(self, fits: Sequence[octree.Fit]) -> octree.Fit:
         """Take the fit whose worst figure is the best, each held against that of the first fit, the coarser world.
 
         The figures are the surface voxels changed, the error that the PSNR stands for, and what the SSIM lacks to 1.
         """
-        errors = np.array([self._errors(fit) for fit in fits])
-        shares = np.round(errors / np.maximum(errors[0], 1e-9), 6)  # the same choice on every machine
-        return fits[min(range(len(fits)), key=lambda i: (shares[i].max(), shares[i].sum()))]
-
-    def _errors(self, fit: octree.Fit) -> tuple[float, float, float]:
-        psnr, ssim = self.likeness(fit.octree)
-        return fit.changed, 10 ** (-psnr / 10), 1 - ssim
-
-    def _render(self, rom: Rom) -> list[NDArray[np.uint8]]:
-        return [
-            sim.render(rom, camera, self.size, engine="model", lighting=self._lighting, threads=self._threads).colour
-            for camera in self._cameras
-        ]
+        return fits[_model.choose_fit([(fit.changed, *self.likeness(fit.octree)) for fit in fits])]
 
 
-def _looks() -> list[tuple[int, int, int]]:
-    x, y, z = 1000 * np.array(THREE_QUARTER)
-    angles = np.arange(6) * np.pi / 3
-    turned = np.stack([x * np.cos(angles) + z * np.sin(angles), np.full(6, y), z * np.cos(angles) - x * np.sin(angles)])
-    return [(int(a), int(b), int(c)) for a, b, c in np.rint(turned.T)]
+def _memory(tree: Octree) -> _model.Memory:
+    return _model.Memory(tree.words, tree.depth)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voxrt.asset_source import as_text
-from voxrt.export import WORD_SUFFIXES, read_manifest
+from voxrt.export import WORD_SUFFIXES
 from voxrt.octree import RomError
 from voxrt.outputs import OutputError, check_folder
 
@@ -82,11 +82,15 @@ def refuse_other_asset(words: Path, source: str) -> None:
     OutputError
         The manifest beside `words` names another file than `source`.
     """
+    if not words.exists():
+        return
+    from voxrt.export import read_manifest  # noqa: PLC0415 - most builds replace nothing
+
     try:
         there = read_manifest(words.with_suffix(".json")).source
     except RomError:  # none, or a damaged one
         return
-    if words.exists() and there is not None and there.file != source:
+    if there is not None and there.file != source:
         raise OutputError(
             f"{words}: was built from {there.file}, not from {source}; name another folder or file, such as "
             f"-o {words.with_stem(words.stem + '-2')}"

@@ -16,7 +16,6 @@ from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
 from voxrt.build_view import authored_view, preview
 from voxrt.build_writing import named_settings, write_build
-from voxrt.from_arrays import mesh_scene
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import output_files, refuse_other_asset
 from voxrt.sim import SimulatorError
@@ -211,6 +210,8 @@ def voxelize_mesh(
     >>> cube.coordinates.shape
     (512, 3)
     """
+    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - most builds are of files
+
     scene = mesh_scene(vertices, faces, colours=colours, face_colours=face_colours, up=up, unit=unit)
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
 

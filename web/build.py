@@ -1,74 +1,21 @@
-"""Build web/src and the native sources as WebAssembly: build/web/voxrt.wasm.
-
-The compiler is clang from PyPI (``ziglang``, group ``web`` of pyproject.toml). Its C++ library for WASI is built
-without exceptions; four objects add what is missing. Only what changed is compiled again.
-
-    python web/build.py [--jobs N]
-"""
+"""Build web/src and the native sources as WebAssembly: build/web/voxrt.wasm: ``python web/build.py [--jobs N]``."""
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import os
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-ROOT = Path(__file__).resolve().parents[1]
-BUILD = ROOT / "build" / "web"
+from compiler import BUILD, COMPILED, ROOT, Unit, link, zig
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
 WASM = BUILD / "voxrt.wasm"
 
-ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model"}
-LEFT_OUT = {
-    "module.cpp",
-    "colour_bindings.cpp",
-    "scene_bindings.cpp",
-    "block_file.cpp",
-    "disk_assembly.cpp",
-    "frame_tile_avx2.cpp",
-    "frame_tile_avx512.cpp",
-}
-
-EXCEPTIONS = ("-fwasm-exceptions", "-mexception-handling", "-fexceptions")
-TARGET = ("-target", "wasm32-wasi")
-OPTIMIZED = ("-O3", "-DNDEBUG", "-msimd128")
-# Rounding is that of every other platform: no product is fused with a sum.
-COMPILED = (*TARGET, "-std=c++20", *OPTIMIZED, "-ffp-contract=off", *EXCEPTIONS)
-LINKED = (*TARGET, "-mexec-model=reactor", "-O3", *EXCEPTIONS, "-Wl,-z,stack-size=1048576", "-s")
-
-# The tag by which WebAssembly tells C++ exceptions from others.
-TAG = r'__asm__(".globl __cpp_exception\n.tagtype __cpp_exception i32\n__cpp_exception:\n");'
-
-
-@dataclass(frozen=True)
-class Unit:
-    """A source and the command that compiles it; paths in the command are absolute."""
-
-    source: Path
-    command: tuple[str, ...]
-
-    @property
-    def object(self) -> Path:
-        """The file that it becomes; its name depends on the command."""
-        digest = hashlib.sha256("\0".join((str(self.source), *self.command)).encode()).hexdigest()[:12]
-        return BUILD / "objects" / f"{self.source.stem}-{digest}.o"
-
-    def is_current(self) -> bool:
-        """Whether nothing that the object was made of is newer."""
-        listing = self.object.with_suffix(".d")
-        if not (self.object.exists() and listing.exists()):
-            return False
-        made = self.object.stat().st_mtime_ns
-        names = listing.read_text().split(":", 1)[1].replace("\\\n", " ").split()
-        return all(Path(name).exists() and Path(name).stat().st_mtime_ns < made for name in names)
-
-    def compile(self) -> None:
-        """Compile it, and list what it includes."""
-        listing = self.object.with_suffix(".d")
-        run(*self.command, "-MD", "-MF", str(listing), "-c", str(self.source), "-o", str(self.object))
+ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
+LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp", "block_file.cpp", "disk_assembly.cpp"}
+OTHER_PROCESSORS = ("_avx2.cpp", "_avx512.cpp")
 
 
 def main() -> None:
@@ -80,25 +27,8 @@ def main() -> None:
 
 def build(jobs: int | None = None) -> Path:
     """Compile what changed, link, and return the module."""
-    (BUILD / "objects").mkdir(parents=True, exist_ok=True)
     link_headers()
-    units = [*library_units(), *our_units()]
-    stale = [unit for unit in units if not unit.is_current()]
-    objects = [str(unit.object) for unit in units]
-    if stale:
-        with ThreadPoolExecutor(jobs) as pool:
-            for number, unit in enumerate(pool.map(compiled, stale), 1):
-                print(f"[{number}/{len(stale)}] {unit.source.name}", flush=True)
-    if stale or not WASM.exists():
-        run(*zig("c++"), *LINKED, *objects, "-o", str(WASM))
-        print(f"{WASM.relative_to(ROOT)}: {WASM.stat().st_size:,} bytes", flush=True)
-    return WASM
-
-
-def compiled(unit: Unit) -> Unit:
-    """Compile a unit and return it."""
-    unit.compile()
-    return unit
+    return link(WASM, our_units(), jobs)
 
 
 def our_units() -> list[Unit]:
@@ -106,32 +36,7 @@ def our_units() -> list[Unit]:
     flags = (*zig("c++"), *COMPILED, "-I", str(BUILD / "include"))
     folders = [ROOT / folder for folder in (*ROOMS.values(), "voxelize/src/colour", "web/src")]
     sources = [path for folder in folders for path in sorted(folder.glob("*.cpp")) if path.name not in LEFT_OUT]
-    return [Unit(source, flags) for source in sources]
-
-
-def library_units() -> list[Unit]:
-    """Return what the C++ library of the compiler lacks for exceptions."""
-    lib = zig_library()
-    abi, unwind = lib / "libcxxabi", lib / "libunwind"
-    tag = BUILD / "tag.c"
-    if not tag.exists() or tag.read_text() != TAG:
-        tag.write_text(TAG)
-    for_abi = (
-        *zig("c++"), *TARGET, "-std=c++23", "-O2", *EXCEPTIONS,
-        "-DLIBCXXABI_NON_DEMANGLING_TERMINATE", "-D_LIBCPP_BUILDING_LIBRARY", "-DLIBCXX_BUILDING_LIBCXXABI",
-        "-D_LIBCXXABI_HAS_NO_THREADS", "-I", str(abi / "include"), "-I", str(lib / "libcxx" / "src"),
-        "-I", str(unwind / "include"),
-    )  # fmt: skip
-    for_unwind = (
-        *zig("cc"), *TARGET, "-std=c23", "-O2", *EXCEPTIONS, "-fdeclspec", "-D_LIBUNWIND_HAS_NO_THREADS",
-        "-D_LIBUNWIND_HIDE_SYMBOLS", "-I", str(unwind / "include"), "-I", str(unwind / "src"),
-    )  # fmt: skip
-    return [
-        Unit(abi / "src" / "cxa_exception.cpp", for_abi),
-        Unit(abi / "src" / "cxa_personality.cpp", for_abi),
-        Unit(unwind / "src" / "Unwind-wasm.c", for_unwind),
-        Unit(tag, (*zig("cc"), *TARGET, "-mexception-handling")),
-    ]
+    return [Unit(source, flags) for source in sources if not source.name.endswith(OTHER_PROCESSORS)]
 
 
 def link_headers() -> None:
@@ -141,27 +46,6 @@ def link_headers() -> None:
     for room, folder in ROOMS.items():
         if not (include / room).is_symlink():
             (include / room).symlink_to(ROOT / folder)
-
-
-def zig(command: str) -> tuple[str, ...]:
-    """Return the start of a command line of the compiler."""
-    return (sys.executable, "-m", "ziglang", command)
-
-
-def zig_library() -> Path:
-    """Return the folder of the compiler's own sources."""
-    try:
-        import ziglang  # noqa: PLC0415 - the message says how to install it
-    except ModuleNotFoundError:
-        sys.exit("web/build.py needs the compiler from PyPI: pip install --group web")
-    return Path(ziglang.__file__).parent / "lib"
-
-
-def run(*command: str) -> None:
-    """Run a command; one that fails ends the script with what it says."""
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
 
 
 if __name__ == "__main__":

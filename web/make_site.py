@@ -1,7 +1,8 @@
 """Put the static page together: build/site, which any web server can serve, from any path.
 
 It holds the page (web/page), what it shares with the server's page (serve/page), the npm package (web/package) with the
-module of web/build.py, the loaders of three.js from npm without their manuals, and example scenes. Nothing is bundled.
+modules of web/build.py and web/build_hardware.py, the loaders of three.js from npm without their manuals, and example
+scenes. Nothing is bundled.
 
     python web/make_site.py            # needs the package voxrt, npm, and the group `web` of pyproject.toml
     python -m http.server -d build/site
@@ -20,8 +21,11 @@ import tarfile
 import tempfile
 from pathlib import Path
 
+from build_hardware import build_hardware
+from compiler import BUILD, ROOT
+
 import voxrt
-from build import BUILD, ROOT, build
+from build import build
 from voxrt.octree import BOARDS
 
 SITE = ROOT / "build" / "site"
@@ -42,6 +46,9 @@ SHARED = (
 )  # fmt: skip
 """Files of the server's page."""
 
+SCRIPTS = ("voxrt.js", "instance.js", "scene.js", "hardware.js")
+"""Files of the package."""
+
 EXAMPLES = {
     "courtyard": ("Courtyard", ("courtyard.glb",)),
     "planet": ("Planet", ("planet.glb",)),
@@ -52,23 +59,23 @@ EXAMPLES = {
 
 
 def main() -> None:
-    """Build the module, and put the site together anew."""
-    make_site(build())
+    """Build the modules, and put the site together anew."""
+    make_site(build(), build_hardware())
     npm_package(*AXE)
     files = [path for path in SITE.rglob("*") if path.is_file()]
     print(f"{SITE.relative_to(ROOT)}: {len(files)} files, {sum(path.stat().st_size for path in files):,} bytes")
 
 
-def make_site(wasm: Path) -> None:
+def make_site(*modules: Path) -> None:
     """Put the site together in a folder of its own, then in place of the old one."""
     made = BUILD / "site"
     shutil.rmtree(made, ignore_errors=True)
     shutil.copytree(ROOT / "web" / "page", made)
     for name in SHARED:
         shutil.copyfile(ROOT / "serve" / "page" / name, made / name)
-    make_package(wasm)
+    make_package(modules)
     (made / "voxrt").mkdir()
-    for name in ("voxrt.js", "scene.js", wasm.name):
+    for name in (*SCRIPTS, *(module.name for module in modules)):
         shutil.copyfile(PACKAGE / name, made / "voxrt" / name)
     shutil.copyfile(ROOT / "LICENSE", made / "LICENSE")
     (made / "package.json").write_text('{"private": true, "type": "module"}\n')  # for Node
@@ -83,11 +90,12 @@ def make_site(wasm: Path) -> None:
     made.rename(SITE)
 
 
-def make_package(wasm: Path) -> None:
+def make_package(modules: tuple[Path, ...]) -> None:
     """Put the npm package together: `npm pack` makes an archive of it."""
     shutil.rmtree(PACKAGE, ignore_errors=True)
     shutil.copytree(ROOT / "web" / "package", PACKAGE)
-    shutil.copyfile(wasm, PACKAGE / wasm.name)
+    for module in modules:
+        shutil.copyfile(module, PACKAGE / module.name)
     shutil.copyfile(ROOT / "LICENSE", PACKAGE / "LICENSE")
 
 

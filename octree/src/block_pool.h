@@ -45,18 +45,6 @@ public:
         return number;
     }
 
-    /// Interns the blocks of `other`, children first; element i of the result is the node here of its block i.
-    std::vector<Node> absorb(const BlockPool& other) {
-        std::vector<Node> here;
-        here.reserve(other.size());
-        for (Block children : other.blocks_) {
-            for (Node& child : children)
-                child = is_leaf(child) ? child : here[child];
-            here.push_back(intern(children));
-        }
-        return here;
-    }
-
     const Block& operator[](Node number) const { return blocks_[number]; }
     std::size_t size() const { return blocks_.size(); }
 

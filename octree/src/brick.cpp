@@ -1,5 +1,7 @@
 #include "brick.h"
 
+#include "shared_block_pool.h"
+
 #include <cstring>
 
 namespace voxrt::octree {
@@ -10,7 +12,7 @@ constexpr Word kCells = 256;           // kind of a remembered pattern of 8 mate
 
 } // namespace
 
-Node BrickBuilder::from_mask8(std::uint8_t mask, std::uint8_t material) {
+template <typename Pool> Node BrickBuilderFor<Pool>::from_mask8(std::uint8_t mask, std::uint8_t material) {
     std::unique_ptr<NodesByMask>& nodes = nodes_by_mask_[material];
     if (!nodes) {
         nodes = std::make_unique<NodesByMask>();
@@ -26,7 +28,7 @@ Node BrickBuilder::from_mask8(std::uint8_t mask, std::uint8_t material) {
     return node;
 }
 
-Node BrickBuilder::from_mask64(std::uint64_t mask, std::uint8_t material) {
+template <typename Pool> Node BrickBuilderFor<Pool>::from_mask64(std::uint64_t mask, std::uint8_t material) {
     if (mask == 0)
         return kEmpty;
     if (mask == ~std::uint64_t{0})
@@ -39,14 +41,15 @@ Node BrickBuilder::from_mask64(std::uint64_t mask, std::uint8_t material) {
     });
 }
 
-Node BrickBuilder::from_mask(const std::uint64_t mask[8], std::uint8_t material) {
+template <typename Pool>
+Block BrickBuilderFor<Pool>::children_from_mask(const std::uint64_t mask[8], std::uint8_t material) {
     Block children;
     for (unsigned octant = 0; octant < 8; ++octant)
         children[octant] = from_mask64(mask[octant], material);
-    return pool_.intern(children);
+    return children;
 }
 
-Node BrickBuilder::from_cells8(const std::uint8_t cells[8]) {
+template <typename Pool> Node BrickBuilderFor<Pool>::from_cells8(const std::uint8_t cells[8]) {
     std::uint64_t eight;
     std::memcpy(&eight, cells, 8);
     if (eight == cells[0] * 0x0101010101010101u)
@@ -59,18 +62,21 @@ Node BrickBuilder::from_cells8(const std::uint8_t cells[8]) {
     });
 }
 
-Node BrickBuilder::from_cells64(const std::uint8_t cells[64]) {
+template <typename Pool> Node BrickBuilderFor<Pool>::from_cells64(const std::uint8_t cells[64]) {
     Block children;
     for (unsigned octant = 0; octant < 8; ++octant)
         children[octant] = from_cells8(cells + 8 * octant);
     return pool_.intern(children);
 }
 
-Node BrickBuilder::from_cells(const std::uint8_t cells[512]) {
+template <typename Pool> Block BrickBuilderFor<Pool>::children_from_cells(const std::uint8_t cells[512]) {
     Block children;
     for (unsigned octant = 0; octant < 8; ++octant)
         children[octant] = from_cells64(cells + 64 * octant);
-    return pool_.intern(children);
+    return children;
 }
+
+template class BrickBuilderFor<BlockPool>;
+template class BrickBuilderFor<SharedBlockPool::Writer>;
 
 } // namespace voxrt::octree

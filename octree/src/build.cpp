@@ -3,6 +3,7 @@
 #include "breadth_first.h"
 #include "brick.h"
 #include "octree_builder.h"
+#include "shared_block_pool.h"
 
 #include <voxrt/voxelize/workers.h>
 
@@ -44,11 +45,11 @@ bool cells_match_mask(const std::uint8_t* cells, const std::uint64_t* mask) {
     return difference == 0;
 }
 
-// The node of a brick in a world of at least 8 voxels per side, or the whole of a smaller world.
-Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) {
+using Writer = SharedBlockPool::Writer;
+using Bricks = BrickBuilderFor<Writer>;
+
+void check_brick(const VoxelsView& voxels, std::size_t i) {
     const std::uint64_t* mask = voxels.brick_masks + 8 * i;
-    const std::int32_t row = voxels.brick_rows[i];
-    const std::uint8_t material = voxels.brick_materials[i];
     std::uint64_t any = 0;
     for (unsigned word = 0; word < 8; ++word)
         any |= mask[word];
@@ -61,32 +62,90 @@ Node brick_node(const VoxelsView& voxels, std::size_t i, BrickBuilder& builder) 
         if (beyond != 0)
             refuse("brick", i, "has voxels outside the grid");
     }
+    const std::int32_t row = voxels.brick_rows[i];
     if (row < 0) {
-        if (material == 0)
+        if (voxels.brick_materials[i] == 0)
             refuse("brick", i, "has neither a material nor a row of cells");
-        switch (voxels.depth) {
-        case 1:
-            return builder.from_mask8(static_cast<std::uint8_t>(mask[0]), material);
-        case 2:
-            return builder.from_mask64(mask[0], material);
-        default:
-            return builder.from_mask(mask, material);
-        }
+        return;
     }
     if (static_cast<std::size_t>(row) >= voxels.rows)
         refuse("brick", i, "refers to a row of cells that is not there");
-    const std::uint8_t* cells = voxels.cells + 512 * static_cast<std::size_t>(row);
-    if (!cells_match_mask(cells, mask))
+    if (!cells_match_mask(voxels.cells + 512 * static_cast<std::size_t>(row), mask))
         refuse("brick", i, "has cells that contradict its mask");
-    switch (voxels.depth) {
-    case 1:
-        return builder.from_cells8(cells);
-    case 2:
-        return builder.from_cells64(cells);
-    default:
-        return builder.from_cells(cells);
-    }
 }
+
+// The children of a brick in a world of at least 8 voxels per side.
+Block brick_children(const VoxelsView& voxels, std::size_t i, Bricks& builder) {
+    check_brick(voxels, i);
+    const std::int32_t row = voxels.brick_rows[i];
+    return row < 0 ? builder.children_from_mask(voxels.brick_masks + 8 * i, voxels.brick_materials[i])
+                   : builder.children_from_cells(voxels.cells + 512 * static_cast<std::size_t>(row));
+}
+
+// A world of less than 8 voxels per side, which is one brick.
+Node small_world(const VoxelsView& voxels, std::size_t i, Bricks& builder) {
+    check_brick(voxels, i);
+    const std::uint64_t mask = voxels.brick_masks[8 * i];
+    const std::int32_t row = voxels.brick_rows[i];
+    if (row < 0)
+        return voxels.depth == 1 ? builder.from_mask8(static_cast<std::uint8_t>(mask), voxels.brick_materials[i])
+                                 : builder.from_mask64(mask, voxels.brick_materials[i]);
+    const std::uint8_t* cells = voxels.cells + 512 * static_cast<std::size_t>(row);
+    return voxels.depth == 1 ? builder.from_cells8(cells) : builder.from_cells64(cells);
+}
+
+// Octants on their way to an octree. A brick waits while the place of its block is fetched from memory.
+template <typename Builder> class Waiting {
+public:
+    Waiting(Writer& pool, Builder& octree) : pool_(pool), octree_(octree) {}
+
+    void add_brick(std::uint64_t code, const Block& children) {
+        Entry& entry = next();
+        entry.level = kBrickLevel;
+        entry.code = code;
+        entry.children = children;
+        entry.hash = pool_.prepare(children);
+        entry.whole = false;
+    }
+    void add(unsigned level, std::uint64_t code, Node node) {
+        Entry& entry = next();
+        entry.level = level;
+        entry.code = code;
+        entry.children[0] = node;
+        entry.whole = true;
+    }
+    void finish() {
+        for (std::size_t i = 0; i < kPlaces; ++i)
+            next();
+        octree_.finish();
+    }
+
+private:
+    static constexpr std::size_t kPlaces = 16;
+    struct Entry {
+        std::uint64_t code, hash;
+        Block children;
+        unsigned level;
+        bool whole; // the node is children[0]
+    };
+
+    // The place of the oldest, which moves on.
+    Entry& next() {
+        Entry& entry = entries_[count_ % kPlaces];
+        if (count_++ >= kPlaces && entry.level <= kMaxDepth) {
+            octree_.add(entry.level, entry.code,
+                        entry.whole ? entry.children[0] : pool_.intern(entry.children, entry.hash));
+        }
+        entry.level = kNone;
+        return entry;
+    }
+
+    static constexpr unsigned kNone = kMaxDepth + 1;
+    Writer& pool_;
+    Builder& octree_;
+    std::array<Entry, kPlaces> entries_;
+    std::size_t count_ = 0;
+};
 
 // A run of the Morton curve: positions `begin` … `end` - 1, in bricks, and the first brick and octant there.
 struct Chunk {
@@ -138,8 +197,8 @@ std::vector<Chunk> cut_into_chunks(const VoxelsView& voxels) {
 // Adds the bricks and octants of `chunk` to `octree` in Morton order, up to those where the next chunk starts.
 template <typename Builder>
 void add_chunk(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_end, std::size_t octant_end,
-               BrickBuilder& bricks, Builder& octree) {
-    const unsigned brick_level = std::min(voxels.depth, kBrickLevel);
+               Writer& pool, Bricks& bricks, Builder& octree) {
+    Waiting<Builder> waiting(pool, octree);
     std::uint64_t covered = chunk.begin;
     std::size_t brick = chunk.brick;
     std::size_t octant = chunk.octant;
@@ -151,7 +210,10 @@ void add_chunk(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_e
                 refuse("brick", brick, "lies outside the grid or out of Morton order");
             if (code < covered)
                 refuse("brick", brick, "is out of Morton order or overlaps what came before");
-            octree.add(brick_level, code, brick_node(voxels, brick, bricks));
+            if (voxels.depth < kBrickLevel)
+                waiting.add(voxels.depth, code, small_world(voxels, brick, bricks));
+            else
+                waiting.add_brick(code, brick_children(voxels, brick, bricks));
             covered = code + 1;
             ++brick;
         } else {
@@ -160,7 +222,7 @@ void add_chunk(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_e
                 refuse("octant", octant, "is out of Morton order or overlaps what came before");
             if (voxels.octant_materials[octant] == 0)
                 refuse("octant", octant, "has no material");
-            octree.add(level, voxels.octant_codes[octant], leaf(voxels.octant_materials[octant]));
+            waiting.add(level, voxels.octant_codes[octant], leaf(voxels.octant_materials[octant]));
             covered = next_octant + (std::uint64_t{1} << (3 * (level - kBrickLevel)));
             if (covered > chunk.end)
                 refuse("octant", octant, "overlaps what comes after it");
@@ -168,10 +230,10 @@ void add_chunk(const VoxelsView& voxels, const Chunk& chunk, std::size_t brick_e
                 next_octant = octant_begin(voxels, octant);
         }
     }
-    octree.finish();
+    waiting.finish();
 }
 
-// An octant of at least the chunk level; its node is in the pool of the thread that made it.
+// An octant of at least the chunk level.
 struct Part {
     unsigned level;
     std::uint64_t code;
@@ -180,8 +242,9 @@ struct Part {
 
 // What a thread keeps from chunk to chunk.
 struct Scratch {
-    BlockPool pool;
-    BrickBuilder bricks{pool};
+    explicit Scratch(SharedBlockPool& pool) : blocks(pool), bricks(blocks) {}
+    Writer blocks;
+    Bricks bricks;
 };
 
 } // namespace
@@ -190,39 +253,32 @@ std::vector<Word> build(const VoxelsView& voxels, int threads) {
     const std::vector<Chunk> chunks = cut_into_chunks(voxels);
     const unsigned top = std::min(voxels.depth, kChunkLevel);
     const voxelize::Workers workers(threads);
+    SharedBlockPool pool;
     std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(workers.threads()));
-    scratch[0] = std::make_unique<Scratch>();
     std::vector<std::vector<Part>> parts(chunks.size());
-    std::vector<std::size_t> thread_of(chunks.size());
     workers.run(chunks.size(), [&](std::size_t i, int thread) {
         voxelize::count_work(kChunkWork);
-        thread_of[i] = static_cast<std::size_t>(thread);
-        std::unique_ptr<Scratch>& own = scratch[thread_of[i]];
+        std::unique_ptr<Scratch>& own = scratch[static_cast<std::size_t>(thread)];
         if (!own)
-            own = std::make_unique<Scratch>();
+            own = std::make_unique<Scratch>(pool);
         const auto keep = [&](unsigned level, std::uint64_t code, Node node) {
             parts[i].push_back({level, code, node});
         };
-        OctreeBuilder octree(own->pool, top, keep);
+        OctreeBuilder octree(own->blocks, top, keep);
         const bool last = i + 1 == chunks.size();
         add_chunk(voxels, chunks[i], last ? voxels.bricks : chunks[i + 1].brick,
-                  last ? voxels.octants : chunks[i + 1].octant, own->bricks, octree);
+                  last ? voxels.octants : chunks[i + 1].octant, own->blocks, own->bricks, octree);
     });
+    scratch.clear();
 
-    BlockPool& pool = scratch[0]->pool;
-    std::vector<std::vector<Node>> translation(scratch.size());
-    for (std::size_t thread = 1; thread < scratch.size(); ++thread)
-        if (scratch[thread])
-            translation[thread] = pool.absorb(scratch[thread]->pool);
+    Writer blocks(pool);
     Node root = kEmpty;
-    OctreeBuilder octree(pool, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
-    for (std::size_t i = 0; i < chunks.size(); ++i)
-        for (const Part& part : parts[i]) {
-            const bool foreign = thread_of[i] != 0 && !is_leaf(part.node);
-            octree.add(part.level, part.code, foreign ? translation[thread_of[i]][part.node] : part.node);
-        }
+    OctreeBuilder octree(blocks, voxels.depth, [&](unsigned, std::uint64_t, Node node) { root = node; });
+    for (const std::vector<Part>& chunk : parts)
+        for (const Part& part : chunk)
+            octree.add(part.level, part.code, part.node);
     octree.finish();
-    return breadth_first_words(pool, root);
+    return breadth_first_words(pool, root, threads);
 }
 
 std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,

@@ -16,7 +16,7 @@ namespace voxrt::octree {
 /// The memory of sparse bricks and octants, of depth `voxels.depth` (1 … 16). `threads`: 0 takes as many as the machine
 /// has.
 ///
-/// Cost: bricks and octants, never volume. Memory: the blocks that differ, once, and once more per further thread.
+/// Cost: bricks and octants, never volume. Memory: the blocks that differ, once.
 /// Throws std::invalid_argument, naming the brick or octant, where the arrays break their contract (sparse_voxels.h);
 /// std::length_error where the octree has more blocks than 31-bit addresses can reach.
 std::vector<Word> build(const voxelize::VoxelsView& voxels, int threads);

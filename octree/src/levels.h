@@ -3,7 +3,7 @@
 
 #include "memory.h"
 
-#include <unordered_map>
+#include <stdexcept>
 #include <vector>
 
 namespace voxrt::octree {
@@ -14,25 +14,54 @@ struct Occurrence {
     std::uint64_t octants;
 };
 
+/// Goes down the levels of a memory, one step at a time. Remembers 4 bytes per block.
+class LevelWalk {
+public:
+    /// The words of `memory` must outlive the walk.
+    explicit LevelWalk(const Memory& memory) : memory_(memory), place_(memory.size / 8 + 1, 0) {}
+
+    /// The blocks below the blocks `parents`, whose octants have the side 2**level, in the order of a breadth-first
+    /// walk. Calls on_leaf(word, octants) for the leaves among the children. Throws std::invalid_argument where the
+    /// words are no octree.
+    template <typename OnLeaf>
+    std::vector<Occurrence> below(const std::vector<Occurrence>& parents, unsigned level, OnLeaf on_leaf) {
+        std::vector<Occurrence> found;
+        for (const Occurrence& parent : parents)
+            for (unsigned octant = 0; octant < 8; ++octant) {
+                const Word child = memory_.child(parent.block, octant, level);
+                if (is_leaf(child)) {
+                    on_leaf(child, parent.octants);
+                    continue;
+                }
+                if (child % 8 != 1 || child >= memory_.size)
+                    throw std::invalid_argument(
+                        "the words are not a valid octree: a pointer leads to no block; validate them first");
+                Word& place = place_[child / 8];
+                if (place == 0) {
+                    found.push_back({child, 0});
+                    place = static_cast<Word>(found.size());
+                }
+                found[place - 1].octants += parent.octants;
+            }
+        for (const Occurrence& one : found)
+            place_[one.block / 8] = 0;
+        return found;
+    }
+
+private:
+    Memory memory_;
+    std::vector<Word> place_; // by block: one more than where it stands in the level that is made, or 0
+};
+
 /// Element `level` holds the blocks whose octants have the side 2**level, in the order of a breadth-first walk. Linear
 /// in blocks times levels, whatever the world's size.
 inline std::vector<std::vector<Occurrence>> blocks_by_level(const Memory& memory) {
     std::vector<std::vector<Occurrence>> levels(memory.depth + 1);
     if (!is_leaf(memory.root()))
         levels[memory.depth].push_back({memory.root(), 1});
-    for (unsigned level = memory.depth; level > 0; --level) {
-        std::unordered_map<Word, std::size_t> row;
-        for (const Occurrence& parent : levels[level])
-            for (unsigned octant = 0; octant < 8; ++octant) {
-                const Word child = memory.child(parent.block, octant, level);
-                if (is_leaf(child))
-                    continue;
-                const auto [entry, missing] = row.try_emplace(child, levels[level - 1].size());
-                if (missing)
-                    levels[level - 1].push_back({child, 0});
-                levels[level - 1][entry->second].octants += parent.octants;
-            }
-    }
+    LevelWalk walk(memory);
+    for (unsigned level = memory.depth; level > 0; --level)
+        levels[level - 1] = walk.below(levels[level], level, [](Word, std::uint64_t) {});
     return levels;
 }
 

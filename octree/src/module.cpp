@@ -1,18 +1,19 @@
 // voxrt.octree._native: the octree for Python. The headers are the manual; here arrays are checked and handed over.
 #include "assembly.h"
 #include "breadth_first.h"
-#include "budget.h"
 #include "build.h"
 #include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
 #include "disk_assembly.h"
+#include "fit_candidates.h"
 #include "hidden.h"
 #include "interior.h"
 #include "leaves.h"
 #include "mem_text.h"
 #include "query.h"
 #include "regions.h"
+#include "sight_costs.h"
 #include "surface.h"
 #include "validate.h"
 
@@ -21,9 +22,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <memory>
+#include <string>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -221,23 +224,19 @@ nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned leve
     }));
 }
 
-using MaterialPairs = nb::ndarray<const std::uint32_t, nb::shape<256, 256>, nb::c_contig, nb::device::cpu>;
-
-nb::object
-bind_fit_bricks(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth, unsigned finest,
-                const MaterialPairs& same_axis, const MaterialPairs& other_axis,
-                const nb::ndarray<const std::uint32_t, nb::shape<256>, nb::c_contig, nb::device::cpu>& occlusion,
-                std::size_t limit) {
+nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,
+                               const nb::ndarray<const std::uint8_t, nb::shape<-1, 3>, nb::c_contig>& colours) {
     const Memory memory = memory_of(words, depth);
-    const Memory hidden_memory = memory_of(hidden, depth);
-    auto costs = std::make_unique<AppearanceCosts>();
-    std::copy_n(same_axis.data(), 256 * 256, costs->same_axis[0].data());
-    std::copy_n(other_axis.data(), 256 * 256, costs->other_axis[0].data());
-    std::copy_n(occlusion.data(), 256, costs->occlusion.data());
+    const auto costs = sight_costs({reinterpret_cast<const Colour*>(colours.data()), colours.shape(0)});
     nb::list result;
-    for (std::vector<Word>& fit : run([&] { return fit_bricks(memory, hidden_memory, finest, *costs, limit); }))
-        result.append(words_to_numpy(std::move(fit)));
-    return result;
+    std::string problem;
+    try {
+        for (std::vector<Word>& fit : run([&] { return fit_candidates(memory, limit, *costs); }))
+            result.append(words_to_numpy(std::move(fit)));
+    } catch (const DoesNotFit& failure) {
+        problem = failure.what();
+    }
+    return nb::make_tuple(result, problem);
 }
 
 nb::object bind_surface_change(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
@@ -368,8 +367,7 @@ NB_MODULE(_native, m) {
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
-    m.def("fit_bricks", &bind_fit_bricks, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "finest"_a,
-          "same_axis"_a.noconvert(), "other_axis"_a.noconvert(), "occlusion"_a.noconvert(), "limit"_a);
+    m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
     m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);
     m.def("mem_text_crc32", &bind_mem_text_crc32, "words"_a.noconvert(), "before"_a = 0, "threads"_a = 0);
     m.def("read_mem_text", &bind_read_mem_text, "text"_a);

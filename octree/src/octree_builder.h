@@ -9,10 +9,11 @@ namespace voxrt::octree {
 
 /// Takes disjoint octants in Morton order, of any levels. Joins those below level `top` into octants of that level and
 /// calls emit(level, code, node) for each octant of level `top` or above, in Morton order. What no octant covers is
-/// empty. Holds one unfinished block per level; all other memory is that of the pool. Linear in octants and blocks.
-template <typename Emit> class OctreeBuilder {
+/// empty. `Pool`: BlockPool or SharedBlockPool::Writer. Holds one unfinished block per level; all other memory is that
+/// of the pool. Linear in octants and blocks.
+template <typename Pool, typename Emit> class OctreeBuilder {
 public:
-    OctreeBuilder(BlockPool& pool, unsigned top, Emit emit) : pool_(pool), top_(top), emit_(std::move(emit)) {}
+    OctreeBuilder(Pool& pool, unsigned top, Emit emit) : pool_(pool), top_(top), emit_(std::move(emit)) {}
 
     /// Adds an octant. `code` = Morton code of its lowest corner, divided by its volume 8**level.
     void add(unsigned level, std::uint64_t code, Node node) {
@@ -59,7 +60,7 @@ private:
         place(level + 1, block.parent, pool_.intern(block.children));
     }
 
-    BlockPool& pool_;
+    Pool& pool_;
     unsigned top_;
     Emit emit_;
     unsigned lowest_ = kMaxDepth;

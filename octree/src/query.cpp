@@ -1,5 +1,7 @@
 #include "query.h"
 
+#include "levels.h"
+
 #include <voxrt/voxelize/interrupt.h>
 
 #include <algorithm>
@@ -166,24 +168,16 @@ void materials_at(const Memory& memory, const std::int64_t* points, std::size_t 
 
 std::vector<std::uint64_t> leaf_counts(const Memory& memory) {
     std::vector<std::uint64_t> counts(256 * (std::size_t{memory.depth} + 1), 0);
-    std::unordered_map<Word, std::uint64_t> blocks; // of one level: how many octants each block stands for
-    std::unordered_map<Word, std::uint64_t> below;
-    voxelize::WorkCounter& work = voxelize::WorkCounter::current();
-    const auto add = [&](Word word, unsigned level, std::uint64_t octants) {
-        if (is_leaf(word))
-            counts[256 * std::size_t{level} + material(word)] += octants;
-        else
-            below[word] += octants;
-    };
-    add(memory.root(), memory.depth, 1);
-    for (unsigned level = memory.depth; !below.empty(); --level) {
-        blocks.swap(below);
-        below.clear();
-        for (const auto& [word, octants] : blocks) {
-            work.count_step();
-            for (unsigned octant = 0; octant < 8; ++octant)
-                add(memory.child(word, octant, level), level - 1, octants);
-        }
+    if (is_leaf(memory.root())) {
+        counts[256 * std::size_t{memory.depth} + material(memory.root())] = 1;
+        return counts;
+    }
+    LevelWalk walk(memory);
+    std::vector<Occurrence> blocks{{memory.root(), 1}};
+    for (unsigned level = memory.depth; !blocks.empty(); --level) {
+        std::uint64_t* row = level > 0 ? counts.data() + 256 * std::size_t{level - 1} : nullptr; // below() refuses 0
+        voxelize::count_work(4 * static_cast<std::uint32_t>(std::min<std::size_t>(blocks.size(), 1 << 24)));
+        blocks = walk.below(blocks, level, [row](Word leaf, std::uint64_t octants) { row[material(leaf)] += octants; });
     }
     return counts;
 }

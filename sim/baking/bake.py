@@ -1,11 +1,6 @@
 """Bake the light of a sun and a sky into the colours of surface voxels.
 
-How it works: the native code finds the exposed voxels, the normal of each, and the voxel before the surface from whose
-centre rays go towards the sun and the sky (``src/bake/surface_points.h``). It tells exactly which of them hit nothing
-(``src/bake/received_light.h``). The sum over the sky is weighted by the cosine (Lambert's law). A voxel that is exposed
-on both sides, as in a sheet, takes the side with more light. Its colour is the material's in linear light times the
-light; the quantizer chooses a palette for all of them, and the octree is built again. Voxels that are not exposed keep
-their materials.
+The native code is the manual: ``src/bake/baked_light.h``.
 """
 
 from __future__ import annotations
@@ -15,14 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.octree import Rom, build
+from voxrt.octree import Octree, Rom
 from voxrt.sim import _bake
 from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction
 from voxrt.sim.baking.surface_triangles import surface_triangles
-from voxrt.voxelize import Material, Voxels
+from voxrt.voxelize import Material
 from voxrt.voxelize.arguments import instance, whole
-from voxrt.voxelize.colour.palette import quantize
-from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,10 +25,6 @@ if TYPE_CHECKING:
 
 MOST_COLOURS = 254
 """The most colours of baked light in one memory."""
-
-_MOST_INSIDE = 16  # materials of voxels that are not exposed
-_SUM_OF_UNIT_LIGHT = float(1 << 44)  # of light 1 from one direction that a surface faces
-_WEIGHT = float(1 << 16)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -60,7 +49,7 @@ class BakedLight:
     sky: NDArray[np.float64]
     colours: NDArray[np.uint8]
     _surface: _bake.Surface
-    _rows: NDArray[np.int64]
+    _rows: NDArray[np.uint64]
 
     def memory(self, colours: int = MOST_COLOURS, *, threads: int = 0) -> Rom:
         """Return the memory with baked colours.
@@ -84,46 +73,21 @@ class BakedLight:
             An argument of the wrong type or out of range.
         """
         colours = whole("colours", colours, 1, MOST_COLOURS)
-        cells, levels = self._surface.cells.copy(), self._surface.octant_materials
-        flat = cells.reshape(-1)
-        inside = np.bincount(flat, minlength=256)
-        inside -= np.bincount(flat[self._rows], minlength=256)
-        volumes = np.int64(1) << 3 * self._surface.octant_levels.astype(np.int64)
-        inside = inside + np.bincount(levels, volumes, minlength=256).astype(np.int64)
-        nearest, kept = self._nearest_kept(inside)
-        free = [number for number in range(1, 256) if number not in kept]
-        palette, rows = quantize(self.colours, np.ones(len(self.colours)), min(colours, len(free)))
-        materials = {0: self.rom.materials[0]} | {number: self.rom.materials[number] for number in kept}
-        names = {one.name for one in materials.values()}
-        for number, (red, green, blue) in zip(free, palette.tolist(), strict=False):
-            name = f"lit #{red:02x}{green:02x}{blue:02x}"
-            while name in names:
-                name += "'"
-            names.add(name)
-            materials[number] = Material(name, (red, green, blue))
-        for number in set(range(max(materials))) - set(materials):  # ids that nothing uses any more
-            materials[number] = self.rom.materials[number]
-        flat[:] = nearest[flat]
-        if len(palette):
-            flat[self._rows] = np.array(free[: len(palette)], np.uint8)[rows]
-        tree = build(_voxels(self.rom.octree.depth, self._surface, cells, nearest[levels]), threads=threads)
-        table = tuple(materials[number] for number in sorted(materials))
-        return replace(self.rom, octree=tree, materials=table)
-
-    def _nearest_kept(self, inside: NDArray[np.int64]) -> tuple[NDArray[np.uint8], list[int]]:
-        """Return the id that each id becomes where it is not exposed, and the ids that stay: mirrors and the commonest.
-
-        An id that does not stay becomes the one with the nearest colour.
-        """
-        used = np.flatnonzero(inside[1:]) + 1
-        table = np.array([one.colour for one in self.rom.materials], np.int64)
-        mirror = np.array([one.mirror for one in self.rom.materials])
-        order = sorted(used.tolist(), key=lambda number: (not mirror[number], -inside[number], number))
-        kept = order[: max(_MOST_INSIDE, int(mirror[used].sum()))]
-        nearest = np.arange(256).astype(np.uint8)
-        for number in order[len(kept) :]:
-            nearest[number] = kept[int(((table[kept] - table[number]) ** 2).sum(axis=1).argmin())]
-        return nearest, kept
+        depth, surface = self.rom.octree.depth, self._surface
+        words, table = _bake.bake_memory(
+            depth,
+            surface.brick_codes,
+            surface.cells,
+            surface.octant_codes,
+            surface.octant_levels,
+            surface.octant_materials,
+            self._rows,
+            self.colours,
+            _fields(self.rom),
+            colours,
+            threads,
+        )
+        return replace(self.rom, octree=Octree(depth, words), materials=tuple(Material(*one) for one in table))
 
 
 def bake_light(
@@ -169,42 +133,19 @@ def bake_light(
     words, depth = rom.octree.words, rom.octree.depth
     corners, normals = surface_triangles(scene, rom.grid, geometry)
     surface = _bake.measure_surface(words, depth, corners, normals, threads)
-    mirror = np.zeros(256, np.bool_)
-    mirror[: len(rom.materials)] = [one.mirror for one in rom.materials]
-    sun, sky = _light(words, depth, surface, daylight, threads)
-    # Both sides of a voxel follow one another; the side with more light counts.
-    rows, first = np.unique(surface.voxels.astype(np.int64), return_index=True)
-    total = daylight.sun_light * sun + float(np.mean(daylight.sky)) * sky
-    second = np.minimum(first + 1, len(total) - 1)
-    has_second = np.diff(np.append(first, len(total))) > 1
-    best = np.where(has_second & (total[second] > total[first]), second, first)
-    seen = ~mirror[surface.cells.reshape(-1)[rows]]
-    rows, best = rows[seen], best[seen]
-    own = linear_from_srgb(np.array([one.colour for one in rom.materials]))[surface.cells.reshape(-1)[rows]]
-    light = daylight.sun_light * sun[best, None] + sky[best, None] * np.array(daylight.sky)
-    return BakedLight(
-        rom,
-        _positions(surface.brick_codes, rows),
-        daylight.sun_light * sun[best],
-        sky[best],
-        srgb_from_linear(own * light),
-        surface,
-        rows,
+    sun, sky = (
+        _bake.receive_light(words, depth, surface.origins, surface.normals, one.steps, one.units, one.weights, threads)
+        for one in (sun_direction(daylight), sky_directions(daylight.samples))
     )
+    lit = _bake.light_voxels(
+        surface.voxels, surface.cells, sun.received, sky.received, sky.full, _fields(rom), daylight.sun, daylight.sky
+    )
+    voxels = _positions(surface.brick_codes, lit.rows.astype(np.int64))
+    return BakedLight(rom, voxels, lit.sun, lit.sky, lit.colours, surface, lit.rows)
 
 
-def _light(
-    words: NDArray[np.uint32], depth: int, surface: _bake.Surface, daylight: Daylight, threads: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the cosine of the sun where it is seen, else 0, and the sky's share, of each point."""
-    found = []
-    for directions in (sun_direction(daylight), sky_directions(daylight.samples)):
-        steps, units, weights = directions.steps, directions.units, directions.weights
-        found.append(
-            _bake.receive_light(words, depth, surface.origins, surface.normals, steps, units, weights, threads)
-        )
-    sun, sky = found
-    return sun.received / _SUM_OF_UNIT_LIGHT, sky.received / (_WEIGHT * np.maximum(sky.full, 1))
+def _fields(rom: Rom) -> list[tuple[str, tuple[int, int, int], bool, bool]]:
+    return [(one.name, one.colour, one.mirror, one.authored) for one in rom.materials]
 
 
 def _positions(codes: NDArray[np.uint64], rows: NDArray[np.int64]) -> NDArray[np.int32]:
@@ -215,19 +156,3 @@ def _positions(codes: NDArray[np.uint64], rows: NDArray[np.int64]) -> NDArray[np
         for axis in range(3):
             found[:, axis] |= (code >> (3 * bit + axis) & 1).astype(np.int32) << bit
     return found
-
-
-def _voxels(depth: int, surface: _bake.Surface, cells: NDArray[np.uint8], octants: NDArray[np.uint8]) -> Voxels:
-    bricks = len(cells)
-    masks = np.packbits(cells != 0, axis=1, bitorder="little").view("<u8").astype(np.uint64)
-    return Voxels(
-        depth,
-        surface.brick_codes,
-        masks.reshape(bricks, 8),
-        np.zeros(bricks, np.uint8),
-        np.arange(bricks, dtype=np.int32),
-        cells,
-        surface.octant_codes,
-        surface.octant_levels,
-        octants,
-    )

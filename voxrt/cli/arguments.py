@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args
 from cyclopts import Parameter
 
 from voxrt.backgrounds import read_background
+from voxrt.cli.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,10 +40,6 @@ _LENGTH = re.compile(
 
 FrameChoice: TypeAlias = tuple[float, float, int] | Literal["files"]
 """The frames of an animation: start, stop and count, or the assets themselves."""
-
-
-class UsageError(Exception):
-    """A command line that cannot be understood, in one line."""
 
 
 @dataclass(frozen=True)

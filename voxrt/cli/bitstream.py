@@ -10,8 +10,9 @@ import msgspec
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, board_name, levels, whole
+from voxrt.cli.arguments import Reporting, board_name, levels, whole
 from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.errors import UsageError
 from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize, warn
 from voxrt.cli.progress import build_bar, stage_bar, transfer_bar

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from voxrt.cli.arguments import UsageError
+from voxrt.cli.errors import UsageError
 from voxrt.rtl.configurations import Configuration, read_configurations
 
 

@@ -9,8 +9,9 @@ from cyclopts import Parameter
 
 import voxrt
 from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
-from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, UsageError, choice
+from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, choice
 from voxrt.cli.configuration import find_configuration
+from voxrt.cli.errors import UsageError
 from voxrt.cli.lighting import supported
 from voxrt.cli.memory_results import ConvertResult
 from voxrt.cli.messages import name_file, summarize

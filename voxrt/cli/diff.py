@@ -8,7 +8,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Depth, Reporting, UsageError, whole
+from voxrt.cli.arguments import Depth, Reporting, whole
+from voxrt.cli.errors import UsageError
 from voxrt.cli.memory_results import DiffResult, RegionEntry
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from voxrt.cli import app
-from voxrt.cli.arguments import UsageError
+from voxrt.cli.errors import UsageError
 
 
 def help(command: str = "", /) -> None:  # noqa: A001 - the command's name

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.cli.arguments import Messages
     from voxrt.octree import Animation
     from voxrt.sim import CacheCost, Frame
     from voxrt.voxelize import SceneWarning
@@ -24,10 +23,10 @@ _SHOWN_OF_A_KIND = 20
 _verbosity = 0  # -1 quiet, 1 verbose: one command runs per process
 
 
-def set_verbosity(reporting: Messages | None) -> None:
-    """Choose how much is said from now on."""
+def set_verbosity(verbosity: int) -> None:
+    """Choose how much is said from now on: 1 for --verbose, -1 for --quiet."""
     global _verbosity  # noqa: PLW0603 - as the signals and the streams are
-    _verbosity = 0 if reporting is None else reporting.verbose - reporting.quiet
+    _verbosity = verbosity
 
 
 def printable(text: object) -> str:

@@ -16,12 +16,12 @@ from voxrt.cli.arguments import (
     Pixels,
     Reporting,
     Sight,
-    UsageError,
     choice,
     picture_file,
     place,
     whole,
 )
+from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import read_source

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, whole
+from voxrt.cli.arguments import Reporting, whole
 from voxrt.cli.board_results import ServeResult
+from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import summarize
 from voxrt.cli.results import print_json
 from voxrt.cli.start import USUAL_GARBAGE

@@ -35,7 +35,7 @@ def start(arguments: Sequence[str]) -> NoReturn:
     _open_closed_streams()
     if arguments[-1:] in _VERSION_FLAGS and arguments[:-1] in ([], ["build"]):
         _print_version()
-    from voxrt.cli.app import run  # noqa: PLC0415 - slow, and may be interrupted
+    from voxrt.cli.run import run  # noqa: PLC0415 - slow, and may be interrupted
 
     try:
         code = int(run(arguments))
@@ -43,6 +43,7 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = _INTERRUPTED
     if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    gc.freeze()  # the process ends: a last search for garbage would take as long as a small build
     sys.exit(code)
 
 

@@ -8,7 +8,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from voxrt.build_options import PREVIEW_SIZE
-from voxrt.cli.arguments import Depth, Pixel, Pixels, Reporting, Sight, UsageError
+from voxrt.cli.arguments import Depth, Pixel, Pixels, Reporting, Sight
+from voxrt.cli.errors import UsageError
 from voxrt.cli.memory_results import trace_result
 from voxrt.cli.messages import summarize, tabulate
 from voxrt.cli.results import print_json

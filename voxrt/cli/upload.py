@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, UsageError, choice
+from voxrt.cli.arguments import Reporting, choice
 from voxrt.cli.board_results import UploadResult
+from voxrt.cli.errors import UsageError
 from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize
 from voxrt.cli.progress import transfer_bar

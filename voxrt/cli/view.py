@@ -13,7 +13,8 @@ from voxrt import octree
 from voxrt import view as drawing
 from voxrt.asset_source import as_text
 from voxrt.build_options import PREVIEW_SIZE
-from voxrt.cli.arguments import Depth, Messages, Pixel, Pixels, Sight, UsageError, choice, png, whole
+from voxrt.cli.arguments import Depth, Messages, Pixel, Pixels, Sight, choice, png, whole
+from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel

@@ -15,6 +15,8 @@ export interface Rules {
   appearanceOf?(material: object, geometry: object, warn: (kind: string, message: string) => void): {
     entry: Appearance; uvOf?: Setter | null; colourOf?: Setter | null; covers?(vertex: number): boolean;
   } | null;
+  /** An attribute of three.js with the author's normals, for baked light; null for none. */
+  normalsOf?(mesh: object): object | null;
   /** Whether a material is fully transparent. */
   isLeftOut?(material: object): boolean;
 }

@@ -14,8 +14,9 @@ const DEFAULT = { name: "default", colour: [200, 200, 200], authored: false };
 // materialOf(material): {key, name, order, colour}, where colour is sRGB and absent for that of the material.
 // appearanceOf(material, geometry, warn): null, or {entry, uvOf, colourOf}: an entry of a surface (voxrt.js), the same
 // object for the same look; uvOf(vertex, out) and colourOf(vertex, out) set two and four numbers, or are null.
-// isLeftOut(material): whether it is fully transparent.
+// isLeftOut(material): whether it is fully transparent. normalsOf(mesh): an attribute with the author's normals, or null.
 const PLAIN = {
+  normalsOf: (mesh) => (isDeformed(mesh) ? null : mesh.geometry.getAttribute("normal")),
   appearanceOf: appearanceOfThree,
   isLeftOut: () => false,
   groupOf: (mesh) => mesh,
@@ -24,7 +25,7 @@ const PLAIN = {
 };
 
 export function sceneOf(root, voxrt, rules = {}) {
-  const { groupOf, nameOf, materialOf, appearanceOf, isLeftOut } = { ...PLAIN, ...rules };
+  const { groupOf, nameOf, materialOf, appearanceOf, isLeftOut, normalsOf } = { ...PLAIN, ...rules };
   root.updateMatrixWorld?.(true);
   const warnings = new Map();
   const warn = (kind, message, count = 1) => {
@@ -49,7 +50,7 @@ export function sceneOf(root, voxrt, rules = {}) {
   for (const [group, parts] of groups) {
     const look = parts.some(isDeformed) ? null : parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
     if (!known.has(look)) {
-      const made = joined(parts, { use, warn, appearanceOf, isLeftOut });
+      const made = joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf });
       known.set(look, made.triangles.length ? meshes.push(made) - 1 : -1);
     }
     const mesh = known.get(look);
@@ -80,8 +81,8 @@ function visit(object, see) {
 }
 
 // Several meshes of one place as one: positions, triangles, the material of each triangle, and their surface.
-function joined(parts, { use, warn, appearanceOf, isLeftOut }) {
-  const [positions, triangles, keys, painted] = [[], [], [], []];
+function joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf }) {
+  const [positions, triangles, keys, painted, given] = [[], [], [], [], []];
   let first = 0;
   for (const mesh of parts) {
     const { geometry } = mesh;
@@ -110,11 +111,30 @@ function joined(parts, { use, warn, appearanceOf, isLeftOut }) {
       }
     }
     positions.push(place);
+    const normals = normalsOf(mesh);
+    if (normals) given.push([first, normals]);
     first += count;
   }
   const all = new Float64Array(3 * first);
   positions.reduce((at, part) => (all.set(part, at), at + part.length), 0);
-  return { positions: all, triangles: Int32Array.from(triangles), keys, ...(painted.length && { surface: surfaceOf(painted, keys.length) }) };
+  const rows = Int32Array.from(triangles);
+  return {
+    positions: all, triangles: rows, keys, ...(painted.length && { surface: surfaceOf(painted, keys.length) }),
+    ...(given.length && { normals: { directions: joinedNormals(given, first), rows } }),
+  };
+}
+
+// `given`: [the first vertex, an attribute] each; zeros elsewhere.
+function joinedNormals(given, count) {
+  const single = given.every(([, { array }]) => array instanceof Float32Array);
+  const all = new (single ? Float32Array : Float64Array)(3 * count);
+  for (const [first, attribute] of given)
+    for (let i = 0, at = 3 * first; i < attribute.count; i++, at += 3) {
+      all[at] = attribute.getX(i);
+      all[at + 1] = attribute.getY(i);
+      all[at + 2] = attribute.getZ(i);
+    }
+  return all;
 }
 
 function surfaceOf(painted, count) {

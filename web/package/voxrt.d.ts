@@ -21,6 +21,8 @@ export interface Mesh {
   /** A material per triangle: 1 is the first of the scene; 0 where the surface gives an appearance. */
   materials: ArrayLike<number>;
   surface?: Surface;
+  /** For baked light: three numbers per direction, of any length, zeros for none; the direction of each corner, or -1. */
+  normals?: { directions: ArrayLike<number>; rows: ArrayLike<number> };
 }
 
 /** Row 0 is at v = 0; 4 bytes per pixel: sRGB and alpha. */
@@ -82,6 +84,18 @@ export interface Built {
   materials: Required<Material>[];
   objects: { name: string; mode: string; voxels: number }[];
   warnings: Warning[];
+  /** What was baked; null without baked light. Such a memory is shown flat. */
+  baked: (Daylight & { voxels: number; wordsBefore: number; words: number }) | null;
+}
+
+/** A distant sun and a sky that shines evenly. */
+export interface Daylight {
+  /** The direction towards the sun; zeros for none. */
+  sun: Triple;
+  /** Linear red, green and blue. */
+  sky: Triple;
+  /** Rays to the sky per voxel, 1 … 4096. */
+  samples: number;
 }
 
 export interface Camera {
@@ -131,18 +145,21 @@ export const FACES: number[];
 export const FILLS: Fill[];
 export const BACKGROUND: number[];
 export const DEPTH_LIMIT: 16;
+export const DAYLIGHT: Daylight;
 
 export class Voxrt {
   /** `source`: voxrt.wasm as bytes, as a Response or as a module. */
   static load(source: BufferSource | Response | WebAssembly.Module): Promise<Voxrt>;
   /** Voxelize a scene and build its octree. `depth` 1 … 16 (7), `fill` (auto). */
-  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill; colours?: number }): Built;
+  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill; colours?: number; bake?: Daylight | null }): Built;
   /** The words of voxels given one by one: three whole numbers from 0 up to 2 ** depth and a material, 1 … 255, each. */
   fromPoints(places: ArrayLike<number>, materials: ArrayLike<number>, depth: number): Uint32Array;
   /** Take the words of an octree memory, which are checked. */
   setMemory(words: ArrayLike<number>, depth: number): void;
   /** The least depth of the world that words describe. */
   depthOf(words: ArrayLike<number>): number;
+  /** The least number of levels by which the memory must be coarser to have at most so many words. */
+  levelThatFits(words: number): number;
   /** How hits are coloured. */
   shade(look: Look): void;
   /** Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. */

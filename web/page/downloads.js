@@ -1,6 +1,7 @@
 // What the page hands out: the memory as .mem, its manifest, a link to the scene and the view.
 
 import { crc32, memBytes } from "./mem.js";
+import { FACES } from "./voxrt/voxrt.js";
 
 export function save(bytes, name, type = "application/octet-stream") {
   const link = document.createElement("a");
@@ -11,7 +12,7 @@ export function save(bytes, name, type = "application/octet-stream") {
 }
 
 // The manifest of a memory, as voxrt build writes it (export/manifest.py).
-export function manifestOf({ name, file, words, depth, materials, grid, objects, warnings, seconds, fill }, voxels) {
+export function manifestOf({ name, file, words, depth, materials, grid, objects, warnings, seconds, fill, baked }, voxels) {
   const [x, y, z] = grid?.origin ?? [0, 0, 0];
   const size = grid?.voxelSize;
   return {
@@ -24,26 +25,38 @@ export function manifestOf({ name, file, words, depth, materials, grid, objects,
     world: grid && { origin: grid.origin, voxel_size: size, matrix: [[size, 0, 0, x], [0, size, 0, y], [0, 0, size, z], [0, 0, 0, 1]] },
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings, seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: null, baked: null, animation: null,
+    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: baked ? FLAT : null, animation: null,
+    baked: baked ? { sun: baked.sun, sky: baked.sky, samples: baked.samples, voxels: baked.voxels, colours: 254, words_before: baked.wordsBefore, words: baked.words } : null,
   };
 }
+
+// What a memory with baked light is shown with.
+const FLAT = { position: [0, 0, 0], ambient: 90, on: false, flat: true, bounces: 0, faces: FACES };
 
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 
 // The part of an address that carries a scene and its view, and back.
-export function linkOf({ example, depth, view }) {
+export function linkOf({ example, depth, bake, view }) {
   const { eye, yaw, pitch, fov, distance } = view;
   const camera = [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
-  return `#${new URLSearchParams({ ...(example ? { scene: example } : {}), depth, camera })}`;
+  const light = bake ? { bake: [...bake.sun, bake.sky[0], bake.samples].join(",") } : {};
+  return `#${new URLSearchParams({ ...(example ? { scene: example } : {}), depth, ...light, camera })}`;
 }
 
 export function readLink(hash) {
   const given = new URLSearchParams(hash.slice(1));
-  const camera = (given.get("camera") ?? "").split(",");
-  const numbers = camera.length === 7 && camera.every((part) => NUMBERS.test(part)) ? camera.map(Number) : null;
+  const read = (name, count) => {
+    const parts = (given.get(name) ?? "").split(",");
+    return parts.length === count && parts.every((part) => NUMBERS.test(part)) ? parts.map(Number) : null;
+  };
+  const numbers = read("camera", 7);
+  const light = read("bake", 5);
+  const samples = light?.[4];
   const depth = Number(given.get("depth"));
   return {
     example: given.get("scene"), depth: Number.isInteger(depth) && depth >= 1 && depth <= 12 ? depth : null,
+    bake: light && light[3] >= 0 && light[3] <= 16 && Number.isInteger(samples) && samples >= 1 && samples <= 4096
+      ? { sun: light.slice(0, 3), sky: [light[3], light[3], light[3]], samples } : null,
     camera: numbers && { eye: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4], fov: numbers[5], distance: numbers[6] },
   };
 }

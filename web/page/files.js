@@ -154,6 +154,7 @@ async function readObj(main, folder, voxrt) {
       if (!name || (!kd && !text.includes("usemtl"))) return null;
       return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200] };
     },
+    ...(/^\s*vn\s/m.test(text) ? {} : { normalsOf: () => null }), // OBJLoader makes some of its own
     ...looks.rules,
   });
   scene.warnings.push(...looks.warnings);
@@ -171,7 +172,7 @@ async function bare(geometry, main, voxrt, rules = { appearanceOf: () => null })
 
 async function readStl(main, _folder, voxrt) {
   const { STLLoader } = await addon("loaders/STLLoader");
-  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt);
+  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt, { appearanceOf: () => null, normalsOf: () => null }); // its normals are those of the faces
 }
 
 // Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early.

@@ -1,10 +1,10 @@
 // A worker as a hand of the page: calls that answer, stages that it reports, and an end that always works.
 
 export class Hand {
-  constructor() { this.calls = new Map(); }
+  constructor(script = "./worker.js") { Object.assign(this, { script, calls: new Map() }); }
 
   async start(module) {
-    this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+    this.worker = new Worker(new URL(this.script, import.meta.url), { type: "module" });
     this.worker.onmessage = ({ data }) => this.answer(data);
     this.worker.onerror = (event) => {
       event.preventDefault();

@@ -3,11 +3,13 @@
 
 import { Builder } from "./builder.js";
 import { FIELD_OF_VIEW, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
+import { DaylightControl } from "./daylight.js";
 import { linkOf, manifestOf, readLink, save } from "./downloads.js";
 import { $, isPressed, makeButton, makeToolbar, pressed } from "./elements.js";
 import { Figures } from "./figures.js";
 import { FrameRequests } from "./frame_requests.js";
 import { Glide } from "./glide.js";
+import { HardwarePanel } from "./hardware_panel.js";
 import { Inspector } from "./inspector.js";
 import { Light } from "./light.js";
 import { memBytes } from "./mem.js";
@@ -27,7 +29,7 @@ const canvas = $("picture");
 const picture = new Picture(canvas);
 const figures = new Figures($("figures"));
 const glide = new Glide();
-let painter, builder, frames, light, inspector;
+let painter, builder, frames, light, inspector, daylight;
 let view = null; // the camera for people of camera.js
 let memory = null; // what worker.js built, with voxels and bounds
 let source = null; // {files, example}
@@ -43,6 +45,7 @@ const app = {
   side: () => 2 ** memory.depth,
   bounds: () => memory.bounds,
   limit: () => 8 * app.side() + 512,
+  plainLook: () => ({ ...shading(), mirrors: [], light: null, bounces: 0 }),
   change(how) {
     if (!view) return;
     glide.stop();
@@ -83,7 +86,7 @@ async function build(first) {
   const timer = setTimeout(() => show("Building"), 250);
   let stage = "";
   try {
-    const built = await builder.build(source.files, { depth, fill: "auto" }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
+    const built = await builder.build(source.files, { depth, fill: "auto", bake: daylight.options }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
     if (source !== wanted) return;
     clearTimeout(timer);
     await showMemory(built, first);
@@ -96,6 +99,9 @@ async function build(first) {
 }
 
 async function showMemory(built, first) {
+  // Baked light is shown flat; other memories not, unless the user has chosen so.
+  if (built.baked) look.shading = "flat";
+  else if (memory?.baked) look.shading = "faces";
   memory = built;
   memory.bounds = [[0, 0, 0], Array(3).fill(2 ** built.depth)];
   look.light = LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
@@ -145,7 +151,7 @@ function describe() {
   $("scene").textContent = name;
   $("details").textContent = `${(2 ** depth).toLocaleString("en")}³ voxels · ${words.length.toLocaleString("en")} words${seconds ? ` · ${seconds.toFixed(2)} s` : ""}`;
   document.title = `${name} · voxrt`;
-  $("depth").disabled = Boolean(fixed);
+  for (const control of ["depth", "bake"]) $(control).disabled = Boolean(fixed);
   if (fixed) $("depth").value = depth;
   showDepth();
   const facts = { words: words.length.toLocaleString("en"), memory: kib(words.length), "solid voxels": short.format(solid) };
@@ -289,7 +295,7 @@ function listen() {
   $("save").onclick = () => memory && picture.save(memory.name);
   $("copy").onclick = async () => {
     if (!memory) return;
-    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, view }));
+    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, view }));
     const done = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
     $("copy").textContent = done ? "Copied" : "In the address bar";
     setTimeout(() => { $("copy").textContent = "Copy link"; }, 1500);
@@ -333,16 +339,19 @@ async function start() {
   light = new Light(app);
   light.hello(painter.hello);
   inspector = new Inspector(app);
+  new HardwarePanel(app, module);
   painter.addEventListener("frame", ({ detail }) => {
-    window.voxrt = { newest: detail, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
+    window.voxrt = { newest: detail, view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
     const samples = frames.receive(detail);
     picture.show(detail, samples, false);
     figures.add(detail, samples);
   });
   painter.addEventListener("trouble", ({ detail }) => notice("error", "There are no frames", detail));
+  daylight = new DaylightControl(() => source && build(false));
   const pilot = listen();
   const link = readLink(location.hash);
   if (link.depth) $("depth").value = link.depth;
+  if (link.bake) daylight.set(link.bake);
   showDepth();
   await openExample(link.example in examples ? link.example : "courtyard");
   if (link.camera && memory) {

@@ -83,6 +83,20 @@ EXPORT(vx_depth) int vx_depth(const octree::Word* words, size_t count) {
     });
 }
 
+/// The least level to which the memory can be coarsened so that it has at most so many words.
+EXPORT(vx_level_that_fits) int vx_level_that_fits(size_t words) {
+    return guarded([&] {
+        unsigned level = 0;
+        for (; level < loaded().depth(); ++level) {
+            octree::BlockPool pool;
+            const octree::Node root = octree::coarsen(loaded().memory(), level, pool);
+            if (octree::breadth_first_words(pool, root).size() <= words)
+                break;
+        }
+        return static_cast<int>(level);
+    });
+}
+
 /// Voxels by material: 256 numbers.
 EXPORT(vx_voxel_counts) const double* vx_voxel_counts() {
     static std::array<double, 256> voxels;

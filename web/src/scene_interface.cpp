@@ -4,6 +4,7 @@
 // triangles with an appearance their materials. The scene can then be voxelized again and again.
 #include "export.h"
 #include "interface_error.h"
+#include "scene.h"
 
 #include <voxrt/octree/build.h>
 #include <voxrt/voxelize/colour/assign_colours.h>
@@ -23,61 +24,15 @@
 #include <string>
 #include <vector>
 
+namespace voxrt::web {
+Scene scene;
+Result result;
+} // namespace voxrt::web
+
 namespace {
 
 using namespace voxrt;
-using web::guarded;
-
-struct Free {
-    void operator()(void* buffer) const { std::free(buffer); }
-};
-template <class T> using Buffer = std::unique_ptr<T[], Free>;
-
-struct Mesh {
-    std::vector<double> positions;
-    std::vector<int32_t> triangles;
-    std::vector<uint8_t> materials;
-    // Of triangles with an appearance; empty where none has.
-    std::vector<voxelize::Appearance> entries;
-    std::vector<int32_t> rows;
-    std::vector<double> uv;
-    std::vector<float> colours;
-
-    std::vector<uint8_t> used{}; // vertices
-
-    bool varies() const {
-        return std::any_of(rows.begin(), rows.end(), [](int32_t row) { return row >= 0; });
-    }
-    voxelize::Surface surface() const {
-        return {entries, rows, std::span<const double>(uv), std::span<const float>(colours)};
-    }
-};
-
-struct Object {
-    size_t mesh;
-    std::array<double, 12> transform;
-    std::string name;
-};
-
-struct Scene {
-    voxelize::MaterialTable materials{{"empty", {24, 28, 36}}};
-    std::deque<Buffer<uint8_t>> images;
-    std::vector<voxelize::Appearance> appearances;
-    std::deque<Mesh> meshes;
-    std::vector<Object> objects;
-};
-
-struct Result {
-    std::vector<octree::Word> words;
-    voxelize::FittedGrid grid;
-    std::vector<voxelize::TableMaterial> materials;
-    std::vector<int64_t> object_voxels;
-    std::vector<uint8_t> object_modes;
-    std::vector<voxelize::ObjectWarning> warnings;
-};
-
-Scene scene;
-Result result;
+using namespace voxrt::web;
 
 voxelize::FittedGrid fitted(unsigned depth) {
     voxelize::Bounds bounds;
@@ -110,6 +65,8 @@ int64_t leave_out_transparent(Mesh& mesh) {
             keep(mesh.uv, 6);
             keep(mesh.colours, 12);
         }
+        if (!mesh.normal_rows.empty())
+            keep(mesh.normal_rows, 3);
         ++kept;
     }
     const auto left_out = static_cast<int64_t>(mesh.materials.size() - kept);
@@ -120,6 +77,8 @@ int64_t leave_out_transparent(Mesh& mesh) {
         mesh.uv.resize(6 * kept);
         mesh.colours.resize(12 * kept);
     }
+    if (!mesh.normal_rows.empty())
+        mesh.normal_rows.resize(3 * kept);
     return left_out;
 }
 
@@ -246,6 +205,8 @@ int vx_mesh(const double* positions, size_t vertices, const int32_t* triangles, 
                                 {},
                                 {},
                                 {},
+                                {},
+                                {},
                                 {}});
         return static_cast<int>(scene.meshes.size() - 1);
     });
@@ -266,6 +227,21 @@ int vx_surface(const int32_t* entries, size_t count, const int32_t* rows, const 
         mesh.rows.assign(rows, rows + triangles);
         mesh.uv.assign(uv, uv + 6 * triangles);
         mesh.colours.assign(colours, colours + 12 * triangles);
+        return 0;
+    });
+}
+
+/// Gives the mesh that was added last the author's normals, for baked light: 3 numbers per direction, of any length,
+/// zero for none; and the direction of each corner of each triangle, or -1. Returns 0.
+EXPORT(vx_normals) int vx_normals(const double* directions, size_t count, const int32_t* rows) {
+    return guarded([&] {
+        Mesh& mesh = scene.meshes.back();
+        const size_t corners = mesh.triangles.size();
+        for (size_t i = 0; i < corners; ++i)
+            if (rows[i] < -1 || rows[i] >= static_cast<int64_t>(count))
+                throw std::invalid_argument("corner " + std::to_string(i) + " has no such normal");
+        mesh.normals.assign(directions, directions + 3 * count);
+        mesh.normal_rows.assign(rows, rows + corners);
         return 0;
     });
 }

@@ -100,7 +100,7 @@ private:
 } // namespace
 
 BrickTriangles brick_triangles(const Triangles& triangles, const std::vector<std::uint64_t>& codes, unsigned depth) {
-    if (triangles.count >> 32 != 0)
+    if (std::uint64_t{triangles.count} >> 32 != 0)
         throw std::invalid_argument("there are 2**32 triangles or more");
     struct Pair {
         std::uint32_t triangle;

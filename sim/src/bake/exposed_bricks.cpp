@@ -18,7 +18,7 @@ using Corner = std::array<std::int64_t, 3>;
 
 constexpr unsigned kBrickLevel = 3;
 constexpr std::int64_t kSide = 8, kHalo = kSide + 2; // a brick, and with one voxel around it
-constexpr std::size_t kMostBricks = std::size_t{1} << 32;
+constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 32;
 constexpr std::uint32_t kBrickWork = 500;
 
 std::uint64_t code_of(const Corner& corner, unsigned level) {

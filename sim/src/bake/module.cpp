@@ -1,7 +1,9 @@
 // voxrt.sim._bake: the light that surface voxels receive, for Python. The headers are the manual.
+#include "baked_light.h"
 #include "brick_triangles.h"
-#include "corner_normals.h"
+#include "daylight.h"
 #include "exposed_bricks.h"
+#include "placed_triangles.h"
 #include "received_light.h"
 #include "surface_points.h"
 
@@ -10,11 +12,16 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace nb = nanobind;
@@ -36,7 +43,7 @@ constexpr int kThreadLimit = 1024;
 constexpr std::int32_t kWeightLimit = 1 << 16;
 constexpr std::size_t kDirectionCountLimit = 1 << 16; // sums stay below 2^60
 
-NamedTuple surface_type, received_type;
+NamedTuple surface_type, received_type, directions_type, lit_type;
 
 void require(bool condition, const std::string& message) {
     if (!condition)
@@ -51,19 +58,106 @@ voxrt::octree::Memory memory_of(const Vector<std::uint32_t>& words, int depth) {
     return {words.data(), words.shape(0), depth < 0 ? 0 : static_cast<unsigned>(depth)};
 }
 
-nb::object bind_corner_normals(const Rows<double, 3>& positions, const Rows<std::int32_t, 3>& triangles,
-                               double least_cosine) {
-    const auto vertices = static_cast<std::int64_t>(positions.shape(0));
-    const std::size_t count = triangles.shape(0);
-    for (std::size_t i = 0; i < 3 * count; ++i)
-        require(triangles.data()[i] >= 0 && triangles.data()[i] < vertices, "a triangle has no such vertex");
-    require(count <= std::size_t{1} << 30 && vertices < std::int64_t{1} << 31, "the mesh is too large");
-    std::vector<float> normals;
+nb::object arrays_of(Directions&& directions) {
+    const std::size_t count = directions.weights.size();
+    return directions_type(to_numpy(std::move(directions.steps), {count, 3}),
+                           to_numpy(std::move(directions.units), {count, 3}),
+                           to_numpy(std::move(directions.weights), {count}));
+}
+
+template <typename Array> auto span_of(const Array& array) { return std::span(array.data(), array.size()); }
+
+using MeshArrays = std::tuple<Rows<double, 3>, Rows<std::int32_t, 3>, Rows<double, 3>, Rows<std::int32_t, 3>>;
+using ObjectArrays = std::tuple<std::size_t, nb::ndarray<const double, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>>;
+
+nb::object bind_place_triangles(const std::vector<MeshArrays>& meshes, const std::vector<ObjectArrays>& objects,
+                                const std::array<double, 3>& origin, double voxel_size) {
+    std::vector<NormalMesh> views;
+    std::vector<PlacedMesh> placed;
+    for (const auto& [positions, triangles, directions, rows] : meshes) {
+        const auto require_below = [](const Rows<std::int32_t, 3>& indices, std::size_t count, std::int32_t least) {
+            for (const std::int32_t index : span_of(indices))
+                require(index >= least && index < static_cast<std::int64_t>(count), "an index is out of range");
+        };
+        require(triangles.shape(0) <= std::size_t{1} << 30 && positions.shape(0) < std::size_t{1} << 31,
+                "a mesh is too large");
+        require(rows.shape(0) == 0 || rows.shape(0) == triangles.shape(0), "rows and triangles differ in length");
+        require_below(triangles, positions.shape(0), 0);
+        require_below(rows, directions.shape(0), -1);
+        views.push_back({span_of(positions), span_of(triangles), span_of(directions), span_of(rows)});
+    }
+    for (const auto& [mesh, transform] : objects) {
+        require(mesh < views.size(), "an object has no such mesh");
+        placed.push_back({mesh, {}});
+        std::copy_n(transform.data(), 12, placed.back().transform.begin());
+    }
+    PlacedTriangles found;
     {
         const LongCall call;
-        normals = corner_normals(positions.data(), positions.shape(0), triangles.data(), count, least_cosine);
+        found = place_triangles(views, placed, origin, voxel_size);
     }
-    return to_numpy(std::move(normals), {count, 3, 3});
+    const std::size_t count = found.corners.size() / 9;
+    return nb::make_tuple(to_numpy(std::move(found.corners), {count, 3, 3}),
+                          to_numpy(std::move(found.normals), {count, 3, 3}));
+}
+
+using MaterialFields = std::tuple<std::string, std::array<std::uint8_t, 3>, bool, bool>;
+
+std::vector<voxrt::voxelize::TableMaterial> table_of(const std::vector<MaterialFields>& materials) {
+    std::vector<voxrt::voxelize::TableMaterial> table;
+    for (const auto& [name, colour, mirror, authored] : materials)
+        table.push_back({name, colour, mirror, authored});
+    return table;
+}
+
+nb::object bind_light_voxels(const Vector<std::uint64_t>& points, const Rows<std::uint8_t, kBrickVoxels>& cells,
+                             const Vector<std::int64_t>& sun, const Vector<std::int64_t>& sky,
+                             const Vector<std::int64_t>& open_sky, const std::vector<MaterialFields>& materials,
+                             const std::array<double, 3>& towards_sun, const std::array<double, 3>& sky_light) {
+    const std::size_t count = points.shape(0);
+    require(sun.shape(0) == count && sky.shape(0) == count && open_sky.shape(0) == count, "points differ in length");
+    for (const std::uint64_t row : span_of(points))
+        require(row < cells.size() && cells.data()[row] < materials.size(), "a point has no such voxel or material");
+    LitVoxels lit = light_voxels(span_of(points), span_of(cells), {span_of(sun), span_of(sky), span_of(open_sky)},
+                                 table_of(materials), {towards_sun, sky_light, 1});
+    const std::size_t found = lit.rows.size();
+    std::vector<std::uint8_t> colours;
+    for (const auto& one : lit.colours)
+        colours.insert(colours.end(), one.begin(), one.end());
+    return lit_type(to_numpy(std::move(lit.rows), {found}), to_numpy(std::move(lit.sun), {found}),
+                    to_numpy(std::move(lit.sky), {found}), to_numpy(std::move(colours), {found, 3}));
+}
+
+nb::object bind_bake_memory(int depth, const Vector<std::uint64_t>& codes,
+                            const Rows<std::uint8_t, kBrickVoxels>& cells, const Vector<std::uint64_t>& octant_codes,
+                            const Vector<std::uint8_t>& octant_levels, const Vector<std::uint8_t>& octant_materials,
+                            const Vector<std::uint64_t>& rows, const Rows<std::uint8_t, 3>& colours,
+                            const std::vector<MaterialFields>& materials, int count, int threads) {
+    require_threads(threads);
+    require(count >= 1 && count <= kMostBakedColours, "count is not 1 ... 254");
+    require(codes.shape(0) == cells.shape(0), "codes and cells differ in length");
+    require(octant_codes.shape(0) == octant_levels.shape(0) && octant_codes.shape(0) == octant_materials.shape(0),
+            "the octants' arrays differ in length");
+    require(rows.shape(0) == colours.shape(0), "rows and colours differ in length");
+    for (const std::uint64_t row : span_of(rows))
+        require(row < cells.size(), "a row has no voxel");
+    for (const auto& ids : {span_of(cells), span_of(octant_materials)})
+        for (const std::uint8_t id : ids)
+            require(id < materials.size(), "a voxel has no such material");
+    BakedMemory made;
+    {
+        const LongCall call;
+        made = bake_memory({static_cast<unsigned>(depth), span_of(codes), span_of(cells), span_of(octant_codes),
+                            span_of(octant_levels), span_of(octant_materials)},
+                           span_of(rows),
+                           {reinterpret_cast<const voxrt::voxelize::Srgb*>(colours.data()), colours.shape(0)},
+                           table_of(materials), count, threads);
+    }
+    std::vector<MaterialFields> table;
+    for (const auto& [name, colour, mirror, authored] : made.materials)
+        table.emplace_back(name, colour, mirror, authored);
+    const std::size_t words = made.words.size();
+    return nb::make_tuple(to_numpy(std::move(made.words), {words}), table);
 }
 
 nb::object bind_measure_surface(const Vector<std::uint32_t>& words, int depth, const Corners<double>& corners,
@@ -155,8 +249,20 @@ NB_MODULE(_bake, m) {
         {"brick_codes", "cells", "octant_codes", "octant_levels", "octant_materials", "voxels", "origins", "normals"},
         "What measure_surface() returns.");
     received_type = NamedTuple(m, "Received", {"received", "full"}, "What receive_light() returns.");
-    m.def("corner_normals", &bind_corner_normals, "positions"_a, "triangles"_a, "least_cosine"_a,
-          "Unit normals of the corners of a mesh, float32 (T, 3, 3): corner_normals.h.");
+    directions_type = NamedTuple(m, "Directions", {"steps", "units", "weights"}, "Directions towards light.");
+    lit_type = NamedTuple(m, "LitVoxels", {"rows", "sun", "sky", "colours"}, "What light_voxels() returns.");
+    m.def(
+        "sun_direction", [](const std::array<double, 3>& sun) { return arrays_of(sun_direction(sun)); }, "sun"_a,
+        "daylight.h");
+    m.def("sky_directions", [](int samples) { return arrays_of(sky_directions(samples)); }, "samples"_a, "daylight.h");
+    m.def("place_triangles", &bind_place_triangles, "meshes"_a, "objects"_a, "origin"_a, "voxel_size"_a,
+          "placed_triangles.h. meshes: (positions, triangles, directions, rows). objects: (mesh, transform (3, 4)).\n"
+          "Returns corners (T, 3, 3) float64 in voxels and normals (T, 3, 3) float32.");
+    m.def("light_voxels", &bind_light_voxels, "points"_a, "cells"_a, "sun"_a, "sky"_a, "open_sky"_a, "materials"_a,
+          "towards_sun"_a, "sky_light"_a, "baked_light.h. materials: (name, colour, mirror, authored) by id.");
+    m.def("bake_memory", &bind_bake_memory, "depth"_a, "codes"_a, "cells"_a, "octant_codes"_a, "octant_levels"_a,
+          "octant_materials"_a, "rows"_a, "colours"_a, "materials"_a, "count"_a, "threads"_a,
+          "baked_light.h. Returns words and materials.");
     m.def("measure_surface", &bind_measure_surface, "words"_a, "depth"_a, "corners"_a, "normals"_a, "threads"_a,
           "The exposed voxels of a memory, and the points where their light is measured: exposed_bricks.h and\n"
           "surface_points.h. corners (T, 3, 3) float64 in voxels, normals (T, 3, 3) float32.");

@@ -1,14 +1,19 @@
 // voxrt.sim._model: the exact model for Python.
+#include "fit_views.h"
 #include "frame.h"
 #include "frame_tile.h"
 #include "ray.h"
+#include "similarity.h"
 
 #include <voxrt/voxelize/python.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <atomic>
@@ -19,6 +24,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace nb = nanobind;
@@ -206,6 +212,65 @@ nb::object follow_ray(const OwnedMemory& memory, const Position& origin, const P
     return followed_ray(hit.material, hit.face, nb::make_tuple(hit.cell[0], hit.cell[1], hit.cell[2]), readings);
 }
 
+using Colours = nb::ndarray<const uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+void check_same_shape(const Colours& picture, const Colours& other) {
+    if (picture.shape(0) != other.shape(0) || picture.shape(1) != other.shape(1))
+        throw std::invalid_argument("the pictures differ in shape");
+}
+
+double signal_to_noise(const Colours& picture, const Colours& other) {
+    check_same_shape(picture, other);
+    const LongCall call;
+    return peak_signal_to_noise(picture.data(), other.data(), picture.shape(0) * picture.shape(1));
+}
+
+double similarity(const Colours& picture, const Colours& other) {
+    check_same_shape(picture, other);
+    const LongCall call;
+    return structural_similarity(picture.data(), other.data(), picture.shape(1), picture.shape(0));
+}
+
+// FitViews with a palette of its own.
+class OwnedViews {
+public:
+    OwnedViews(const OwnedMemory& memory, const Palette& materials, bool flat, int threads)
+        : materials_(materials.data(), materials.data() + 768) {
+        check_threads(threads);
+        const LongCall call;
+        views_.emplace(memory.verified(), materials_.data(), flat, threads);
+    }
+    OwnedViews(const OwnedViews&) = delete;
+    OwnedViews& operator=(const OwnedViews&) = delete;
+
+    std::pair<double, double> likeness(const OwnedMemory& fitted) const {
+        const LongCall call;
+        const Likeness found = views_->likeness(fitted.verified());
+        return {found.psnr, found.ssim};
+    }
+
+    nb::object cameras() const {
+        std::vector<int32_t> all;
+        for (const Camera& camera : views_->cameras())
+            for (const auto& triple : {camera.position, camera.look, camera.right, camera.up})
+                all.insert(all.end(), triple, triple + 3);
+        return to_numpy(std::move(all), {views_->cameras().size(), 4, 3});
+    }
+
+private:
+    std::vector<uint8_t> materials_;
+    std::optional<FitViews> views_;
+};
+
+std::size_t chosen_fit(const std::vector<std::tuple<double, double, double>>& fits) {
+    if (fits.empty())
+        throw std::invalid_argument("there are no fits to choose from");
+    std::vector<FitFigures> figures;
+    for (const auto& [changed, psnr, ssim] : fits)
+        figures.push_back({changed, {psnr, ssim}});
+    return choose_fit(figures);
+}
+
 } // namespace
 
 NB_MODULE(_model, m) {
@@ -253,4 +318,13 @@ NB_MODULE(_model, m) {
              "time,\n"
              "the T of that plane. Word 0 is kept between rays and not among them. ValueError: a direction out of "
              "range.");
+    nb::class_<OwnedViews>(m, "FitViews", "Pictures of a scene from all around: fit_views.h.")
+        .def(nb::init<const OwnedMemory&, const Palette&, bool, int>(), nb::arg("memory"), nb::arg("materials"),
+             nb::arg("flat"), nb::arg("threads") = 0, "materials: (256, 3) uint8 sRGB, entry 0 the background.")
+        .def("likeness", &OwnedViews::likeness, nb::arg("fitted"), "The means of PSNR, decibel, and SSIM.")
+        .def("cameras", &OwnedViews::cameras, "The registers: int32, shape (6, 4, 3).");
+    m.def("choose_fit", &chosen_fit, nb::arg("fits"),
+          "The index of the fit whose worst figure is the best: (surface voxels changed, psnr, ssim) each.");
+    m.def("peak_signal_to_noise", &signal_to_noise, nb::arg("picture"), nb::arg("other"), "similarity.h");
+    m.def("structural_similarity", &similarity, nb::arg("picture"), nb::arg("other"), "similarity.h");
 }

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.gltf_writer import GltfWriter
 from oracles.meshes import box_mesh, icosphere, one_object
-from oracles.voxels import dense, flat_cover, snap, triangle_cover
-from PIL import Image
+from oracles.voxels import dense, flat_cover, snap, triangle_cover, voxel_colours
 
 from voxrt.voxelize import (
     EMPTY,
@@ -25,11 +23,9 @@ from voxrt.voxelize import (
     SurfaceAppearance,
     Texture,
     assign_colours,
-    fit_grid,
-    load,
     voxelize,
 )
-from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
+from voxrt.voxelize.colour.srgb import linear_from_srgb
 
 UNIT_GRID = {depth: Grid(depth, (0.0, 0.0, 0.0), 1.0) for depth in range(1, 17)}
 PAINT = Material("appearance", (1, 2, 3))
@@ -60,14 +56,6 @@ def coated(mesh, *, uv=None, colours=None, **appearance):
 
 def painted(mesh, **how):
     return Scene("test", (SceneObject("o", coated(mesh, **how)),), (EMPTY, PAINT))
-
-
-def colours_of(scene, grid, **how):
-    """The sRGB colour of every voxel, [x, y, z, channel], -1 where it is empty."""
-    materials = dense(voxelize(scene, grid, **how).voxels)
-    table = np.array([material.colour for material in scene.materials], int)
-    table[0] = -1
-    return table[materials]
 
 
 def same(one, other):
@@ -166,7 +154,8 @@ def test_colours_are_those_of_the_image_around_the_nearest_point(seed, turned):
     texture = Texture(np.dstack([BLOCKS, np.full((2, 3), 255, np.uint8)]), ("clamp", "clamp"), nearest=True)
     mesh = Mesh(origin + flat * lengths @ axes, triangles, np.ones(2, np.uint8))
     grid = UNIT_GRID[5]
-    found = colours_of(assign_colours(painted(mesh, uv=flat[triangles], texture=texture), grid), grid, fill="surface")
+    coloured = assign_colours(painted(mesh, uv=flat[triangles], texture=texture), grid)
+    found = voxel_colours(voxelize(coloured, grid, fill="surface").voxels, coloured.materials)
     covered = np.argwhere(found[..., 0] >= 0)
     assert len(covered) > 20
     reach = 0.75 / lengths  # half a cell's diagonal
@@ -181,7 +170,8 @@ def test_vertex_colours_change_evenly_over_a_large_triangle():
     ends[0, :, :3] = np.eye(3)
     mesh = Mesh(corners, np.array([[0, 1, 2]], np.int32), np.ones(1, np.uint8))
     grid = UNIT_GRID[6]
-    found = colours_of(assign_colours(painted(mesh, colours=ends), grid, colours=254), grid, fill="surface")
+    coloured = assign_colours(painted(mesh, colours=ends), grid, colours=254)
+    found = voxel_colours(voxelize(coloured, grid, fill="surface").voxels, coloured.materials)
     for x, y, z in np.argwhere(found[..., 0] >= 0):
         if x + y < 59:
             linear = np.array([1 - x / 60 - y / 60, x / 60, y / 60])
@@ -367,68 +357,3 @@ def test_material_maps_that_do_not_fit_their_mesh_are_refused(broken, message):
         sizes[3] = (0, 1)
     with pytest.raises(ValueError, match=message):
         replace(mesh, material_map=MaterialMap(sizes, corners, materials))
-
-
-def twins(folder):
-    """One textured box as glTF, as OBJ and as USD."""
-    box = box_mesh([0, 0, 0], [1, 1, 1])
-    corners = box.positions[box.triangles].reshape(-1, 3)
-    uv = np.stack([corners[:, 0] * 0.5 + corners[:, 2] * 0.5, corners[:, 1]], axis=1)
-    Image.fromarray(np.random.default_rng(9).integers(0, 256, (8, 8, 3), np.uint8)).save(folder / "map.png")
-    writer = GltfWriter()
-    writer.add("images", {"uri": "map.png"})
-    writer.add("textures", {"source": 0})
-    writer.add("materials", {"name": "look", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})
-    places = {"TEXCOORD_0": writer.accessor(uv)}
-    writer.show(mesh=writer.mesh(corners, material=0, **places))
-    upward = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
-    (folder / "box.mtl").write_text("newmtl look\nmap_Kd map.png\n")
-    lines = ["mtllib box.mtl", *(f"v {x} {y} {z}" for x, y, z in corners), *(f"vt {u} {v}" for u, v in upward)]
-    lines += ["usemtl look", *(f"f {i}/{i} {i + 1}/{i + 1} {i + 2}/{i + 2}" for i in range(1, 37, 3))]
-    (folder / "box.obj").write_text("\n".join(lines) + "\n")
-    (folder / "box.usda").write_text(f"""#usda 1.0
-(
-    upAxis = "Y"
-    metersPerUnit = 1
-)
-def Material "look" {{
-    token outputs:surface.connect = </look/s.outputs:surface>
-    def Shader "s" {{
-        uniform token info:id = "UsdPreviewSurface"
-        color3f inputs:diffuseColor.connect = </look/t.outputs:rgb>
-        token outputs:surface
-    }}
-    def Shader "t" {{
-        uniform token info:id = "UsdUVTexture"
-        asset inputs:file = @map.png@
-        token inputs:wrapS = "repeat"
-        token inputs:wrapT = "repeat"
-        float2 inputs:st.connect = </look/r.outputs:result>
-        float3 outputs:rgb
-    }}
-    def Shader "r" {{
-        uniform token info:id = "UsdPrimvarReader_float2"
-        string inputs:varname = "st"
-        float2 outputs:result
-    }}
-}}
-def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {{
-    point3f[] points = {[tuple(map(float, one)) for one in corners]}
-    int[] faceVertexCounts = {[3] * 12}
-    int[] faceVertexIndices = {list(range(36))}
-    uniform token subdivisionScheme = "none"
-    texCoord2f[] primvars:st = {[tuple(map(float, one)) for one in upward]} (interpolation = "vertex")
-    rel material:binding = </look>
-}}
-""")
-    return [load(path) for path in (writer.save(folder / "box.gltf"), folder / "box.obj", folder / "box.usda")]
-
-
-def test_one_model_in_three_formats_has_the_same_colours(tmp_path):
-    scenes = twins(tmp_path)
-    grid = fit_grid(scenes[0], depth=4)
-    first, *others = (colours_of(assign_colours(scene, grid), grid) for scene in scenes)
-    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 20
-    for other in others:
-        np.testing.assert_array_equal(first, other)
-    assert srgb_from_linear(0.0) == 0

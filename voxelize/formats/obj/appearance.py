@@ -71,7 +71,7 @@ def appearance_of_faces(
     coloured = _coloured_faces(statements)
     face_appearance = FaceAppearance(np.zeros(len(turn), dtype=np.uint8), np.full(len(turn), -1, dtype=np.int32))
     builder = _AppearanceBuilder(text, face_appearance, external_files, log)
-    for index in np.unique(turn).tolist():
+    for index in (np.flatnonzero(np.bincount(turn + 1)) - 1).tolist():
         faces = np.flatnonzero(turn == index)
         name = statements.materials[index][1] if index >= 0 else ""
         material = library.get(name)

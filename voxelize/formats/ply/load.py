@@ -54,7 +54,7 @@ def load_ply(
     tables = ply.tables
     positions, counts, corners, kept = _geometry(path, tables, log)
     cut, faces = triangulate_corners(positions, counts, corners)
-    triangles = corners[cut].astype(np.int32)
+    triangles = corners.reshape(-1, 3) if (counts == 3).all() else corners[cut]
     table = MaterialTable()
     by_colour = _colours_of_corners(tables, triangles, kept[faces])
     textures = read_textures(path, ExternalFiles.of(path, allow_outside=allow_outside), ply.textures, log)
@@ -65,7 +65,7 @@ def load_ply(
     materials = np.zeros(len(triangles), dtype=np.uint8)
     bare = np.ones(len(triangles), dtype=np.bool_) if appearance is None else appearance.rows < 0
     if bare.any():
-        materials[bare] = table.default(log, len(np.unique(faces[bare])))
+        materials[bare] = table.default(log, int(np.count_nonzero(np.bincount(faces[bare]))))
     loaded = LoadedMesh(positions, triangles, materials, appearance, _normals(tables["vertex"], triangles))
     (mesh,) = assign_materials([loaded], table, log)
     if not len(mesh.triangles):
@@ -150,7 +150,7 @@ def triangles_of_strips(strips: ListColumn) -> NDArray[np.float64]:
 
 def _geometry(
     path: Path, tables: dict[str, Table], log: WarningLog
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
     """Positions, corners per face, corners, and which of the file's faces they are of."""
     vertices = tables.get("vertex", {})
     axes = [vertices.get(axis) for axis in "xyz"]
@@ -162,18 +162,19 @@ def _geometry(
     positions = np.stack([np.asarray(axis, dtype=np.float64) for axis in axes], axis=1)
     counts = polygons.counts
     # Out of range before the cast, for ASCII numbers may be anything; NaN compares false.
-    wrong = np.flatnonzero(~((polygons.values >= 0) & (polygons.values < len(positions))))
-    if len(wrong):
+    if len(polygons.values) and not (polygons.values.min() >= 0 and polygons.values.max() < len(positions)):
+        wrong = np.flatnonzero(~((polygons.values >= 0) & (polygons.values < len(positions))))
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
         problem = f"vertex {polygons.values[wrong[0]]} does not exist: the file has {len(positions)}"
         raise AssetError(path, problem, place=f"face {face}", fix="export it again")
-    corners = polygons.values.astype(np.int64)
-    if not in_range(positions[corners]).all():
+    corners = polygons.values.astype(np.int32)
+    if not (usable := in_range(positions)).all() and not usable[corners].all():
         problem = f"a face has a vertex whose coordinates are not numbers below {FARTHEST:g}"
         raise AssetError(path, problem, fix="export it again")
     keep = counts >= 3
     log.add("degenerate-face", "faces of fewer than three corners were left out", int((~keep).sum()))
-    corners, counts = corners[np.repeat(keep, counts)], counts[keep]
+    if not keep.all():
+        corners, counts = corners[np.repeat(keep, counts)], counts[keep]
     if not len(counts):
         raise AssetError(path, "has no faces of three corners or more", fix="export it again")
     return positions, counts, corners, np.flatnonzero(keep)

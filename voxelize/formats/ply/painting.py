@@ -63,7 +63,7 @@ def read_textures(
 
 def texture_coordinates(
     tables: dict[str, Table],
-    corners: NDArray[np.int64],
+    corners: NDArray[np.integer],
     kept: NDArray[np.int64],
     counts: NDArray[np.int64],
     log: WarningLog,

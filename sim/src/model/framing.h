@@ -1,0 +1,23 @@
+// Cameras that see all of a memory, as voxrt.octree.camera and voxrt.viewpoint make them.
+#pragma once
+
+#include "frame.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace voxrt::sim {
+
+using Point = std::array<double, 3>;
+
+/// Points whose convex hull holds all that is solid, or the world, known to 1/64 of the world: voxels, grid frame.
+std::vector<Point> outline_points(const octree::VerifiedMemory& memory);
+
+/// The camera that sees all points, tightly, from the front right and above.
+Camera frame_points(const std::vector<Point>& points, int32_t width, int32_t height);
+
+/// The camera that looks along `look` and sees all points, tightly.
+Camera frame_along(const Point& look, const std::vector<Point>& points, int32_t width, int32_t height);
+
+} // namespace voxrt::sim

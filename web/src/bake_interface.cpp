@@ -1,0 +1,56 @@
+// The C interface of voxrt.wasm: the light of a sun and a sky in the colours of the memory that was built last.
+#include "export.h"
+#include "interface_error.h"
+#include "scene.h"
+
+#include <voxrt/bake/baked_light.h>
+#include <voxrt/bake/placed_triangles.h>
+#include <voxrt/octree/verify.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace voxrt;
+using namespace voxrt::web;
+
+sim::PlacedTriangles placed_triangles() {
+    std::vector<sim::NormalMesh> meshes;
+    for (const Mesh& mesh : scene.meshes)
+        meshes.push_back({mesh.positions, mesh.triangles, mesh.normals, mesh.normal_rows});
+    std::vector<sim::PlacedMesh> objects;
+    for (const Object& object : scene.objects)
+        objects.push_back({object.mesh, object.transform});
+    return sim::place_triangles(meshes, objects, result.grid.origin, result.grid.voxel_size);
+}
+
+} // namespace
+
+/// Bakes: the words and materials of the memory are then those with light. `sun`: towards it, scene frame; zeros for
+/// none. `sky`: linear red, green and blue. `samples`: 1 … 4096. Returns how many voxels were baked.
+EXPORT(vx_bake) double vx_bake(const double* sun, const double* sky, int samples) {
+    return guarded([&] {
+        const sim::Daylight daylight{{sun[0], sun[1], sun[2]}, {sky[0], sky[1], sky[2]}, samples};
+        const octree::VerifiedMemory memory({result.words.data(), result.words.size(), result.grid.depth});
+        const sim::ExposedBricks bricks = sim::exposed_bricks(memory, 1);
+        const sim::SurfacePoints points = sim::surface_points(memory, bricks, placed_triangles().view(), 1);
+        const size_t count = points.voxels.size();
+        const sim::PointsView view{count, points.origins.data(), points.normals.data()};
+        std::vector<int64_t> from_sun(count), unused(count), from_sky(count), open_sky(count);
+        const sim::LightEngine& engine = sim::light_engines()[0];
+        sim::receive_light(memory, view, sim::sun_direction(daylight.sun).view(), from_sun.data(), unused.data(), 1,
+                           sim::Method::automatic, engine);
+        sim::receive_light(memory, view, sim::sky_directions(samples).view(), from_sky.data(), open_sky.data(), 1,
+                           sim::Method::automatic, engine);
+        const sim::LitVoxels lit =
+            sim::light_voxels(points.voxels, bricks.cells, {from_sun, from_sky, open_sky}, result.materials, daylight);
+        sim::BakedMemory made = sim::bake_memory({result.grid.depth, bricks.brick_codes, bricks.cells,
+                                                  bricks.octant_codes, bricks.octant_levels, bricks.octant_materials},
+                                                 lit.rows, lit.colours, result.materials, sim::kMostBakedColours, 1);
+        result.words = std::move(made.words);
+        result.materials = std::move(made.materials);
+        return static_cast<double>(lit.rows.size());
+    });
+}

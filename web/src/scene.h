@@ -1,0 +1,76 @@
+// The scene of the C interface, from which memories are built, and what was built last.
+#pragma once
+
+#include <voxrt/octree/words.h>
+#include <voxrt/voxelize/colour/assign_colours.h>
+#include <voxrt/voxelize/grid_fit.h>
+#include <voxrt/voxelize/material_table.h>
+#include <voxrt/voxelize/object_warnings.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace voxrt::web {
+
+struct Free {
+    void operator()(void* buffer) const { std::free(buffer); }
+};
+template <class T> using Buffer = std::unique_ptr<T[], Free>;
+
+struct Mesh {
+    std::vector<double> positions;
+    std::vector<int32_t> triangles;
+    std::vector<uint8_t> materials;
+    // Of triangles with an appearance; empty where none has.
+    std::vector<voxelize::Appearance> entries;
+    std::vector<int32_t> rows;
+    std::vector<double> uv;
+    std::vector<float> colours;
+    // The author's normals; empty where there are none. `normal_rows`: of each corner, or -1.
+    std::vector<double> normals;
+    std::vector<int32_t> normal_rows;
+
+    std::vector<uint8_t> used{}; // vertices
+
+    bool varies() const {
+        return std::any_of(rows.begin(), rows.end(), [](int32_t row) { return row >= 0; });
+    }
+    voxelize::Surface surface() const {
+        return {entries, rows, std::span<const double>(uv), std::span<const float>(colours)};
+    }
+};
+
+struct Object {
+    size_t mesh;
+    std::array<double, 12> transform;
+    std::string name;
+};
+
+struct Scene {
+    voxelize::MaterialTable materials{{"empty", {24, 28, 36}}};
+    std::deque<Buffer<uint8_t>> images;
+    std::vector<voxelize::Appearance> appearances;
+    std::deque<Mesh> meshes;
+    std::vector<Object> objects;
+};
+
+struct Result {
+    std::vector<octree::Word> words;
+    voxelize::FittedGrid grid;
+    std::vector<voxelize::TableMaterial> materials;
+    std::vector<int64_t> object_voxels;
+    std::vector<uint8_t> object_modes;
+    std::vector<voxelize::ObjectWarning> warnings;
+};
+
+extern Scene scene;
+extern Result result;
+
+} // namespace voxrt::web
