@@ -65,7 +65,7 @@ START = """
 import voxrt, voxrt.pipeline
 from voxrt.cluster import connected
 if __name__ == "__main__":
-    with connected(voxrt.BuildOptions(workers=2)) as client:
+    with connected(None, 2) as client:
         client.run(__import__, "voxrt.cluster_tasks")
 """
 
@@ -109,13 +109,11 @@ def plan(asset: Path, depth: int, fill: str, workers: list[int]) -> None:
     largest = max(one.seconds for one in tiles.values())
     total = sum(one.seconds for one in tiles.values())
     print(f"analysis on each worker  {analysis:8.2f} s")
-    print(f"{len(tiles):4d} tiles              {total:8.2f} s, the longest {largest:.2f} s; {size / 1e6:.0f} MB")
+    print(f"{len(tiles):4d} tiles              {total:8.2f} s, at most {largest:.2f} s; {size / 1e6:.0f} MB")
     for level in levels[1:]:
         joins = sum(one.tree.words.nbytes for one in level.values()) / 1e6
         seconds = [one.seconds for one in level.values()]
-        print(
-            f"{len(level):4d} joins              {sum(seconds):8.2f} s, the longest {max(seconds):.2f} s; {joins:.0f} MB"
-        )
+        print(f"{len(level):4d} joins             {sum(seconds):8.2f} s, at most {max(seconds):.2f} s; {joins:.0f} MB")
     print(f"the last join            {last.seconds:8.2f} s; {last.tree.words.nbytes / 1e6:.0f} MB")
     for count in workers:
         path = analysis + last.seconds

@@ -86,6 +86,8 @@ def plan_build(scene: Scene, grid: Grid, options: BuildOptions, *, on_disk: bool
     if grid.depth < _LEAST_DEPTH or estimate.bytes <= allowed:
         return BuildPlan(None, 0, estimate)
     side, taken = grid.size, _UNEVEN * estimate.bytes // 2
+    while side >= 2 * max(estimate.width, _LEAST_SIDE):  # the scene is in few of such squares
+        side //= 2
     while taken > allowed // 2 and side > _LEAST_SIDE:
         side, taken = side // 2, taken // 4
     return BuildPlan(side, allowed // 4, _in_tiles(estimate, min(taken, estimate.bytes), allowed // 4, on_disk=on_disk))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from voxrt.errors import ToolError
 from voxrt.tile_store import sum_tallies, tile_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from distributed import Client, Future
 
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from voxrt.stage_clock import StageClock
     from voxrt.tile_store import TileStore
     from voxrt.voxelize import ColumnBlock, Grid, Scene, VoxelizationReport
+
+T = TypeVar("T")
 
 _WAIT = 60.0
 """Seconds within which a scheduler and its first worker must answer."""
@@ -68,8 +70,8 @@ def cluster_side(grid: Grid, plan: BuildPlan) -> int:
 
 
 @contextmanager
-def connected(options: BuildOptions) -> Iterator[Client]:
-    """Connect to the scheduler that options name, or start workers on this machine.
+def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
+    """Connect to a scheduler, or, without its address, start workers on this machine.
 
     Raises
     ------
@@ -86,14 +88,14 @@ def connected(options: BuildOptions) -> Iterator[Client]:
     for name in ("distributed", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said in one line, here
     with ExitStack() as stack:
-        address: Any = options.scheduler
+        address: Any = scheduler
         try:
             if address is None:
-                address = stack.enter_context(_local_cluster(LocalCluster, options))
+                address = stack.enter_context(_local_cluster(LocalCluster, workers or 1))
             client = stack.enter_context(Client(address, timeout=_WAIT, set_as_default=False))  # type: ignore[no-untyped-call]
             client.wait_for_workers(1, timeout=_WAIT)
         except (OSError, TimeoutError, ValueError) as error:
-            where = options.scheduler or "this machine"
+            where = scheduler or "this machine"
             raise ToolError(
                 f"{where}: no scheduler with a worker answers ({_line(error)}); start them by "
                 "'dask scheduler' and 'dask worker ADDRESS'"
@@ -138,7 +140,7 @@ def build_on_cluster(
         local_threads = max(1, (os.cpu_count() or 1) // (options.workers or 1)) if options.scheduler is None else 0
         folder = os.fspath(store.folder.resolve())
         job = TileJob(os.fspath(Path(asset).resolve()), shared, grid, folder, key, options.threads or local_threads)
-        with connected(options) as client:
+        with connected(options.scheduler, options.workers) as client:
             objects = {block: voxelizer.objects_of(block) for block in blocks}
             done = _run(client, job, objects, told)
     tallies = sum_tallies(np.concatenate([one.tallies for one in done]), len(scene.objects)) if done else None
@@ -146,6 +148,40 @@ def build_on_cluster(
     del voxelizer
     with clock.stage("octree"):
         return join_tiles([one.name for one in done], grid.depth, store, plan.cache or 1 << 28), report
+
+
+def in_order(
+    task: Callable[..., T], shared: object, arguments: Sequence[object], *, scheduler: str | None, workers: int | None
+) -> Iterator[T]:
+    """Call task(shared, number, argument) for each argument on a cluster, and yield the results in their order.
+
+    Parameters
+    ----------
+    task
+        A function of a module.
+    shared
+        Its first argument, sent to each worker once.
+    arguments
+        Its last argument for each call; `number` counts them from 0.
+    scheduler, workers
+        As :func:`connected` takes them.
+
+    Raises
+    ------
+    ToolError
+        There is no cluster, or it is lost.
+    """
+    with connected(scheduler, workers) as client:
+        try:
+            sent = client.scatter(shared, broadcast=True)
+            futures = [client.submit(task, sent, number, one, pure=False) for number, one in enumerate(arguments)]
+            for number, future in enumerate(futures):
+                yield future.result()
+                futures[number] = None  # its worker may forget it
+        except (ToolError, GeneratorExit):
+            raise
+        except Exception as error:
+            raise ToolError(f"the cluster is lost ({_line(error)}); start it, and this command, again") from error
 
 
 def _run(
@@ -209,7 +245,7 @@ def _submit_merges(
 
 
 @contextmanager
-def _local_cluster(cluster: Any, options: BuildOptions) -> Iterator[Any]:  # noqa: ANN401 - a class of Dask
+def _local_cluster(cluster: Any, workers: int) -> Iterator[Any]:  # noqa: ANN401 - a class of Dask
     """Start workers on this machine. Ctrl-C is for this process alone: it ends them."""
     import dask  # noqa: PLC0415 - the extra `cluster`
 
@@ -219,7 +255,7 @@ def _local_cluster(cluster: Any, options: BuildOptions) -> Iterator[Any]:  # noq
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
             started = cluster(
-                n_workers=options.workers or 1,
+                n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
