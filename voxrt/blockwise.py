@@ -79,7 +79,7 @@ def plan_build(scene: Scene, grid: Grid, options: BuildOptions, *, on_disk: bool
     >>> grid = fit_grid(scene, depth=13)
     >>> plan_build(scene, grid, BuildOptions(memory=1 << 40), on_disk=True).side
     >>> plan_build(scene, grid, BuildOptions(memory=1 << 30), on_disk=True).side
-    2048
+    1024
     """
     estimate = estimate_build(scene, grid, options)
     allowed = free_memory() // 2 if options.memory is None else options.memory

@@ -177,7 +177,12 @@ def _camera(where: str, said: object, rom: Rom, size: tuple[int, int]) -> Camera
         position = said.get("position")
         if position is not None:
             position = tuple(round(16 * one) for one in position)
-        others = {name: tuple(map(int, said[name])) for name in ("look", "right", "up") if name in said}
-        return aim_camera(rom, size, position=position, **others)
+        look, right, up = (None if name not in said else _register(said[name]) for name in ("look", "right", "up"))
+        return aim_camera(rom, size, position=position, look=look, right=right, up=up)
     except (ValueError, TypeError, OverflowError) as error:
         raise ViewpointError(f"{where}: {error}") from None
+
+
+def _register(said: list[float]) -> tuple[int, int, int]:
+    x, y, z = said
+    return int(x), int(y), int(z)

@@ -173,11 +173,10 @@ def in_order(
     """
     with connected(scheduler, workers) as client:
         try:
-            sent = client.scatter(shared, broadcast=True)
+            sent = client.scatter(shared, broadcast=True)  # type: ignore[no-untyped-call]
             futures = [client.submit(task, sent, number, one, pure=False) for number, one in enumerate(arguments)]
-            for number, future in enumerate(futures):
-                yield future.result()
-                futures[number] = None  # its worker may forget it
+            while futures:
+                yield futures.pop(0).result()  # then its worker forgets it
         except (ToolError, GeneratorExit):
             raise
         except Exception as error:
