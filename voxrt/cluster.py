@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -38,6 +39,15 @@ _WAIT = 60.0
 
 _FAN_IN = 4
 """Tiles along each side of a square that one task joins."""
+
+_LOCAL = {
+    "distributed.worker.profile.enabled": False,  # a sampler beside native code
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 28,  # Dask's gives all back after each tile
+}
+"""Dask's configuration for workers on this machine."""
+
+_LOOK = 0.5
+"""Seconds between two questions after the number of workers."""
 
 _MOST_PIECES = 16
 """So many octrees are joined by this process alone."""
@@ -203,7 +213,7 @@ def _run(
         pieces = _submit_merges(client, job, pieces, level)
     wanted = {future.key: future for future in (*made, *pieces.values())}
     done: dict[object, TileDone] = {}
-    finished, size = 0, 0
+    finished, size, workers, looked = 0, 0, 0, 0.0
     names = {future.key for future in made}
     try:
         for future in as_completed(list(wanted.values()), loop=client.loop):  # type: ignore[no-untyped-call]
@@ -211,7 +221,8 @@ def _run(
             if future.key in names:
                 finished, size = finished + 1, size + tile.bytes
                 if told is not None:
-                    workers = len(client.scheduler_info(n_workers=-1)["workers"])
+                    if monotonic() - looked > _LOOK:
+                        workers, looked = len(client.scheduler_info(n_workers=-1)["workers"]), monotonic()
                     told(ClusterProgress(finished, len(made), workers, size))
         return [done[future.key] for future in pieces.values()]
     except ToolError:
@@ -250,7 +261,7 @@ def _local_cluster(cluster: Any, workers: int) -> Iterator[Any]:  # noqa: ANN401
 
     resource_tracker.ensure_running()  # which unblocks SIGINT, and would do so below
     with TemporaryDirectory(prefix="voxrt-") as scratch, ExitStack() as stack:
-        stack.enter_context(dask.config.set({"temporary-directory": scratch}))
+        stack.enter_context(dask.config.set({"temporary-directory": scratch, **_LOCAL}))
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
             started = cluster(
@@ -258,7 +269,7 @@ def _local_cluster(cluster: Any, workers: int) -> Iterator[Any]:  # noqa: ANN401
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",
                 memory_limit=0,
                 local_directory=scratch,
                 silence_logs=logging.CRITICAL,
