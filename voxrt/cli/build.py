@@ -22,6 +22,7 @@ from voxrt.cli.arguments import (
     metres,
     metres_per_unit,
     png,
+    processes,
     samples,
     seconds,
     shades,
@@ -110,6 +111,8 @@ def build(
     engine: Annotated[Engine, _option("engine", converter=choice)] = BuildOptions.engine,
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     memory: Annotated[int | None, _option("memory", converter=size_in_bytes, metavar="SIZE")] = BuildOptions.memory,
+    scheduler: Annotated[str | None, _option("scheduler", metavar="ADDRESS")] = BuildOptions.scheduler,
+    workers: Annotated[int | None, _option("workers", converter=processes, metavar="N")] = BuildOptions.workers,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -122,9 +125,18 @@ def build(
         raise UsageError("--depth and --voxel-size exclude each other; give one of them")
     if not bake and (sun, sky, bake_samples) != (BuildOptions.sun, BuildOptions.sky, BuildOptions.bake_samples):
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
+    if scheduler is not None and workers is not None:
+        raise UsageError("--scheduler and --workers exclude each other; give one of them")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
+    told: dict[str, object] = {
+        "--time": time,
+        "--bake": bake or None,
+        "--budget": budget,
+        "--board": board,
+        "--scheduler": scheduler,
+        "--workers": workers,
+    }
     if frames is not None:
         check_frames(assets, frames, told)
     else:
@@ -159,6 +171,8 @@ def build(
         background=background,
         engine=engine,
         memory=memory,
+        scheduler=scheduler,
+        workers=workers,
         strict=strict,
     )
     build_all(assets, output, options, frames=frames, profile=profile, json=reporting.json)
