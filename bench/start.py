@@ -1,8 +1,10 @@
 """Whole processes: what starting takes, and small and large builds with their files, beside Python and NumPy alone.
 
 Usage: ``python bench/start.py [--runs N] [--write]``. The runs of all rows take turns, so that a machine which others
-use as well slows all of them alike. Medians and least values of the wall clock and of the processor's seconds.
-``--write`` puts the table into ``bench/results/start.md`` as well.
+use as well slows all of them alike. Medians and least values of the wall clock and of the processor's seconds. Python
+may keep what it compiles, as it does where packages are installed; a first run of each row is not counted. Below the
+processes stand single steps within one process: arrays to octree, the octree alone by one thread and by all, and
+loading a binary PLY file. ``--write`` puts the tables into ``bench/results/start.md`` as well.
 """
 
 from __future__ import annotations
@@ -18,8 +20,16 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+import voxrt
 from voxelize import displaced_sphere
+from voxrt import octree, voxelize
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "bench" / "results" / "start.md"
@@ -35,11 +45,48 @@ def write_obj(path: Path) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
+def write_ply(path: Path) -> None:
+    """Write a closed mesh of 811,800 triangles, binary."""
+    mesh = displaced_sphere(451).objects[0].mesh
+    rows = np.zeros(len(mesh.triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    rows["count"], rows["corners"] = 3, mesh.triangles
+    axes = "".join(f"property float {axis}\n" for axis in "xyz")
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.positions)}\n{axes}"
+        f"element face {len(rows)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    path.write_bytes(header.encode() + mesh.positions.astype("<f4").tobytes() + rows.tobytes())
+
+
+def steps(ply: Path, runs: int) -> list[str]:
+    """Return a table of single steps: the least wall and processor seconds of each."""
+    scene = displaced_sphere(133)
+    rows: dict[str, Callable[[], object]] = {"load PLY, 811,800 triangles": lambda: voxrt.load(ply)}
+    for depth in (10, 12):
+        grid = voxrt.fit_grid(scene, depth=depth)
+        voxels = voxelize.voxelize(scene, grid).voxels
+        size = f"{1 << depth}³"
+        rows[f"arrays to octree, {size}"] = lambda grid=grid: octree.build(voxelize.voxelize(scene, grid).voxels)
+        rows[f"octree, {size}, one thread"] = lambda voxels=voxels: octree.build(voxels, threads=1)
+        rows[f"octree, {size}, all threads"] = lambda voxels=voxels: octree.build(voxels)
+    taken: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
+    for _ in range(runs):
+        for name, step in rows.items():
+            wall, processor = time.perf_counter(), time.process_time()
+            step()
+            taken[name].append((time.perf_counter() - wall, time.process_time() - processor))
+    return ["| step | wall, least | processor, least |", "|---|--:|--:|"] + [
+        f"| {name} | {min(wall for wall, _ in those):.3f} s | {min(cpu for _, cpu in those):.3f} s |"
+        for name, those in taken.items()
+    ]
+
+
 def run(command: tuple[str, ...], folder: Path) -> tuple[float, float, str]:
     """Give the wall seconds of a process, its processor seconds and its output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.perf_counter()
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True, env=environment)
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return wall, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime, done.stdout
@@ -49,7 +96,7 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=7, help="runs per row")
-    parser.add_argument("--depth", type=int, default=10, help="levels of the larger build")
+    parser.add_argument("--depths", type=int, nargs="+", default=[10, 12], help="levels of the larger builds")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     build = (*VOXRT, "build")
@@ -60,22 +107,26 @@ def main() -> None:
         "`voxrt --version`": (*VOXRT, "--version"),
         "`voxrt build --help`": (*build, "--help"),
         "tetrahedron, depth 4": (*build, "tetrahedron.obj", "--depth", "4", "--json", "-o", "small"),
-        f"sphere of 70,224 triangles, depth {options.depth}": (
-            *build, "sphere.obj", "--depth", str(options.depth), "--json", "-o", "large",
-        ),
-    }  # fmt: skip
+    }
+    for depth in options.depths:
+        command = (*build, "sphere.obj", "--depth", str(depth), "--json", "-o", "large")
+        rows[f"sphere of 70,224 triangles, depth {depth}"] = command
     taken: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
     told: dict[str, list[float]] = {name: [] for name in rows}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "tetrahedron.obj").write_text(TETRAHEDRON)
         write_obj(folder / "sphere.obj")
-        for _ in range(options.runs):
+        write_ply(folder / "sphere.ply")
+        for turn in range(1 + options.runs):
             for row, command in rows.items():
                 wall, processor, output = run(command, folder)
+                if turn == 0:
+                    continue
                 taken[row].append((wall, processor))
                 if "--json" in command:
                     told[row].append(sum(json.loads(output)["seconds"].values()) / wall)
+        table_of_steps = steps(folder / "sphere.ply", options.runs)
     lines = [
         "| process | wall, median | wall, least | processor, least | seconds of `--json`, of the wall |",
         "|---|--:|--:|--:|--:|",
@@ -86,6 +137,7 @@ def main() -> None:
         lines.append(
             f"| {row} | {statistics.median(walls):.3f} s | {min(walls):.3f} s | {min(processors):.3f} s | {share} |"
         )
+    lines += ["", *table_of_steps]
     print("\n".join(lines))
     if options.write:
         load = os.getloadavg()[0]

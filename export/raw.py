@@ -11,14 +11,20 @@ from voxrt.export.word_file import WordFile, read_bytes, word_file
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
 
 
-def raw_bytes(words: NDArray[np.uint32]) -> bytes:
-    """Return words (uint32, shape (N,)) as the bytes of a ``.bin`` file."""
-    return words.astype("<u4").tobytes()
+_PIECE = 1 << 20
+"""Words that are converted at a time."""
+
+
+def raw_bytes(words: NDArray[np.uint32]) -> Iterator[bytes]:
+    """Return words (uint32, shape (N,)) as the bytes of a ``.bin`` file, piece by piece."""
+    for first in range(0, len(words), _PIECE):
+        yield words[first : first + _PIECE].astype("<u4").tobytes()
 
 
 def write_raw(path: Path, words: NDArray[np.uint32]) -> None:

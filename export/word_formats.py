@@ -40,5 +40,5 @@ def format_words(words: NDArray[np.uint32], suffix: str) -> bytes | Iterable[byt
     if suffix == ".mem":
         return mem_pieces(words)
     name = _NAMES[suffix]
-    made: bytes = getattr(import_module(f"voxrt.export.{name}"), f"{name}_bytes")(words)
+    made: bytes | Iterable[bytes] = getattr(import_module(f"voxrt.export.{name}"), f"{name}_bytes")(words)
     return made

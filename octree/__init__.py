@@ -17,6 +17,7 @@ __all__ = [
     "Census",
     "Dialect",
     "Difference",
+    "DiskAssembly",
     "Fit",
     "Leaves",
     "Octant",
@@ -74,6 +75,7 @@ _HOMES = {
     "voxrt.octree.construct": ("build", "from_dense", "from_points"),
     "voxrt.octree.decoding": ("decode",),
     "voxrt.octree.dialects": ("DIALECTS", "Dialect", "detect_dialect", "encode"),
+    "voxrt.octree.disk_assembly": ("DiskAssembly",),
     "voxrt.octree.difference": ("Difference", "Region", "diff", "differing_regions"),
     "voxrt.octree.errors": ("RomError",),
     "voxrt.octree.hidden": ("fill_hidden", "hidden_voxels", "share_hidden"),
@@ -107,6 +109,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.octree.decoding import decode
     from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
     from voxrt.octree.difference import Difference, Region, diff, differing_regions
+    from voxrt.octree.disk_assembly import DiskAssembly
     from voxrt.octree.errors import RomError
     from voxrt.octree.hidden import fill_hidden, hidden_voxels, share_hidden
     from voxrt.octree.leaf_arrays import Leaves, leaves

@@ -28,8 +28,10 @@ __all__ = [
     "MATERIAL_LIMIT",
     "Appearance",
     "AssetError",
+    "BlockVoxelizer",
     "BoxCollider",
     "Collider",
+    "ColumnBlock",
     "CornerNormals",
     "DoesNotFitError",
     "Grid",
@@ -63,20 +65,22 @@ __all__ = [
 # What works on scenes is imported when it is first used: a process that only makes a scene does not wait for it.
 _HOMES = {
     "voxrt.voxelize.assets": ("load",),
+    "voxrt.voxelize.block_voxelizer": ("BlockVoxelizer", "ColumnBlock", "voxelize_in_blocks"),
     "voxrt.voxelize.colour.voxel_colours": ("DEFAULT_COLOURS", "assign_colours"),
     "voxrt.voxelize.grid_fitting": ("fit_grid",),
     "voxrt.voxelize.scene_frames": ("SceneFrames", "join_scenes"),
-    "voxrt.voxelize.voxelizer": ("voxelize", "voxelize_in_blocks"),
+    "voxrt.voxelize.voxelizer": ("voxelize",),
     "voxrt.voxelize.voxels": ("ObjectMode", "ObjectReport", "Voxelization", "VoxelizationReport", "Voxels"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.voxelize.assets import load
+    from voxrt.voxelize.block_voxelizer import BlockVoxelizer, ColumnBlock, voxelize_in_blocks
     from voxrt.voxelize.colour.voxel_colours import DEFAULT_COLOURS, assign_colours
     from voxrt.voxelize.grid_fitting import fit_grid
     from voxrt.voxelize.scene_frames import SceneFrames, join_scenes
-    from voxrt.voxelize.voxelizer import voxelize, voxelize_in_blocks
+    from voxrt.voxelize.voxelizer import voxelize
     from voxrt.voxelize.voxels import ObjectMode, ObjectReport, Voxelization, VoxelizationReport, Voxels
 else:
 

@@ -1,5 +1,5 @@
 # The manual of these functions is their docstrings, in src/module.cpp, src/scene_bindings.cpp, src/colour_bindings.cpp.
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -63,9 +63,39 @@ def voxelize(
     objects: int,
     fill: str,
     threads: int,
-    block_side: int = 0,
-    take_block: Callable[..., None] | None = None,
 ) -> Voxelized: ...
+
+class VoxelBlock(NamedTuple):
+    brick_codes: NDArray[np.uint64]
+    brick_masks: NDArray[np.uint64]
+    brick_materials: NDArray[np.uint8]
+    brick_rows: NDArray[np.int32]
+    cells: NDArray[np.uint8]
+    octant_codes: NDArray[np.uint64]
+    octant_levels: NDArray[np.uint8]
+    octant_materials: NDArray[np.uint8]
+    object_tallies: NDArray[np.int64]
+
+class BlockVoxelizer:
+    def __init__(
+        self,
+        depth: int,
+        meshes: list[MeshArrays],
+        kinds: NDArray[np.uint8],
+        mesh_of: NDArray[np.int32],
+        frames: NDArray[np.float64],
+        materials: NDArray[np.uint8],
+        objects_of: NDArray[np.int32],
+        objects: int,
+        fill: str,
+        threads: int,
+        wanted: NDArray[np.uint8],
+    ) -> None: ...
+    def blocks(self, block_side: int) -> NDArray[np.int32]: ...
+    def objects_of(self, x: int, y: int, block_side: int) -> NDArray[np.uint8]: ...
+    def block(self, x: int, y: int, block_side: int) -> VoxelBlock: ...
+    def report(self, tallies: NDArray[np.int64]) -> Voxelized: ...
+
 def convex_hull(positions: NDArray[np.float64], frame: NDArray[np.float64]) -> NDArray[np.int32]: ...
 def scene_bounds(clouds: Sequence[Cloud], hidden: int) -> tuple[Corner, Corner]: ...
 def fit_grid(low: Corner, high: Corner, depth: int) -> tuple[Corner, float]: ...

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Unpack
 from voxrt import export, octree, voxelize
 from voxrt.animation_takes import takes_of
 from voxrt.asset_source import as_text, asset_label, load_asset, refuse_warnings
-from voxrt.blockwise import build_octree
+from voxrt.blockwise import build_octree, plan_build
 from voxrt.build_grid import build_grid
 from voxrt.build_options import DEFAULT_DEPTH, merge_options
 from voxrt.build_result import BuildResult
 from voxrt.build_view import authored_view, preview
 from voxrt.build_writing import named_settings, write_build
-from voxrt.estimate import estimate_build
 from voxrt.fitting import find_material, fit_interior
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.octree import Animation, AnimationFrame
@@ -108,7 +107,7 @@ def build_animation(
         grid = build_grid(scenes.union, options)
         octree.check_frame_count(grid.depth, len(takes))
     if estimated is not None:
-        estimated(estimate_build(scenes.union, grid, options))
+        estimated(plan_build(scenes.union, grid, options, on_disk=False).estimate)
     with clock.stage("colour"):
         scenes = scenes.coloured(grid, colours=options.colours, geometry=options.geometry)
     made = _Frames(scenes, grid, options, asset_label(takes[0].asset), clock)
@@ -154,6 +153,8 @@ def build_animation(
 
 
 def _refuse_options(options: BuildOptions) -> None:
+    if options.scheduler is not None or options.workers is not None:
+        raise ValueError("an animation is built on one machine: leave scheduler and workers out")
     if options.bake:
         raise ValueError("light is not baked into animations: leave bake out")
     if options.budget is not None:

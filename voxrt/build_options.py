@@ -124,9 +124,14 @@ class BuildOptions:
     threads
         Threads of the native stages; 0 takes one per core. The result does not depend on it.
     memory
-        Bytes that voxels may take, such as ``4G`` on the command line; the default is half of what is free. Larger
-        scenes are voxelized in squares of columns, one after another, to the same result. The octree itself is not
-        counted.
+        Bytes that a build may take, such as ``4G`` on the command line; the default is half of what is free. Larger
+        scenes are voxelized in tiles, squares of columns. Their octrees go to the folder ``NAME.tiles`` beside the
+        output and are joined there to the same result; a build that was killed goes on from them.
+    scheduler
+        Build on the cluster of this Dask scheduler, such as ``tcp://host:8786``. Its workers open the asset and write
+        tiles at the same paths as this machine. Needs the extra ``cluster``.
+    workers
+        Build on a cluster of so many processes on this machine, 1 to 1024. Needs the extra ``cluster``.
 
     Raises
     ------
@@ -178,6 +183,8 @@ class BuildOptions:
     strict: bool = False
     threads: int = 0
     memory: int | None = None
+    scheduler: str | None = None
+    workers: int | None = None
 
     def __post_init__(self) -> None:
         for name, value in _checked(self).items():
@@ -219,6 +226,8 @@ class BuildKeywords(TypedDict, total=False):
     strict: bool
     threads: int
     memory: int | None
+    scheduler: str | None
+    workers: int | None
 
 
 def merge_options(function: str, options: BuildOptions | None, keywords: BuildKeywords) -> BuildOptions:
@@ -257,6 +266,8 @@ def _checked(given: BuildOptions) -> dict[str, object]:
     from voxrt.octree import MAX_DEPTH  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
     from voxrt.voxelize.arguments import choice, flag, real, text, vector, whole  # noqa: PLC0415
 
+    if given.scheduler is not None and given.workers is not None:
+        raise ValueError("scheduler and workers exclude each other; give one of them")
     if given.depth is not None and given.voxel_size is not None:
         raise ValueError("depth and voxel_size exclude each other; give one of them")
     if given.lod is True and given.dialect not in ("report", "lod"):
@@ -302,6 +313,8 @@ def _checked(given: BuildOptions) -> dict[str, object]:
         "strict": flag,
         "threads": lambda name, value: whole(name, value, 0, _MOST_THREADS),
         "memory": lambda name, value: whole(name, value, _LEAST_MEMORY, 1 << 62),
+        "scheduler": text,
+        "workers": lambda name, value: whole(name, value, 1, _MOST_THREADS),
     }
     optional = {option.name for option in fields(BuildOptions) if option.default is None}
     values = {name: getattr(given, name) for name in checks}

@@ -32,20 +32,37 @@ class BuildEstimate:
         Wall-clock seconds.
     bytes
         Memory at the peak.
+    disk
+        Bytes on the disk while it is built, besides the output.
+    surface
+        Voxels of the surface.
+    least
+        Bytes of memory that the program and the triangles take in any case.
+    width
+        Voxels of the grid, along x or y, that the scene spans; 0 if that is not known.
 
     Examples
     --------
     >>> str(BuildEstimate(200.0, 6 << 30))
     '3 minutes and 6.0 GB of memory'
+    >>> str(BuildEstimate(200.0, 2 << 30, disk=9 << 30))
+    '3 minutes, 2.0 GB of memory and 9.0 GB of disk'
     """
 
     seconds: float
     bytes: int
+    disk: int = 0
+    surface: int = 0
+    least: int = 0
+    width: int = 0
 
     def __str__(self) -> str:
         minutes = round(self.seconds / 60)
         time = f"{minutes} minute{'s' * (minutes > 1)}" if minutes else f"{self.seconds:.0f} seconds"
-        return f"{time} and {self.bytes / (1 << 30):.1f} GB of memory"
+        memory = f"{self.bytes / (1 << 30):.1f} GB of memory"
+        if not self.disk:
+            return f"{time} and {memory}"
+        return f"{time}, {memory} and {self.disk / (1 << 30):.1f} GB of disk"
 
 
 def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEstimate:
@@ -71,9 +88,13 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     True
     """
     triangles, surface, coloured = 0, 0.0, 0.0
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for item in scene.objects:
         mesh = item.mesh
         corners = (mesh.positions.astype(np.float64) @ item.transform[:3, :3].T)[mesh.triangles]
+        if len(corners):
+            low = np.minimum(low, corners.min(axis=(0, 1)) + item.transform[:3, 3])
+            high = np.maximum(high, corners.max(axis=(0, 1)) + item.transform[:3, 3])
         areas = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2
         voxels = 1.5 * float(areas.max(axis=1, initial=0).sum()) / grid.voxel_size**2
         triangles += len(mesh.triangles)
@@ -90,10 +111,8 @@ def estimate_build(scene: Scene, grid: Grid, options: BuildOptions) -> BuildEsti
     if options.preview and options.engine == "rtl":
         rays = options.size[0] * options.size[1] * options.samples**2
         seconds += rays * _SECONDS_PER_HARDWARE_RAY
-    taken = (
-        _BYTES_AT_START
-        + triangles * _BYTES_PER_TRIANGLE
-        + surface * _BYTES_PER_SURFACE_VOXEL
-        + coloured * _BYTES_PER_COLOURED_VOXEL
-    )
-    return BuildEstimate(seconds, int(taken))
+    least = _BYTES_AT_START + triangles * _BYTES_PER_TRIANGLE
+    taken = least + surface * _BYTES_PER_SURFACE_VOXEL + coloured * _BYTES_PER_COLOURED_VOXEL
+    ends = np.clip((np.stack([low, high]) - grid.origin) / grid.voxel_size, 0, grid.size)[:, :2]
+    width = int(np.ceil(max(0.0, float((ends[1] - ends[0]).max()))))
+    return BuildEstimate(seconds, int(taken), surface=int(surface), least=least, width=width)

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import os
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
 from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
-from voxrt.blockwise import build_octree
+from voxrt.blockwise import build_octree, plan_build
 from voxrt.build_grid import build_grid
 from voxrt.build_options import merge_options
 from voxrt.build_result import BuildResult
 from voxrt.build_view import authored_view, preview
 from voxrt.build_writing import named_settings, write_build
-from voxrt.estimate import estimate_build
 from voxrt.object_selection import crowded_out, refuse_empty, without_objects
 from voxrt.output_files import output_files, refuse_other_asset
 from voxrt.sim import SimulatorError
 from voxrt.stage_clock import StageClock
+from voxrt.tile_store import TileStore
 from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, named_camera
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from voxrt.asset_source import Asset
     from voxrt.baking import Bake
     from voxrt.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
+    from voxrt.cluster import ClusterProgress
     from voxrt.estimate import BuildEstimate
     from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
@@ -48,6 +50,7 @@ def build(
     *,
     progress: Callable[[str], None] | None = None,
     estimated: Callable[[BuildEstimate], None] | None = None,
+    clustered: Callable[[ClusterProgress], None] | None = None,
     **keywords: Unpack[BuildKeywords],
 ) -> BuildResult:
     """Build the octree memory of an asset, and write it with its manifest and its preview.
@@ -66,6 +69,8 @@ def build(
         Called with the name of each stage as it begins.
     estimated
         Called with what the build will take, once the scene is loaded and its grid is known.
+    clustered
+        Called with how far a cluster is, as tiles are finished.
     **keywords
         The options of :class:`BuildOptions` by name. They take precedence over `options`.
 
@@ -85,6 +90,8 @@ def build(
     OutputError
         A file cannot be written, or the folder has files of the same name that were built from another asset. Old
         files stay as they were.
+    ToolError
+        The cluster that was asked for is not there, or is lost. Its finished tiles stay.
     SimulatorError
         The preview cannot be rendered. The memory and the manifest are complete by then; an older preview is removed,
         for it shows another memory.
@@ -100,6 +107,7 @@ def build(
     True
     """
     options = merge_options("build", options, keywords)
+    _check_cluster(asset, output, options)
     files = output_files(asset_name(asset), output, options.preview)
     source = as_text(Path(asset).name if isinstance(asset, str | os.PathLike) else files.name)
     if files.words is not None and not files.named:
@@ -111,42 +119,46 @@ def build(
             viewpoint = named_camera(asset_label(asset), loaded, options.camera)
             loaded = replace(loaded, viewpoint=viewpoint)
     refuse_warnings(asset, loaded.warnings, options)
-    scene, grid, tree, voxelization = _voxelize(loaded, options, clock, estimated)
-    if not options.allow_empty:
-        refuse_empty(asset_label(asset), grid, voxelization.objects)
-    rom = octree.Rom(files.name, tree, scene.materials, grid)
-    rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
-    if options.lod or options.dialect == "lod":
-        with clock.stage("lod"):
-            rom = octree.with_means(rom)
-    view, lighting, unseen = authored_view(scene, rom, options)
-    warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
-    refuse_warnings(asset, warnings, options)
     picture, unseen_picture = None, None
-    if files.preview is not None:
-        with clock.stage("preview"):
-            try:
-                picture = preview(rom, _camera(rom, view, scene, options), lighting, options)
-            except (SimulatorError, ViewpointError) as error:
-                unseen_picture = error  # the memory is sound: it is written first
-    result = BuildResult(
-        rom,
-        scene,
-        voxelization.objects,
-        warnings,
-        {},
-        picture,
-        interior_fit,
-        budget_fit,
-        clock.seconds,
-        {"voxelize": voxelization.seconds},
-        view,
-        lighting,
-        export.Source(source, named_settings(options)),
-        baked,
-    )
-    with clock.stage("write"):
-        result.outputs.update(write_build(files, result, options))
+    with ExitStack() as stack:
+        store = None if files.words is None else stack.enter_context(TileStore(_tiles_folder(files.words)))
+        scene, grid, tree, voxelization = _voxelize(
+            asset, loaded, options, clock, told=(estimated, clustered), store=store
+        )
+        if not options.allow_empty:
+            refuse_empty(asset_label(asset), grid, voxelization.objects)
+        rom = octree.Rom(files.name, tree, scene.materials, grid)
+        rom, baked, interior_fit, budget_fit = _finished(rom, asset, (loaded, scene), options, clock)
+        if options.lod or options.dialect == "lod":
+            with clock.stage("lod"):
+                rom = octree.with_means(rom)
+        view, lighting, unseen = authored_view(scene, rom, options)
+        warnings = scene.warnings + voxelization.warnings + crowded_out(scene, grid, options) + unseen
+        refuse_warnings(asset, warnings, options)
+        if files.preview is not None:
+            with clock.stage("preview"):
+                try:
+                    picture = preview(rom, _camera(rom, view, scene, options), lighting, options)
+                except (SimulatorError, ViewpointError) as error:
+                    unseen_picture = error  # the memory is sound: it is written first
+        result = BuildResult(
+            rom,
+            scene,
+            voxelization.objects,
+            warnings,
+            {},
+            picture,
+            interior_fit,
+            budget_fit,
+            clock.seconds,
+            {"voxelize": voxelization.seconds},
+            view,
+            lighting,
+            export.Source(source, named_settings(options)),
+            baked,
+        )
+        with clock.stage("write"):
+            result.outputs.update(write_build(files, result, options))
     if picture is not None:  # what programs read keeps its order
         clock.seconds["preview"] = clock.seconds.pop("preview")
     if unseen_picture is not None:
@@ -207,17 +219,47 @@ def voxelize_mesh(
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
 
 
+def _tiles_folder(words: Path) -> Path:
+    return words.with_name(f"{words.stem}.tiles")
+
+
+def _check_cluster(asset: Asset, output: str | os.PathLike[str] | None, options: BuildOptions) -> None:
+    """Refuse a build on a cluster that has nowhere to put its tiles, or whose workers could not open the asset."""
+    if options.scheduler is None and options.workers is None:
+        return
+    if output is None:
+        raise ValueError("a cluster writes its tiles beside the output: name an output")
+    if not isinstance(asset, str | os.PathLike):
+        raise TypeError(f"the workers of a cluster open the asset's file: give its path, not {type(asset).__name__}")
+
+
 def _voxelize(
-    scene: Scene, options: BuildOptions, clock: StageClock, estimated: Callable[[BuildEstimate], None] | None
+    asset: Asset,
+    scene: Scene,
+    options: BuildOptions,
+    clock: StageClock,
+    *,
+    told: tuple[Callable[[BuildEstimate], None] | None, Callable[[ClusterProgress], None] | None],
+    store: TileStore | None,
 ) -> tuple[Scene, Grid, Octree, VoxelizationReport]:
     """Fit a grid, reduce colours to materials, voxelize, build the octree."""
+    estimated, clustered = told
     with clock.stage("fit"):
         grid = build_grid(scene, options)
+        plan = plan_build(scene, grid, options, on_disk=store is not None)
     if estimated is not None:
-        estimated(estimate_build(scene, grid, options))
+        estimated(plan.estimate)
     with clock.stage("colour"):
         scene = voxelize.assign_colours(scene, grid, colours=options.colours, geometry=options.geometry)
-    return scene, grid, *build_octree(scene, grid, options, clock)
+    if (
+        store is None
+        or not isinstance(asset, str | os.PathLike)
+        or (options.scheduler, options.workers) == (None, None)
+    ):
+        return scene, grid, *build_octree(scene, grid, options, clock, plan=plan, store=store)
+    from voxrt.cluster import build_on_cluster  # noqa: PLC0415 - few builds do this
+
+    return scene, grid, *build_on_cluster(asset, scene, grid, options, clock, plan=plan, store=store, told=clustered)
 
 
 def _camera(rom: Rom, view: Camera | None, scene: Scene, options: BuildOptions) -> Camera:
@@ -268,7 +310,7 @@ def _lossless_depth(loaded: Scene, options: BuildOptions, depth: int, words: int
     """Find the greatest lesser depth at which a scene fits so many words, and its words there; None if none does."""
     for lesser in range(depth - 1, 0, -1):
         whole = replace(options, depth=lesser, voxel_size=None, budget=None, preview=False, strict=False)
-        whole = replace(whole, ignore=(), allow_empty=True)  # done by now
+        whole = replace(whole, ignore=(), allow_empty=True, scheduler=None, workers=None)  # done by now
         size = len(build(loaded, options=whole).octree.words)
         if size <= words:
             return lesser, size

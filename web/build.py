@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 WASM = BUILD / "voxrt.wasm"
 
 ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
-LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp"}
+LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp", "block_file.cpp", "disk_assembly.cpp"}
 OTHER_PROCESSORS = ("_avx2.cpp", "_avx512.cpp")
 
 

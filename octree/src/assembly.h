@@ -29,8 +29,6 @@ public:
     std::vector<Word> words() const;
 
 private:
-    class Part;
-
     BlockPool pool_;
     unsigned depth_;
     Node root_ = kEmpty;

@@ -5,6 +5,7 @@
 #include "coarsen.h"
 #include "dense.h"
 #include "diff.h"
+#include "disk_assembly.h"
 #include "fit_candidates.h"
 #include "hidden.h"
 #include "interior.h"
@@ -309,6 +310,18 @@ nb::object bind_assembly_words(const Assembly& assembly) {
     return words_to_numpy(run([&] { return assembly.words(); }));
 }
 
+void bind_disk_assembly_add(DiskAssembly& assembly, const Vector<Word>& words) {
+    run([&] { assembly.add(words.data(), words.shape(0)); });
+}
+
+// Paths are bytes: a file's name need not be text.
+std::string path_of(const nb::bytes& path) { return {path.c_str(), path.size()}; }
+
+std::size_t bind_disk_assembly_write(DiskAssembly& assembly, const nb::bytes& path) {
+    const std::string target = path_of(path);
+    return run([&] { return assembly.write(target); });
+}
+
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -384,6 +397,22 @@ NB_MODULE(_native, m) {
              "depth"_a)
         .def("add", &bind_assembly_add, "words"_a.noconvert())
         .def("words", &bind_assembly_words);
+    nb::register_exception_translator([](const std::exception_ptr& failure, void*) {
+        try {
+            std::rethrow_exception(failure);
+        } catch (const FileError& error) {
+            errno = error.code().value();
+            PyErr_SetFromErrnoWithFilename(PyExc_OSError, error.path.c_str());
+        }
+    });
+    nb::class_<DiskAssembly>(m, "DiskAssembly")
+        .def(nb::new_([](unsigned depth, const nb::bytes& folder, std::size_t cache_bytes) {
+                 require_depth(depth);
+                 return new DiskAssembly(depth, path_of(folder), cache_bytes);
+             }),
+             "depth"_a, "folder"_a, "cache_bytes"_a)
+        .def("add", &bind_disk_assembly_add, "words"_a.noconvert())
+        .def("write", &bind_disk_assembly_write, "path"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)

@@ -1,6 +1,6 @@
 // What the page does with dropped files, in Node: reads jobs from standard input and prints what came out, as JSON.
 //
-// job: {site, files, depth, fill, bake, frames: [{camera, size, shading}]}
+// job: {site, files, depth, fill, bake, budget, frames: [{camera, size, shading}]}
 import { createHash } from "node:crypto";
 import { readFile } from "node:fs/promises";
 import { basename } from "node:path";
@@ -18,12 +18,12 @@ const module = await WebAssembly.compile(await readFile(`${site}/voxrt/voxrt.was
 const sha = (bytes) => createHash("sha256").update(bytes).digest("hex");
 
 const results = [];
-for (const { files, depth, fill, bake, frames } of jobs) {
+for (const { files, depth, fill, bake, budget, frames } of jobs) {
   const voxrt = await Voxrt.load(module);
   try {
     const given = await Promise.all(files.map(async (path) => ({ name: basename(path), bytes: new Uint8Array(await readFile(path)) })));
     const read = await readFiles(given, voxrt);
-    const built = read.memory ?? voxrt.voxelize(read.scene, { depth, fill, bake });
+    const built = read.memory ?? voxrt.voxelize(read.scene, { depth, fill, bake, budget });
     voxrt.setMemory(built.words, built.depth);
     const pictures = frames.map(({ camera, size, shading }) => {
       voxrt.shade({ materials: built.materials.map((material) => material.colour), mirrors: built.materials.flatMap(({ mirror }, id) => (mirror ? [id] : [])), ...shading });
@@ -36,7 +36,7 @@ for (const { files, depth, fill, bake, frames } of jobs) {
     results.push({
       name: read.name, words: sha(Buffer.from(built.words.buffer, built.words.byteOffset, built.words.byteLength)), count: built.words.length, depth: built.depth,
       grid: built.grid, materials: built.materials, objects: built.objects, warnings: [...(read.scene?.warnings ?? []), ...built.warnings],
-      voxels: voxrt.voxels(), baked: built.baked, pictures, bytes: voxrt.bytes,
+      voxels: voxrt.voxels(), baked: built.baked, fitted: built.fitted, pictures, bytes: voxrt.bytes,
     });
   } catch (error) {
     results.push({ problem: error.message });

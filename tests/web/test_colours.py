@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import struct
 import zlib
 from pathlib import Path
@@ -122,6 +123,43 @@ def test_obj_and_ply_colours_are_those_of_the_native_module(tmp_path: Path) -> N
         assert_same(native, found)
 
 
+CONCAVE = {
+    "arrow": [(0, 0), (4, 0), (1, 1), (0, 4)],
+    "arrow turned": [(4, 0), (1, 1), (0, 4), (0, 0)],
+    "letter": [(0, 0), (4, 0), (4, 1), (1, 1), (1, 3), (4, 3), (4, 4), (0, 4)],
+    "star": [(math.cos(a) * r, math.sin(a) * r) for a, r in ((math.pi * i / 5, 2 + i % 2 * 2) for i in range(10))],
+    "comb": [(0, 0), *((2 * i + x, y) for i in range(5) for x, y in ((0, 3), (1, 3), (1, 1), (2, 1))), (10, 0)],
+    "convex": [(0, 0), (3, 0), (4, 2), (3, 4), (0, 4)],
+}
+
+
+def prism_obj(outline: list[tuple[float, float]], tilt: float) -> str:
+    """A prism whose ends are single polygons, tilted, one of them by numbers that count back."""
+    cosine, sine = math.cos(tilt), math.sin(tilt)
+    lines = []
+    for depth in (0, 1.5):
+        lines += [f"v {x} {y * cosine - depth * sine} {y * sine + depth * cosine}" for x, y in outline]
+    count = len(outline)
+    lines.append("usemtl half")
+    lines.append("f " + " ".join(str(count - i) for i in range(count)))
+    lines.append("f " + " ".join(str(i - count) for i in range(count)))
+    sides = [(i + 1, (i + 1) % count + 1) for i in range(count)]
+    lines += [f"f {a} {b} {b + count} {a + count}" for a, b in sides]
+    return "\n".join(["mtllib prism.mtl", "o gl\xe6s", *lines]) + "\n"
+
+
+@pytest.mark.parametrize("tilt", [0, 0.4, 2])
+def test_concave_polygons_have_the_words_of_the_native_module(tmp_path: Path, tilt: float) -> None:
+    (tmp_path / "prism.mtl").write_text("newmtl half\nKd 0.7 0.5 0.3\n")
+    names = [name.replace(" ", "_") for name in CONCAVE]
+    for name, outline in zip(names, CONCAVE.values(), strict=True):
+        (tmp_path / f"{name}.obj").write_bytes(prism_obj(outline, tilt).encode("cp1252"))
+    files = [[tmp_path / f"{name}.obj", tmp_path / "prism.mtl"] for name in names]
+    for native, found in build_both(files, 6):
+        assert_same(native, found)
+        assert [one["name"] for one in found["objects"]] == [one.name for one in native.objects] == ["gl\xe6s"]
+
+
 def chunk(kind: bytes, data: bytes) -> bytes:
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
@@ -189,7 +227,12 @@ ASSETS = (
     *("gltf/glTF-Blender-IO/24_gpu_instancing.gltf", "gltf/glTF-Transform/functions/test/in/ShapeCollection.glb"),
     *(f"gltf/gltf-pipeline/{name}/{name}.gltf" for name in ("meshopt-fallback", "meshopt-no-fallback")),
     *("obj/assimp/cube_with_vertexcolors.obj", "obj/assimp/number_formats.obj", "obj/kaolin/amsterdam.obj"),
-    *("obj/assimp/box_UTF16BE.obj", "obj/tinyobjloader/cornell_box_multimaterial.obj", "obj/trimesh/rabbit.obj"),
+    *(
+        "obj/assimp/regr01.obj",
+        "obj/assimp/box_UTF16BE.obj",
+        "obj/tinyobjloader/cornell_box_multimaterial.obj",
+        "obj/trimesh/rabbit.obj",
+    ),
     *("obj/trimesh/quadknot.obj", "obj/trimesh/negative_indices.obj", "ply/trimesh/cube_blender_uv.ply"),
     *(f"ply/USD-Fileformat-plugins/{name}.ply" for name in ("colors", "gargo")),
     *("ply/assimp/cube_uv.ply", "ply/assimp/float-color.ply", "stl/trimesh/soup.stl"),

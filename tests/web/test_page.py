@@ -254,6 +254,42 @@ def test_baked_light_is_shown_and_saved_as_natively(browser: Browser, tmp_path: 
     assert browser.faults() == []
 
 
+def test_a_budget_gives_up_what_voxrt_build_gives_up(browser: Browser, tmp_path: Path) -> None:
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    browser.run(
+        "const field = document.querySelector('#budget-words'); field.value = 3000;"
+        "field.dispatchEvent(new Event('change', { bubbles: true }))"
+    )
+    facts = "document.querySelector('#facts').innerText"
+    assert browser.until(f"{facts}.includes('surface changed') && {RESTS}", 60), notice(browser)
+    native = voxrt.build(EXAMPLES / "courtyard.glb", tmp_path / "native", depth=7, budget=3000)
+    got = tmp_path / "page"
+    got.mkdir()
+    assert saved(browser, got, "#save-mem", "courtyard.mem") == native.outputs["mem"].read_bytes()
+    text = browser.run(f"return {facts}")
+    assert f"{native.budget.fit.percent_changed:.1f} %" in text
+    assert f"{native.budget.fit.words_shared:,}" in text
+    browser.run(
+        "const slider = document.querySelector('#budget'); slider.value = 100;"
+        "slider.dispatchEvent(new Event('input', { bubbles: true }))"
+    )
+    assert browser.until(f"!{facts}.includes('surface changed') && {RESTS}")
+    assert browser.run("return document.querySelector('#budget-words').value") == ""
+    assert browser.faults() == []
+
+
+def test_a_scene_is_fitted_to_a_board_by_a_click(browser: Browser) -> None:
+    opened(browser, "#scene=planet&depth=9")
+    assert browser.until(shown("planet", 9))
+    browser.run("document.querySelector('#boards button').click()")
+    assert browser.until(f"document.querySelector('#boards .fits') && {RESTS}", 60), notice(browser)
+    assert browser.run("return Number(document.querySelector('#budget-words').value)") == voxrt.octree.BOARDS["pynq-z1"]
+    browser.run("document.querySelector('#copy').click()")
+    assert f"words={voxrt.octree.BOARDS['pynq-z1']}" in browser.run("return location.hash")
+    assert browser.faults() == []
+
+
 def test_the_depth_slider_builds_anew_and_keeps_the_view(browser: Browser) -> None:
     opened(browser)
     assert browser.until(shown("courtyard", 7))

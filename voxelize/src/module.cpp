@@ -88,66 +88,62 @@ template <typename T, size_t N> nb::object take(SparseVoxels::Array<std::array<T
     return to_numpy(std::move(array.data), array.size);
 }
 
-NamedTuple voxelized;
+NamedTuple voxelized, voxel_block;
 
 Fill fill_of(const std::string& name) {
     require(name == "surface" || name == "solid" || name == "auto", "fill must be surface, solid or auto");
     return name == "surface" ? Fill::surface : name == "solid" ? Fill::solid : Fill::automatic;
 }
 
-nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, InputOf<uint8_t> kinds,
-                          InputOf<int32_t> mesh_of, InputOf<double> frames, InputOf<uint8_t> materials,
-                          InputOf<int32_t> objects_of, int objects, const std::string& fill, int threads,
-                          int block_side, const nb::object& take_block) {
-    require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
-    require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024");
-    require(objects >= 0, "objects must not be negative");
-    require(take_block.is_none() || (block_side >= kTileSide && block_side % kTileSide == 0),
-            "block_side must be a multiple of 64");
-    const size_t count = kinds.size();
-    require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
-                mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
-            "kinds, meshes, materials and objects of the parts must have shape (P,)");
-    require_rows(frames, 12, "frames must have shape (P, 12)");
-    require(frames.shape(0) == count, "frames must have shape (P, 12)");
-
-    std::vector<std::vector<int64_t>> starts;
-    std::vector<MeshView> views;
-    starts.reserve(meshes.size());
-    views.reserve(meshes.size());
-    for (const MeshArrays& arrays : meshes)
-        views.push_back(view_mesh(arrays, starts.emplace_back(raster_starts(arrays))));
-    std::vector<PartView> parts;
-    parts.reserve(count);
-    for (size_t p = 0; p < count; ++p) {
-        require(kinds.data()[p] <= 3, "kinds must be 0 … 3");
-        const auto kind = static_cast<PartKind>(kinds.data()[p]);
-        const MeshView* mesh = nullptr;
-        if (kind == PartKind::mesh) {
-            require(mesh_of.data()[p] >= 0 && size_t(mesh_of.data()[p]) < views.size(), "mesh_of must index meshes");
-            mesh = &views[mesh_of.data()[p]];
+/// The parts of a scene, with the arrays that they borrow.
+class SceneParts {
+public:
+    SceneParts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
+               InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects)
+        : meshes_(std::move(meshes)), frames_(std::move(frames)) {
+        require(depth >= 1 && depth <= 16, "depth must be 1 … 16");
+        require(objects >= 0, "objects must not be negative");
+        const size_t count = kinds.size();
+        require(kinds.ndim() == 1 && mesh_of.ndim() == 1 && materials.ndim() == 1 && objects_of.ndim() == 1 &&
+                    mesh_of.size() == count && materials.size() == count && objects_of.size() == count,
+                "kinds, meshes, materials and objects of the parts must have shape (P,)");
+        require_rows(frames_, 12, "frames must have shape (P, 12)");
+        require(frames_.shape(0) == count, "frames must have shape (P, 12)");
+        starts_.reserve(meshes_.size());
+        views_.reserve(meshes_.size());
+        for (const MeshArrays& arrays : meshes_)
+            views_.push_back(view_mesh(arrays, starts_.emplace_back(raster_starts(arrays))));
+        parts.reserve(count);
+        for (size_t p = 0; p < count; ++p) {
+            require(kinds.data()[p] <= 3, "kinds must be 0 … 3");
+            const auto kind = static_cast<PartKind>(kinds.data()[p]);
+            const MeshView* mesh = nullptr;
+            if (kind == PartKind::mesh) {
+                require(mesh_of.data()[p] >= 0 && size_t(mesh_of.data()[p]) < views_.size(),
+                        "mesh_of must index meshes");
+                mesh = &views_[mesh_of.data()[p]];
+            }
+            require(materials.data()[p] != 0 ||
+                        (mesh != nullptr && (!mesh->materials.empty() || mesh->triangles.empty())),
+                    "a part needs a material");
+            require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
+            require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
+            parts.push_back({kind, mesh, frames_.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
         }
-        require(materials.data()[p] != 0 || (mesh != nullptr && (!mesh->materials.empty() || mesh->triangles.empty())),
-                "a part needs a material");
-        require(objects_of.data()[p] >= 0 && objects_of.data()[p] < objects, "objects_of must be below objects");
-        require(p == 0 || objects_of.data()[p - 1] <= objects_of.data()[p], "objects_of must ascend");
-        parts.push_back({kind, mesh, frames.data() + 12 * p, materials.data()[p], uint32_t(objects_of.data()[p])});
     }
+    SceneParts(const SceneParts&) = delete;
+    SceneParts& operator=(const SceneParts&) = delete;
 
-    SparseVoxels out;
-    if (take_block.is_none()) {
-        const LongCall call;
-        out = voxelize(depth, parts, size_t(objects), fill_of(fill), threads);
-    } else {
-        const LongCall call;
-        out = voxelize_in_blocks(
-            depth, parts, size_t(objects), fill_of(fill), threads, block_side, [&](SparseVoxels&& block) {
-                const nb::gil_scoped_acquire acquire;
-                take_block(take(block.brick_codes), take(block.brick_masks), take(block.brick_materials),
-                           take(block.brick_rows), take(block.cells), take(block.octant_codes),
-                           take(block.octant_levels), take(block.octant_materials));
-            });
-    }
+    std::vector<PartView> parts;
+
+private:
+    std::vector<MeshArrays> meshes_;
+    InputOf<double> frames_;
+    std::vector<std::vector<int64_t>> starts_;
+    std::vector<MeshView> views_;
+};
+
+nb::object voxelized_of(SparseVoxels& out) {
     nb::dict seconds;
     const StageSeconds& took = out.seconds;
     for (const auto& [stage, value] :
@@ -160,6 +156,95 @@ nb::object voxelize_parts(int depth, const std::vector<MeshArrays>& meshes, Inpu
                      take(out.object_voxels), take(out.object_modes), take(out.object_flipped),
                      take(out.object_mostly_filled), seconds);
 }
+
+void require_threads(int threads) { require(threads >= 0 && threads <= 1024, "threads must be 0 … 1024"); }
+
+nb::object voxelize_parts(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
+                          InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
+                          const std::string& fill, int threads) {
+    require_threads(threads);
+    const SceneParts scene(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects);
+    SparseVoxels out;
+    {
+        const LongCall call;
+        out = voxelize(depth, scene.parts, size_t(objects), fill_of(fill), threads);
+    }
+    return voxelized_of(out);
+}
+
+/// A BlockVoxelizer with the arrays that it reads.
+class PythonBlockVoxelizer {
+public:
+    PythonBlockVoxelizer(int depth, std::vector<MeshArrays> meshes, InputOf<uint8_t> kinds, InputOf<int32_t> mesh_of,
+                         InputOf<double> frames, InputOf<uint8_t> materials, InputOf<int32_t> objects_of, int objects,
+                         const std::string& fill, int threads, InputOf<uint8_t> wanted)
+        : scene_(depth, std::move(meshes), kinds, mesh_of, frames, materials, objects_of, objects), side_(1 << depth),
+          objects_(size_t(objects)) {
+        require_threads(threads);
+        require(wanted.ndim() == 1 && (wanted.size() == 0 || wanted.size() == objects_),
+                "wanted must have an element per object, or none");
+        const LongCall call;
+        native_ = std::make_unique<BlockVoxelizer>(depth, scene_.parts, objects_, fill_of(fill), threads,
+                                                   std::span<const uint8_t>(wanted.data(), wanted.size()));
+    }
+
+    nb::object blocks(int side) const {
+        require(side >= kTileSide && side % kTileSide == 0, "block_side must be a multiple of 64");
+        std::vector<int32_t> corners;
+        for (const ColumnBlock& block : native_->blocks(side)) {
+            corners.push_back(block.x);
+            corners.push_back(block.y);
+        }
+        const size_t count = corners.size() / 2;
+        return to_numpy(std::move(corners), {count, 2});
+    }
+
+    nb::object objects_of(int x, int y, int side) const {
+        return to_numpy(native_->objects_of(block_of(x, y, side)), {objects_});
+    }
+
+    nb::object block(int x, int y, int side) {
+        const ColumnBlock place = block_of(x, y, side);
+        std::vector<ObjectTally> tallies(objects_);
+        SparseVoxels out;
+        {
+            const LongCall call;
+            out = native_->block(place, tallies);
+        }
+        std::vector<int64_t> rows;
+        for (const ObjectTally& t : tallies)
+            rows.insert(rows.end(), {t.voxels, t.shell_of_open, t.inside_of_open, t.overlaps_itself});
+        return voxel_block(take(out.brick_codes), take(out.brick_masks), take(out.brick_materials),
+                           take(out.brick_rows), take(out.cells), take(out.octant_codes), take(out.octant_levels),
+                           take(out.octant_materials), to_numpy(std::move(rows), {objects_, 4}));
+    }
+
+    nb::object report(InputOf<int64_t> tallies) const {
+        require_rows(tallies, 4, "tallies must have shape (O, 4)");
+        require(tallies.shape(0) == objects_, "tallies must have a row per object");
+        std::vector<ObjectTally> rows(objects_);
+        for (size_t i = 0; i < objects_; ++i) {
+            const int64_t* row = tallies.data() + 4 * i;
+            rows[i] = {row[0], row[1], row[2], row[3]};
+        }
+        SparseVoxels out = native_->report(rows);
+        out.seconds = native_->seconds();
+        return voxelized_of(out);
+    }
+
+private:
+    ColumnBlock block_of(int x, int y, int side) const {
+        require(side >= kTileSide && side % kTileSide == 0, "block_side must be a multiple of 64");
+        require(x >= 0 && x < side_ && x % kTileSide == 0 && y >= 0 && y < side_ && y % kTileSide == 0,
+                "a block must begin at a multiple of 64 in the grid");
+        return {x, y, side};
+    }
+
+    SceneParts scene_;
+    int side_;
+    size_t objects_;
+    std::unique_ptr<BlockVoxelizer> native_;
+};
 
 nb::object hull_of(InputOf<double> positions, InputOf<double> frame) {
     require_rows(positions, 3, "positions must have shape (V, 3)");
@@ -206,9 +291,6 @@ fill
     "surface", "solid" or "auto": src/fill.h.
 threads
     0 takes as many as the machine has. The result does not depend on it.
-block_side, take_block
-    For grids that do not fit the memory at once: calls take_block(brick_codes, …, octant_materials) for each square of
-    block_side columns (a multiple of 64), in Morton order. The result then has no voxels.
 
 Returns
 -------
@@ -223,6 +305,10 @@ OutOfRangeError
     A part reaches beyond 2**18 voxels from the grid's corner, or is not a number.
 ValueError
     An array of the wrong shape or with an index out of range.)";
+
+constexpr auto kBlockVoxelizerManual = R"(The same, a block of columns at a time and in any order (src/voxelizer.h).
+
+`wanted`: uint8, 0 for objects to leave out, for blocks that they do not reach; empty for all objects.)";
 
 constexpr auto kHullManual = R"(Triangulate the convex hull of points as they lie in grid space, in exact arithmetic.
 
@@ -258,6 +344,10 @@ NB_MODULE(_native, m) {
                             "octant_levels", "octant_materials", "object_voxels", "object_modes", "object_flipped",
                             "object_mostly_filled", "seconds"},
                            "What voxelize() returns.");
+    voxel_block = NamedTuple(m, "VoxelBlock",
+                             {"brick_codes", "brick_masks", "brick_materials", "brick_rows", "cells", "octant_codes",
+                              "octant_levels", "octant_materials", "object_tallies"},
+                             "What BlockVoxelizer.block() returns; tallies (src/voxelizer.h): int64, shape (O, 4).");
     nb::register_exception_translator(
         [](const std::exception_ptr& failure, void*) {
             try {
@@ -269,7 +359,21 @@ NB_MODULE(_native, m) {
         nullptr);
     m.def("voxelize", &voxelize_parts, nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"),
           nb::arg("frames"), nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"),
-          nb::arg("threads"), nb::arg("block_side") = 0, nb::arg("take_block") = nb::none(), kVoxelizeManual);
+          nb::arg("threads"), kVoxelizeManual);
+    nb::class_<PythonBlockVoxelizer>(m, "BlockVoxelizer", kBlockVoxelizerManual)
+        .def(nb::init<int, std::vector<MeshArrays>, InputOf<uint8_t>, InputOf<int32_t>, InputOf<double>,
+                      InputOf<uint8_t>, InputOf<int32_t>, int, const std::string&, int, InputOf<uint8_t>>(),
+             nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
+             nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("threads"),
+             nb::arg("wanted"))
+        .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
+             "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")
+        .def("objects_of", &PythonBlockVoxelizer::objects_of, nb::arg("x"), nb::arg("y"), nb::arg("block_side"),
+             "Which objects may have a voxel in a block: uint8, shape (O,).")
+        .def("block", &PythonBlockVoxelizer::block, nb::arg("x"), nb::arg("y"), nb::arg("block_side"),
+             "The voxels of a block, and what it found of each object.")
+        .def("report", &PythonBlockVoxelizer::report, nb::arg("tallies"),
+             "What became of the objects, from the sum of the tallies of all blocks: a Voxelized without voxels.");
     bind_scene(m);
     bind_colour(m);
     m.def("convex_hull", &hull_of, nb::arg("positions"), nb::arg("frame"), kHullManual);

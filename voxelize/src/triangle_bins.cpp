@@ -3,6 +3,7 @@
 #include "stage_seconds.h"
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace voxrt::voxelize {
 namespace {
@@ -126,10 +127,16 @@ private:
     Fill fill_;
 };
 
+struct Wanted {
+    std::span<const uint8_t> objects;
+    bool operator()(const PartView& part) const { return objects.empty() || objects[part.object] != 0; }
+};
+
 using SharedMeshes = std::unordered_map<const MeshView*, SharedMesh>;
 
 /// The meshes of several parts.
-SharedMeshes analyze_instanced(const std::vector<PartView>& parts, Fill fill, const Workers& workers) {
+SharedMeshes analyze_instanced(const std::vector<PartView>& parts, const Wanted& wanted, Fill fill,
+                               const Workers& workers) {
     std::unordered_map<const MeshView*, std::pair<size_t, uint32_t>> uses; // how many, and the first object
     SharedMeshes shared;
     for (const PartView& part : parts)
@@ -138,9 +145,14 @@ SharedMeshes analyze_instanced(const std::vector<PartView>& parts, Fill fill, co
             if (++count == 2)
                 shared.try_emplace(part.mesh);
         }
+    std::unordered_set<const MeshView*> needed;
+    for (const PartView& part : parts)
+        if (wanted(part))
+            needed.insert(part.mesh);
     std::vector<SharedMeshes::value_type*> entries;
     for (auto& entry : shared)
-        entries.push_back(&entry);
+        if (needed.contains(entry.first))
+            entries.push_back(&entry);
     workers.run(entries.size(), [&](size_t job, int) {
         entries[job]->second = analyze_shared(*entries[job]->first, uses.at(entries[job]->first).second, fill);
     });
@@ -172,13 +184,15 @@ void sort_by_tile(TriangleBins& bins, std::vector<std::vector<TileEntry>>& lists
 
 } // namespace
 
-TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, Fill fill, const Workers& workers) {
+TriangleBins bin_triangles(const std::vector<PartView>& parts, std::span<const uint8_t> wanted_objects, int side,
+                           Fill fill, const Workers& workers) {
+    const Wanted wanted{wanted_objects};
     const Tiling tiling(side);
     const PartBinning binning(tiling, fill);
     TriangleBins bins;
     bins.tiles_per_side = tiling.tiles_per_side();
     bins.meshes.resize(parts.size());
-    const SharedMeshes shared = analyze_instanced(parts, fill, workers);
+    const SharedMeshes shared = analyze_instanced(parts, wanted, fill, workers);
     auto shared_of = [&](const PartView& part) {
         const auto found = shared.find(part.mesh);
         return found == shared.end() ? nullptr : &found->second;
@@ -191,6 +205,10 @@ TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, Fill fi
     std::vector<std::vector<TileEntry>> lists; // in authored order
     for (size_t begin = 0; begin < parts.size();) {
         if (is_large(parts[begin])) {
+            if (!wanted(parts[begin])) {
+                ++begin;
+                continue;
+            }
             binning.add_mesh(
                 bins.meshes[begin], parts[begin], uint32_t(begin), shared_of(parts[begin]),
                 [&](size_t count, auto&& job) { workers.run(count, [&](size_t i, int) { job(i); }); },
@@ -206,6 +224,8 @@ TriangleBins bin_triangles(const std::vector<PartView>& parts, int side, Fill fi
         std::vector<std::vector<std::vector<TileEntry>>> grouped(jobs);
         workers.run(jobs, [&](size_t job, int) {
             for (size_t p = begin + job * group; p < std::min(end, begin + (job + 1) * group); ++p) {
+                if (!wanted(parts[p]))
+                    continue;
                 if (parts[p].kind == PartKind::mesh)
                     binning.add_mesh(
                         bins.meshes[p], parts[p], uint32_t(p), shared_of(parts[p]),

@@ -276,27 +276,36 @@ uint32_t every_other_bit(uint64_t code) {
     return result;
 }
 
+/// Adds what the threads found of all objects, and forgets it.
+void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_ptr<Scratch>>& scratch,
+                   std::vector<ObjectTally>& out) {
+    for (const auto& s : scratch) {
+        if (!s)
+            continue;
+        for (size_t i = 0; i < out.size(); ++i)
+            out[i].add({s->object_voxels[i], s->shell_of_open[i], s->inside_of_open[i], 0});
+        for (size_t p = 0; p < parts.size(); ++p)
+            out[parts[p].object].overlaps_itself |= int64_t{s->overlaps_itself[p]};
+        std::fill(s->object_voxels.begin(), s->object_voxels.end(), 0);
+        std::fill(s->shell_of_open.begin(), s->shell_of_open.end(), 0);
+        std::fill(s->inside_of_open.begin(), s->inside_of_open.end(), 0);
+        std::fill(s->overlaps_itself.begin(), s->overlaps_itself.end(), uint8_t{0});
+    }
+}
+
 /// Sets the voxels, modes and flipped components of all objects.
-void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fill, const TriangleBins& bins,
-                    const std::vector<std::unique_ptr<Scratch>>& scratch, SparseVoxels& out) {
+void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
+                    const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
+    const size_t objects = tallies.size();
     out.object_voxels.allocate(objects);
     out.object_modes.allocate(objects);
     out.object_flipped.allocate(objects);
     out.object_mostly_filled.allocate(objects);
-    std::fill_n(out.object_voxels.data.get(), objects, 0);
     std::fill_n(out.object_flipped.data.get(), objects, 0);
     std::vector<ObjectFindings> found(objects);
-    std::vector<int64_t> shell(objects, 0), inside(objects, 0);
-    for (const auto& s : scratch) {
-        if (!s)
-            continue;
-        for (size_t i = 0; i < objects; ++i) {
-            out.object_voxels.data[i] += s->object_voxels[i];
-            shell[i] += s->shell_of_open[i];
-            inside[i] += s->inside_of_open[i];
-        }
-        for (size_t p = 0; p < parts.size(); ++p)
-            found[parts[p].object].overlaps_itself |= s->overlaps_itself[p] != 0;
+    for (size_t i = 0; i < objects; ++i) {
+        out.object_voxels.data[i] = tallies[i].voxels;
+        found[i].overlaps_itself = tallies[i].overlaps_itself != 0;
     }
     for (size_t p = 0; p < parts.size(); ++p) {
         const MeshAnalysis& mesh = bins.meshes[p];
@@ -310,7 +319,7 @@ void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fil
     }
     for (size_t i = 0; i < objects; ++i) {
         out.object_modes.data[i] = uint8_t(object_mode(fill, found[i]));
-        out.object_mostly_filled.data[i] = inside[i] > shell[i];
+        out.object_mostly_filled.data[i] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }
 
@@ -318,6 +327,8 @@ void report_objects(const std::vector<PartView>& parts, size_t objects, Fill fil
 
 SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads) {
     SparseVoxels all;
+    all.depth = unsigned(depth);
+    all.clear();
     SparseVoxels report = voxelize_in_blocks(depth, parts, objects, fill, threads, 1 << depth,
                                              [&](SparseVoxels&& block) { all = std::move(block); });
     all.object_voxels = std::move(report.object_voxels);
@@ -330,63 +341,142 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
                                 int block_side, const TakeBlock& take) {
-    const int side = 1 << depth;
-    const Workers workers(threads);
-    Stopwatch lap;
+    BlockVoxelizer voxelizer(depth, parts, objects, fill, threads);
+    const std::vector<ColumnBlock> blocks = voxelizer.blocks(block_side);
+    std::vector<ObjectTally> tallies(objects);
     SparseVoxels report;
-    report.depth = unsigned(depth);
-    report.clear();
-    TriangleBins bins = bin_triangles(parts, side, fill, workers);
-    report.seconds.bin = bins.seconds;
-    report.seconds.analysis = lap() - bins.seconds;
+    if (blocks.empty())
+        report = voxelizer.report(tallies);
+    for (const ColumnBlock& block : blocks)
+        take(&block == &blocks.back() ? voxelizer.last_block(block, tallies, report) : voxelizer.block(block, tallies));
+    report.seconds = voxelizer.seconds();
+    return report;
+}
 
-    std::vector<std::unique_ptr<Scratch>> scratch(workers.threads());
-    const TileWorker worker(parts, bins, side, fill);
-    const int tiles = bins.tiles_per_side, step = std::clamp((block_side + kTileSide - 1) / kTileSide, 1, tiles);
-    const int blocks = (tiles + step - 1) / step;
-    uint64_t codes = 1; // of blocks, in Morton order
-    while (codes < uint64_t(blocks))
-        codes *= 2;
-    codes *= codes;
-    StageSeconds before;
-    for (uint64_t code = 0; code < codes; ++code) {
-        const int x0 = int(every_other_bit(code)) * step, y0 = int(every_other_bit(code >> 1)) * step;
-        std::vector<uint32_t> occupied;
-        for (int y = y0; y < std::min(y0 + step, tiles); ++y)
-            for (int x = x0; x < std::min(x0 + step, tiles); ++x)
-                if (const auto t = uint32_t(y * tiles + x); bins.starts[t] < bins.starts[t + 1])
-                    occupied.push_back(t);
-        const bool last = code + 1 == codes;
-        if (occupied.empty() && !last)
-            continue;
-        std::vector<TileResult> results(occupied.size());
-        workers.run(occupied.size(), [&](size_t job, int thread) {
-            if (!scratch[thread])
-                scratch[thread] = std::make_unique<Scratch>(side, objects, parts.size());
-            worker.work(occupied[job], uint32_t(job), *scratch[thread], results[job]);
+struct BlockVoxelizer::State {
+    State(int depth, std::vector<PartView> given, size_t object_count, Fill how, int threads)
+        : depth(unsigned(depth)), side(1 << depth), parts(std::move(given)), objects(object_count), fill(how),
+          workers(threads), scratch(size_t(workers.threads())) {}
+
+    TileRange tiles_of(const ColumnBlock& block) const {
+        const int end = bins.tiles_per_side;
+        const int step = std::max(1, (block.side + kTileSide - 1) / kTileSide);
+        const int x0 = block.x / kTileSide, y0 = block.y / kTileSide;
+        return {x0, std::min(x0 + step, end) - 1, y0, std::min(y0 + step, end) - 1};
+    }
+
+    std::vector<uint32_t> occupied(const ColumnBlock& block) const {
+        std::vector<uint32_t> found;
+        const TileRange range = tiles_of(block);
+        for (int y = range.y0; y <= range.y1; ++y)
+            for (int x = range.x0; x <= range.x1; ++x)
+                if (const auto t = uint32_t(y * bins.tiles_per_side + x); bins.starts[t] < bins.starts[t + 1])
+                    found.push_back(t);
+        return found;
+    }
+
+    std::vector<TileResult> results(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+        lap();
+        const std::vector<uint32_t> tiles = occupied(block);
+        std::vector<TileResult> found(tiles.size());
+        const TileWorker worker(parts, bins, side, fill);
+        workers.run(tiles.size(), [&](size_t job, int thread) {
+            if (!scratch[size_t(thread)])
+                scratch[size_t(thread)] = std::make_unique<Scratch>(side, objects, parts.size());
+            worker.work(tiles[job], uint32_t(job), *scratch[size_t(thread)], found[job]);
         });
-        StageSeconds sum, fresh;
+        StageSeconds sum;
         for (const auto& s : scratch)
             if (s)
                 sum.add_tiles(s->seconds, 1);
-        fresh = sum;
+        StageSeconds fresh = sum;
         fresh.add_tiles(before, -1);
         before = sum;
         if (fresh.of_tiles() > 0)
-            report.seconds.add_tiles(fresh, lap() / fresh.of_tiles());
-        if (last) { // the peak of memory use is in what follows
-            report_objects(parts, objects, fill, bins, scratch, report);
-            scratch.clear();
-            bins = {};
-        }
-        SparseVoxels block;
-        block.depth = unsigned(depth);
-        gather(results, block, workers);
-        report.seconds.gather += lap();
-        take(std::move(block));
-        lap();
+            seconds.add_tiles(fresh, lap() / fresh.of_tiles());
+        tally_objects(parts, scratch, tallies);
+        return found;
     }
-    return report;
+
+    SparseVoxels gathered(std::vector<TileResult> found) {
+        SparseVoxels out;
+        out.depth = depth;
+        gather(found, out, workers);
+        seconds.gather += lap();
+        return out;
+    }
+
+    unsigned depth;
+    int side;
+    std::vector<PartView> parts;
+    size_t objects;
+    Fill fill;
+    Workers workers;
+    TriangleBins bins;
+    std::vector<std::unique_ptr<Scratch>> scratch;
+    Stopwatch lap;
+    StageSeconds seconds, before;
+};
+
+BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
+                               std::span<const uint8_t> wanted)
+    : state_(std::make_unique<State>(depth, std::move(parts), objects, fill, threads)) {
+    State& s = *state_;
+    s.bins = bin_triangles(s.parts, wanted, s.side, fill, s.workers);
+    s.seconds.bin = s.bins.seconds;
+    s.seconds.analysis = s.lap() - s.bins.seconds;
 }
+
+BlockVoxelizer::~BlockVoxelizer() = default;
+
+std::vector<ColumnBlock> BlockVoxelizer::blocks(int block_side) const {
+    const int tiles = state_->bins.tiles_per_side;
+    const int step = std::clamp((block_side + kTileSide - 1) / kTileSide, 1, tiles);
+    const int per_side = (tiles + step - 1) / step;
+    uint64_t codes = 1; // of blocks, in Morton order
+    while (codes < uint64_t(per_side))
+        codes *= 2;
+    codes *= codes;
+    std::vector<ColumnBlock> found;
+    for (uint64_t code = 0; code < codes; ++code) {
+        const int x = int(every_other_bit(code)) * step, y = int(every_other_bit(code >> 1)) * step;
+        const ColumnBlock block{x * kTileSide, y * kTileSide, step * kTileSide};
+        if (x < tiles && y < tiles && !state_->occupied(block).empty())
+            found.push_back(block);
+    }
+    return found;
+}
+
+std::vector<uint8_t> BlockVoxelizer::objects_of(const ColumnBlock& block) const {
+    const TriangleBins& bins = state_->bins;
+    std::vector<uint8_t> found(state_->objects, 0);
+    for (const uint32_t tile : state_->occupied(block))
+        for (uint32_t i = bins.starts[tile]; i < bins.starts[tile + 1]; ++i)
+            found[state_->parts[bins.triangles[i].part].object] = 1;
+    return found;
+}
+
+SparseVoxels BlockVoxelizer::block(const ColumnBlock& block, std::vector<ObjectTally>& tallies) {
+    return state_->gathered(state_->results(block, tallies));
+}
+
+SparseVoxels BlockVoxelizer::last_block(const ColumnBlock& block, std::vector<ObjectTally>& tallies,
+                                        SparseVoxels& report) {
+    std::vector<TileResult> results = state_->results(block, tallies);
+    report = this->report(tallies);
+    state_->scratch.clear(); // the peak of memory use is in what follows
+    state_->bins = {};
+    return state_->gathered(std::move(results));
+}
+
+SparseVoxels BlockVoxelizer::report(const std::vector<ObjectTally>& tallies) const {
+    SparseVoxels out;
+    out.depth = state_->depth;
+    out.clear();
+    report_objects(state_->parts, state_->fill, state_->bins, tallies, out);
+    return out;
+}
+
+const StageSeconds& BlockVoxelizer::seconds() const { return state_->seconds; }
 
 } // namespace voxrt::voxelize

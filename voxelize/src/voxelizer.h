@@ -34,6 +34,7 @@
 #include "sparse_voxels.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace voxrt::voxelize {
@@ -50,9 +51,61 @@ SparseVoxels voxelize(int depth, const std::vector<PartView>& parts, size_t obje
 using TakeBlock = std::function<void(SparseVoxels&&)>;
 
 /// The same block by block: squares of `block_side` columns (a multiple of 64), over the grid's whole height, in Morton
-/// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry and for the last;
-/// octree::Assembly joins their octrees. Returns what became of the objects, without voxels.
+/// order. Only one block's voxels are in memory at a time. `take` is called for blocks with geometry; octree::Assembly
+/// joins their octrees. Returns what became of the objects, without voxels.
 SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, size_t objects, Fill fill, int threads,
                                 int block_side, const TakeBlock& take);
+
+/// A square of columns over the grid's whole height: its lowest column, and columns per side.
+struct ColumnBlock {
+    int x, y, side;
+};
+
+/// What some blocks found of an object. The sum over disjoint blocks is what they find together.
+struct ObjectTally {
+    int64_t voxels = 0;                            // that belong to it
+    int64_t shell_of_open = 0, inside_of_open = 0; // of its parts with openings worth a note
+    int64_t overlaps_itself = 0;                   // 0, or 1
+
+    void add(const ObjectTally& other) {
+        voxels += other.voxels;
+        shell_of_open += other.shell_of_open;
+        inside_of_open += other.inside_of_open;
+        overlaps_itself |= other.overlaps_itself;
+    }
+};
+
+/// Parts that are ready to be voxelized, a block of columns at a time and in any order: what is done for all blocks
+/// together, analysis and binning, is done once. Arguments and errors are those of voxelize(); the meshes and frames of
+/// the parts must outlive this.
+class BlockVoxelizer {
+public:
+    /// `wanted`: by object, 0 where it is left out, for blocks that it does not reach; empty for all objects.
+    BlockVoxelizer(int depth, std::vector<PartView> parts, size_t objects, Fill fill, int threads,
+                   std::span<const uint8_t> wanted = {});
+    ~BlockVoxelizer();
+
+    /// The blocks with geometry, in Morton order. `block_side`: a multiple of 64.
+    std::vector<ColumnBlock> blocks(int block_side) const;
+
+    /// By object: whether it may have a voxel in a block.
+    std::vector<uint8_t> objects_of(const ColumnBlock& block) const;
+
+    /// The voxels of a block, without lists of objects. Adds to the tally of each object.
+    SparseVoxels block(const ColumnBlock& block, std::vector<ObjectTally>& tallies);
+
+    /// The same for the last block, and the report; then nothing is left, to make room for its voxels.
+    SparseVoxels last_block(const ColumnBlock& block, std::vector<ObjectTally>& tallies, SparseVoxels& report);
+
+    /// What became of the objects, without voxels. `tallies`: of all blocks, whoever made them.
+    SparseVoxels report(const std::vector<ObjectTally>& tallies) const;
+
+    /// Wall seconds so far.
+    const StageSeconds& seconds() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 } // namespace voxrt::voxelize

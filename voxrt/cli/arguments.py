@@ -112,6 +112,14 @@ def shades(kind: type, tokens: Sequence[Token]) -> int:
     return number
 
 
+def processes(kind: type, tokens: Sequence[Token]) -> int:
+    """Read a number of worker processes."""
+    number = whole(kind, tokens)
+    if not 1 <= number <= 1024:
+        raise ValueError(f"{number} is not 1 to 1024")
+    return number
+
+
 def samples(kind: type, tokens: Sequence[Token]) -> int:
     """Read a number of rays."""
     number = whole(kind, tokens)

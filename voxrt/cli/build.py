@@ -22,6 +22,7 @@ from voxrt.cli.arguments import (
     metres,
     metres_per_unit,
     png,
+    processes,
     samples,
     seconds,
     shades,
@@ -111,6 +112,8 @@ def build(
     dialect: Annotated[Dialect, _option("dialect", converter=choice)] = BuildOptions.dialect,
     memory: Annotated[int | None, _option("memory", converter=size_in_bytes, metavar="SIZE")] = BuildOptions.memory,
     lod: Annotated[bool, _option("lod", show_default=False)] = BuildOptions.lod,
+    scheduler: Annotated[str | None, _option("scheduler", metavar="ADDRESS")] = BuildOptions.scheduler,
+    workers: Annotated[int | None, _option("workers", converter=processes, metavar="N")] = BuildOptions.workers,
     strict: Annotated[bool, _option("strict", show_default=False)] = BuildOptions.strict,
     profile: Annotated[
         bool,
@@ -125,9 +128,18 @@ def build(
         raise UsageError("--sun, --sky and --bake-samples are of baked light: give --bake as well")
     if lod and dialect not in ("report", "lod"):
         raise UsageError(f"--lod has its own dialect, and {dialect} has no mean materials; leave one of them out")
+    if scheduler is not None and workers is not None:
+        raise UsageError("--scheduler and --workers exclude each other; give one of them")
     if budget is not None and board is not None:
         raise UsageError("--budget and --board exclude each other; give one of them")
-    told: dict[str, object] = {"--time": time, "--bake": bake or None, "--budget": budget, "--board": board}
+    told: dict[str, object] = {
+        "--time": time,
+        "--bake": bake or None,
+        "--budget": budget,
+        "--board": board,
+        "--scheduler": scheduler,
+        "--workers": workers,
+    }
     if frames is not None:
         check_frames(assets, frames, told)
     else:
@@ -163,6 +175,8 @@ def build(
         background=background,
         engine=engine,
         memory=memory,
+        scheduler=scheduler,
+        workers=workers,
         strict=strict,
     )
     build_all(assets, output, options, frames=frames, profile=profile, json=reporting.json)

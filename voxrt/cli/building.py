@@ -74,7 +74,7 @@ def _build(
     """Build an asset, or the animation of one or all."""
     with build_bar() as bar:
         if frames is None:
-            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate)
+            return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
         made: Path | list[Path] = asset
         if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
             from voxrt.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it

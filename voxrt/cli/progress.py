@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress, TaskID
 
+    from voxrt.cluster import ClusterProgress
     from voxrt.estimate import BuildEstimate
 
 LONG = 60.0
@@ -53,9 +54,20 @@ class BuildBar:
             note(f"{self._stage} took {perf_counter() - self._begun:.2f} s")
         self._stage = ""
 
+    def tiles(self, progress: ClusterProgress) -> None:
+        """Show how far a cluster is."""
+        said = (
+            f"tile {progress.done} of {progress.tiles}, {progress.workers} workers, "
+            f"{progress.bytes / (1 << 20):.1f} MB of octrees"
+        )
+        if is_verbose():
+            note(said)
+        if self._progress is not None and self._task is not None:
+            self._progress.update(self._task, description=said)
+
     def estimate(self, estimate: BuildEstimate) -> None:
         """Announce a build that is long or large; from now on the bar fills within the estimated time."""
-        if estimate.seconds > LONG or estimate.bytes > LARGE:
+        if estimate.seconds > LONG or max(estimate.bytes, estimate.disk) > LARGE:
             note(f"this will take about {estimate}; a smaller --depth or a larger --voxel-size takes less")
         if self._progress is not None and self._task is not None and estimate.seconds > 1:
             self._progress.update(self._task, total=estimate.seconds)

@@ -19,6 +19,7 @@ from voxrt.cli.arguments import (
     choice,
     picture_file,
     place,
+    processes,
     whole,
 )
 from voxrt.cli.errors import UsageError
@@ -62,6 +63,9 @@ def render(
     jitter: Annotated[int | None, Parameter(converter=whole, metavar="CLOCKS")] = None,
     lod: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     check: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    cameras: Annotated[Path | None, Parameter(metavar="FILE")] = None,
+    scheduler: Annotated[str | None, Parameter(metavar="ADDRESS")] = None,
+    workers: Annotated[int | None, Parameter(converter=processes, metavar="N")] = None,
     reporting: Annotated[Reporting, Parameter(name="*", negative=(), show_default=False)] = Reporting(),  # noqa: B008
 ) -> None:
     """Render a picture of a memory or an asset, with the same pixels as the hardware.
@@ -118,9 +122,17 @@ def render(
         them. A memory that was built without --lod gets its mean materials first.
     check
         Render with both engines and count the pixels that differ. Any difference is an error.
+    cameras
+        Render a picture for each camera of a JSON file: a list of objects with position, look, right and up, three
+        numbers each, as the options of these names. The pictures are NAME-0000.png and so on.
+    scheduler
+        With --cameras: render on the cluster of this Dask scheduler, such as tcp://host:8786.
+    workers
+        With --cameras: render on a cluster of so many processes on this machine.
     reporting
         How results are printed.
     """
+    _check_path(cameras, output, sight, scheduler, workers)
     file = picture_file(Path(f"{scene.stem}.png") if output is None else output)
     source = read_source(scene, depth, dialect, frames=True)
     blob, memory = source.blob, source.rom
@@ -136,6 +148,9 @@ def render(
         lighting = _unlit(lighting, f"{config} has none, --config lit does")
     dram = _dram(latency, interval, jitter)
     asked = _Asked(memory, camera, size, roots, engine, config, lighting, samples, background, dram, lod)
+    if cameras is not None:
+        asked.take_path(scene, cameras, file, Cluster(scheduler, workers), check=check, json=reporting.json)
+        return
     shown, wrong_pixels = asked.check(file) if check else (asked.render(file, blob.animation), None)
     if reporting.json:
         print_json(render_result(voxrt.Picture(shown, camera, engine), file, wrong_pixels))
@@ -149,6 +164,17 @@ def render(
         if check:
             rows.append(("check", f"{wrong_pixels} pixels differ between the hardware and its model"))
         summarize(f"{scene.name}:", rows)
+    _refuse_wrong(scene, wrong_pixels)
+
+
+class Cluster(NamedTuple):
+    """Where the pictures of a path are rendered: nowhere else, if both are None."""
+
+    scheduler: str | None
+    workers: int | None
+
+
+def _refuse_wrong(scene: Path, wrong_pixels: int | None) -> None:
     if wrong_pixels:
         raise voxrt.SimulatorError(
             f"{scene}: {wrong_pixels} pixels differ between the hardware and its model; please report it with the file"
@@ -177,6 +203,22 @@ def _unlit(lighting: Lighting, why: str, light: Triple | None = None, bounces: i
         return lighting
     warn((voxrt.SceneWarning("light", f"the memory's light is left out: {why}"),))
     return replace(lighting, on=False, bounces=0)
+
+
+def _check_path(
+    cameras: Path | None, output: Path | None, sight: Sight, scheduler: str | None, workers: int | None
+) -> None:
+    """Refuse what does not go together with a path of cameras, or without one."""
+    if scheduler is not None and workers is not None:
+        raise UsageError("--scheduler and --workers exclude each other; give one of them")
+    if cameras is None:
+        if scheduler is not None or workers is not None:
+            raise UsageError("--scheduler and --workers are for the pictures of a path: give --cameras as well")
+        return
+    if sight != Sight():
+        raise UsageError("--cameras says where the camera stands; leave --position, --look, --right and --up out")
+    if output is not None and output.suffix.lower() == ".gif":
+        raise UsageError(f"{output}: the pictures of a path are PNG files; name a .png")
 
 
 class _Asked(NamedTuple):
@@ -217,6 +259,39 @@ class _Asked(NamedTuple):
         else:
             voxrt.save_picture(frames[0].colour, file)
         return frames[0]
+
+    def take_path(self, scene: Path, cameras: Path, file: Path, cluster: Cluster, *, check: bool, json: bool) -> None:
+        """Render a picture for each camera of a file, save them, and say what they cost."""
+        from voxrt.camera_path import PictureJob, read_cameras, take_pictures  # noqa: PLC0415 - most pictures are one
+
+        job = PictureJob(
+            self.memory,
+            self.size,
+            self.engine,
+            self.config,
+            self.lighting,
+            self.samples,
+            self.background,
+            self.dram,
+            self.roots[0],
+            self.lod,
+            check,
+        )
+        path, results, wrong = read_cameras(cameras, self.memory, self.size), [], 0
+        for picture in take_pictures(job, path, cluster.scheduler, cluster.workers):
+            target = file.with_stem(f"{file.stem}-{picture.number:04d}")
+            voxrt.save_picture(picture.frame.colour, target)
+            wrong += picture.wrong_pixels or 0
+            shown = voxrt.Picture(picture.frame, path[picture.number], self.engine)
+            results.append(render_result(shown, target, picture.wrong_pixels))
+        if json:
+            print_json(results)
+        else:
+            rows = [("pictures", f"{len(results)}"), ("wrote", f"{file.with_stem(file.stem + '-0000')} and so on")]
+            if check:
+                rows.append(("check", f"{wrong} pixels differ between the hardware and its model"))
+            summarize(f"{scene.name}:", rows)
+        _refuse_wrong(scene, wrong)
 
     def check(self, file: Path) -> tuple[Frame, int]:
         """Render the first with both engines and save it; return it and the number of pixels that differ."""

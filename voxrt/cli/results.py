@@ -259,7 +259,7 @@ def camera_entry(camera: Camera) -> CameraEntry:
     return CameraEntry((x / 16, y / 16, z / 16), camera.look, camera.right, camera.up)
 
 
-def print_json(result: msgspec.Struct | list[BuildReport]) -> None:
+def print_json(result: msgspec.Struct | list[BuildReport] | list[RenderResult]) -> None:
     """Print a result on standard output.
 
     Raises

@@ -85,7 +85,12 @@ export interface Built {
   objects: { name: string; mode: string; voxels: number }[];
   warnings: Warning[];
   /** What was baked; null without baked light. Such a memory is shown flat. */
-  baked: (Daylight & { voxels: number; wordsBefore: number; words: number }) | null;
+  baked: (Daylight & { voxels: number; colours: number; wordsBefore: number; words: number }) | null;
+  /** What a budget gave up, in voxels; null without one. */
+  fitted: {
+    words: number; wordsBefore: number; wordsShared: number; surface: number; changed: number; appeared: number;
+    recoloured: number; colours: number;
+  } | null;
 }
 
 /** A distant sun and a sky that shines evenly. */
@@ -150,8 +155,8 @@ export const DAYLIGHT: Daylight;
 export class Voxrt {
   /** `source`: voxrt.wasm as bytes, as a Response or as a module. */
   static load(source: BufferSource | Response | WebAssembly.Module): Promise<Voxrt>;
-  /** Voxelize a scene and build its octree. `depth` 1 … 16 (7), `fill` (auto). */
-  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill; colours?: number; bake?: Daylight | null }): Built;
+  /** Voxelize a scene and build its octree. `depth` 1 … 16 (7), `fill` (auto), `budget`: the most words. */
+  voxelize(scene: Scene, options?: { depth?: number; fill?: Fill; colours?: number; bake?: Daylight | null; budget?: number | null }): Built;
   /** The words of voxels given one by one: three whole numbers from 0 up to 2 ** depth and a material, 1 … 255, each. */
   fromPoints(places: ArrayLike<number>, materials: ArrayLike<number>, depth: number): Uint32Array;
   /** Take the words of an octree memory, which are checked. */

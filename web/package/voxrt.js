@@ -20,6 +20,7 @@ export const DEPTH_LIMIT = 16;
 export const BACKGROUND = [24, 28, 36];
 export const WRAPS = ["repeat", "mirror", "clamp"];
 export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };
+export const BAKED_COLOURS = 254;
 export const COLOURS = 32; // for all textures and vertex colours of a scene
 
 export class Voxrt extends Instance {
@@ -35,8 +36,8 @@ export class Voxrt extends Instance {
   // Meshes may have normals, for baked light: {directions, rows}, three numbers per direction, of any length, zeros for
   // none; and the direction of each corner of each triangle, or -1.
   // bake: null, or {sun, sky, samples}: the direction towards the sun, linear light of the sky (red, green, blue), rays
-  // to the sky per voxel.
-  voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null } = {}) {
+  // to the sky per voxel. budget: null, or the most words that the memory may have; it gives up what is seen least.
+  voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null, budget = null } = {}) {
     if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT) throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
     if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
     const { wasm } = this;
@@ -67,6 +68,8 @@ export class Voxrt extends Instance {
       const transparent = this.checked(wasm.vx_scene_end());
       this.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
       const baked = bake && this.#bake(bake);
+      const fitted = budget && this.#fit(budget);
+      if (baked && fitted) baked.colours = fitted.colours;
       const words = this.view(Uint32Array, wasm.vx_words(), wasm.vx_word_count()).slice();
       const voxels = this.view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
       const objects = Array.from(voxels, (count, i) => ({ name: this.string(wasm.vx_object_name(i)), mode: this.string(wasm.vx_object_mode(i)), voxels: Number(count) }));
@@ -79,7 +82,7 @@ export class Voxrt extends Instance {
         warnings.push({ kind: this.string(wasm.vx_warning_kind(i)), message: this.string(wasm.vx_warning_message(i)), count: wasm.vx_warning_objects(i) });
       const grid = { origin: [...this.view(Float64Array, wasm.vx_origin(), 3)], voxelSize: wasm.vx_voxel_size() };
       wasm.vx_scene_begin();
-      return { words, depth, grid, materials, objects, warnings, baked };
+      return { words, depth, grid, materials, objects, warnings, baked, fitted };
     });
   }
 
@@ -88,7 +91,16 @@ export class Voxrt extends Instance {
     const { wasm } = this;
     const wordsBefore = wasm.vx_word_count();
     const voxels = this.with(Float64Array, sun, (towards) => this.with(Float64Array, sky, (light) => this.checked(wasm.vx_bake(towards, light, samples))));
-    return { sun, sky, samples, voxels, wordsBefore, words: wasm.vx_word_count() };
+    return { sun, sky, samples, voxels, colours: BAKED_COLOURS, wordsBefore, words: wasm.vx_word_count() };
+  }
+
+  // Make the memory fit. Returns what was given up.
+  #fit(words) {
+    if (!Number.isInteger(words) || words < 1 || words > 2 ** 32 - 1) throw new VoxrtError(`budget must be a number of words, 1 or more, not ${words}`);
+    const wordsBefore = this.wasm.vx_word_count();
+    this.checked(this.wasm.vx_fit(words));
+    const [wordsShared, surface, changed, appeared, recoloured, colours] = this.view(Float64Array, this.wasm.vx_fit_figures(), 6);
+    return { words, wordsBefore, wordsShared, surface, changed, appeared, recoloured, colours };
   }
 
   #appearance({ name, factor = [1, 1, 1, 1], texture = null, cutoff = 0, mirror = false }, images) {

@@ -26,7 +26,7 @@ export function manifestOf({ name, file, words, depth, materials, grid, objects,
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings, seconds: { build: seconds ?? 0 },
     source: { file, settings: { fill: fill ?? null } }, view: null, lighting: baked ? FLAT : null, animation: null,
-    baked: baked ? { sun: baked.sun, sky: baked.sky, samples: baked.samples, voxels: baked.voxels, colours: 254, words_before: baked.wordsBefore, words: baked.words } : null,
+    baked: baked ? { sun: baked.sun, sky: baked.sky, samples: baked.samples, voxels: baked.voxels, colours: baked.colours, words_before: baked.wordsBefore, words: baked.words } : null,
   };
 }
 
@@ -36,11 +36,11 @@ const FLAT = { position: [0, 0, 0], ambient: 90, on: false, flat: true, bounces:
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 
 // The part of an address that carries a scene and its view, and back.
-export function linkOf({ example, depth, bake, view }) {
+export function linkOf({ example, depth, bake, words, view }) {
   const { eye, yaw, pitch, fov, distance } = view;
   const camera = [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
   const light = bake ? { bake: [...bake.sun, bake.sky[0], bake.samples].join(",") } : {};
-  return `#${new URLSearchParams({ ...(example ? { scene: example } : {}), depth, ...light, camera })}`;
+  return `#${new URLSearchParams({ ...(example ? { scene: example } : {}), depth, ...light, ...(words ? { words } : {}), camera })}`;
 }
 
 export function readLink(hash) {
@@ -50,6 +50,7 @@ export function readLink(hash) {
     return parts.length === count && parts.every((part) => NUMBERS.test(part)) ? parts.map(Number) : null;
   };
   const numbers = read("camera", 7);
+  const words = Number(given.get("words"));
   const light = read("bake", 5);
   const samples = light?.[4];
   const depth = Number(given.get("depth"));
@@ -57,6 +58,7 @@ export function readLink(hash) {
     example: given.get("scene"), depth: Number.isInteger(depth) && depth >= 1 && depth <= 12 ? depth : null,
     bake: light && light[3] >= 0 && light[3] <= 16 && Number.isInteger(samples) && samples >= 1 && samples <= 4096
       ? { sun: light.slice(0, 3), sky: [light[3], light[3], light[3]], samples } : null,
+    words: Number.isInteger(words) && words >= 1 && words < 2 ** 32 ? words : null,
     camera: numbers && { eye: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4], fov: numbers[5], distance: numbers[6] },
   };
 }

@@ -2,9 +2,10 @@
 
 import { sceneOf } from "./voxrt/scene.js";
 import { GltfLooks } from "./gltf_looks.js";
-import { objLooks } from "./obj_looks.js";
+import { code, objLooks } from "./obj_looks.js";
 import { plyLook, readsColours } from "./ply_look.js";
 import { readMem } from "./mem.js";
+import { withoutConcave } from "./polygons.js";
 
 export const FORMATS = ["glb", "gltf", "obj", "stl", "ply", "usdz", "usda", "usdc", "usd", "vox", "mem"];
 const ADDONS = "./three/addons/";
@@ -129,10 +130,14 @@ async function readGltf(main, folder, voxrt) {
   return scene;
 }
 
-// Text of UTF-8, or of UTF-16 where it begins with its mark.
+// Text of UTF-16 where it begins with its mark, else of UTF-8, else of Windows-1252, which old exporters wrote.
 function textOf(bytes) {
-  const mark = (bytes[0] << 8) | bytes[1];
-  return new TextDecoder({ 0xfeff: "utf-16be", 0xfffe: "utf-16le" }[mark] ?? "utf-8").decode(bytes);
+  const mark = { 0xfeff: "utf-16be", 0xfffe: "utf-16le" }[(bytes[0] << 8) | bytes[1]];
+  try {
+    return new TextDecoder(mark ?? "utf-8", { fatal: !mark }).decode(bytes);
+  } catch {
+    return new TextDecoder("windows-1252").decode(bytes);
+  }
 }
 
 async function readObj(main, folder, voxrt) {
@@ -145,14 +150,14 @@ async function readObj(main, folder, voxrt) {
     const { materialsInfo } = new MTLLoader().parse(textOf(file.bytes), "");
     for (const [key, info] of Object.entries(materialsInfo)) if (!library.has(key)) library.set(key, info);
   }
-  const root = new OBJLoader().parse(text);
+  const root = new OBJLoader().parse(withoutConcave(text));
   const looks = await objLooks(library, folder, voxrt);
   const scene = sceneOf(root, voxrt, {
     nameOf: (mesh) => mesh.name || stem(main.name),
     materialOf: ({ name }) => {
       const { kd } = library.get(name) ?? {};
       if (!name || (!kd && !text.includes("usemtl"))) return null;
-      return { key: name, name, colour: kd ? kd.map(encoded) : [200, 200, 200] };
+      return { key: name, name, colour: kd ? kd.map(code) : [200, 200, 200] };
     },
     ...(/^\s*vn\s/m.test(text) ? {} : { normalsOf: () => null }), // OBJLoader makes some of its own
     ...looks.rules,
@@ -161,7 +166,6 @@ async function readObj(main, folder, voxrt) {
   return scene;
 }
 
-const encoded = (part) => Math.floor(Math.min(1, Math.max(0, part)) * 255 + 0.5);
 
 async function bare(geometry, main, voxrt, rules = { appearanceOf: () => null }) {
   const { Mesh } = await import("./three/three.core.js");

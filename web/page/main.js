@@ -1,6 +1,7 @@
 // The static page: dropped files and examples become a memory in one worker, and pictures of it in several. The camera and
 // its controls are those of the server's page.
 
+import { Budget } from "./budget.js";
 import { Builder } from "./builder.js";
 import { FIELD_OF_VIEW, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
 import { DaylightControl } from "./daylight.js";
@@ -29,7 +30,7 @@ const canvas = $("picture");
 const picture = new Picture(canvas);
 const figures = new Figures($("figures"));
 const glide = new Glide();
-let painter, builder, frames, light, inspector, daylight;
+let painter, builder, frames, light, inspector, daylight, budget;
 let view = null; // the camera for people of camera.js
 let memory = null; // what worker.js built, with voxels and bounds
 let source = null; // {files, example}
@@ -86,7 +87,7 @@ async function build(first) {
   const timer = setTimeout(() => show("Building"), 250);
   let stage = "";
   try {
-    const built = await builder.build(source.files, { depth, fill: "auto", bake: daylight.options }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
+    const built = await builder.build(source.files, { depth, fill: "auto", bake: daylight.options, budget: budget.words }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
     if (source !== wanted) return;
     clearTimeout(timer);
     await showMemory(built, first);
@@ -151,10 +152,13 @@ function describe() {
   $("scene").textContent = name;
   $("details").textContent = `${(2 ** depth).toLocaleString("en")}³ voxels · ${words.length.toLocaleString("en")} words${seconds ? ` · ${seconds.toFixed(2)} s` : ""}`;
   document.title = `${name} · voxrt`;
-  for (const control of ["depth", "bake"]) $(control).disabled = Boolean(fixed);
+  for (const control of ["depth", "bake", "budget", "budget-words"]) $(control).disabled = Boolean(fixed);
   if (fixed) $("depth").value = depth;
   showDepth();
   const facts = { words: words.length.toLocaleString("en"), memory: kib(words.length), "solid voxels": short.format(solid) };
+  const { fitted } = memory;
+  if (fitted) Object.assign(facts, { "without budget": fitted.wordsShared.toLocaleString("en"), "surface changed": `${((100 * fitted.changed) / (fitted.surface || 1)).toFixed(1)} %` });
+  budget.fits(fitted?.wordsShared ?? words.length);
   $("facts").replaceChildren(...Object.entries(facts).map(([term, value]) => {
     const box = document.createElement("div");
     box.append(Object.assign(document.createElement("dt"), { textContent: term }), Object.assign(document.createElement("dd"), { textContent: value }));
@@ -167,10 +171,18 @@ function describe() {
     meter.setAttribute("aria-label", `Memory of ${board} in use`);
     const verdict = Object.assign(document.createElement("span"), { className: fits ? "fits" : "large", textContent: fits ? "fits" : `${(words.length / limit).toFixed(1)} × too large` });
     row.append(Object.assign(document.createElement("span"), { textContent: board }), meter, verdict);
+    if (!fits && !fixed) verdict.replaceWith(fitButton(board, limit, verdict.textContent));
     return row;
   }));
   $("warnings").replaceChildren(...warnings.map(({ message, count }) => Object.assign(document.createElement("li"), { textContent: count > 1 ? `${message} (${count})` : message })));
   for (const chip of $("examples").children) pressed(chip, chip.dataset.example === source?.example);
+}
+
+function fitButton(board, limit, why) {
+  const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Fit", title: `${why}: give up what is seen least` });
+  button.setAttribute("aria-label", `Fit to ${board}`);
+  button.onclick = () => budget.choose(limit);
+  return button;
 }
 
 const showDepth = () => { $("depth-value").textContent = `${(2 ** Number($("depth").value)).toLocaleString("en")}³`; };
@@ -295,7 +307,7 @@ function listen() {
   $("save").onclick = () => memory && picture.save(memory.name);
   $("copy").onclick = async () => {
     if (!memory) return;
-    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, view }));
+    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, words: budget.words, view }));
     const done = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
     $("copy").textContent = done ? "Copied" : "In the address bar";
     setTimeout(() => { $("copy").textContent = "Copy link"; }, 1500);
@@ -348,10 +360,12 @@ async function start() {
   });
   painter.addEventListener("trouble", ({ detail }) => notice("error", "There are no frames", detail));
   daylight = new DaylightControl(() => source && build(false));
+  budget = new Budget(() => source && build(false));
   const pilot = listen();
   const link = readLink(location.hash);
   if (link.depth) $("depth").value = link.depth;
   if (link.bake) daylight.set(link.bake);
+  budget.words = link.words;
   showDepth();
   await openExample(link.example in examples ? link.example : "courtyard");
   if (link.camera && memory) {

@@ -26,7 +26,7 @@ export async function objLooks(library, folder, voxrt) {
   }
   const coloured = (name) => {
     const key = `${name} coloured`;
-    const kd = library.get(name)?.kd?.map((part) => voxrt.linear(Math.round(255 * Math.min(1, Math.max(0, part)))));
+    const kd = library.get(name)?.kd?.map((part) => voxrt.linear(code(part)));
     if (!entries.has(key)) entries.set(key, { name: name || "vertex colours", factor: [...(kd ?? [1, 1, 1]), 1] });
     return entries.get(key);
   };
@@ -47,15 +47,21 @@ export async function objLooks(library, folder, voxrt) {
         }
         const colour = geometry.getAttribute("color");
         if (!colour) return null;
-        const code = (part) => voxrt.linear(voxrt.srgb(part));
+        const stored = (part) => voxrt.linear(voxrt.srgb(part));
         return {
           entry: coloured(name),
           covers: (vertex) => [colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].some((part) => part !== 1),
-          colourOf(vertex, out) { [out[0], out[1], out[2], out[3]] = [code(colour.getX(vertex)), code(colour.getY(vertex)), code(colour.getZ(vertex)), 1]; },
+          colourOf(vertex, out) { [out[0], out[1], out[2], out[3]] = [stored(colour.getX(vertex)), stored(colour.getY(vertex)), stored(colour.getZ(vertex)), 1]; },
         };
       },
     },
   };
+}
+
+// A part of a colour, 0 … 1, as 0 … 255; halves become even.
+export function code(part) {
+  const value = 255 * Math.min(1, Math.max(0, part));
+  return value % 1 === 0.5 ? 2 * Math.round(value / 2) : Math.round(value);
 }
 
 const isClear = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr)) < OPAQUE_FROM;

@@ -10,7 +10,7 @@ const calls = {
   async start({ module }) { voxrt = await Voxrt.load(module); },
 
   // `source` numbers the files: those that were read last are not read again.
-  async build({ files, source, depth, fill, bake }, say) {
+  async build({ files, source, depth, fill, bake, budget }, say) {
     if (parsed?.source !== source) {
       say("Reading");
       const { readFiles } = await import("./files.js");
@@ -21,7 +21,7 @@ const calls = {
     if (read.memory) return { ...read.memory, name: read.name, file: read.file, fixed: true };
     const start = performance.now();
     say(`Voxelizing ${(2 ** depth).toLocaleString("en")}³`);
-    const built = voxrt.voxelize(read.scene, { depth, fill, bake });
+    const built = voxrt.voxelize(read.scene, { depth, fill, bake, budget });
     return {
       ...built, name: read.name, file: read.file, fill, seconds: (performance.now() - start) / 1000,
       warnings: [...read.scene.warnings, ...built.warnings],

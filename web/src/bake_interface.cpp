@@ -26,7 +26,22 @@ sim::PlacedTriangles placed_triangles() {
     return sim::place_triangles(meshes, objects, result.grid.origin, result.grid.voxel_size);
 }
 
+// What was baked last: the memory before, and its light.
+struct {
+    unsigned depth;
+    std::vector<voxelize::TableMaterial> materials;
+    sim::ExposedBricks bricks;
+    sim::LitVoxels lit;
+} baked;
+
 } // namespace
+
+sim::BakedMemory voxrt::web::baked_memory(int colours) {
+    const sim::ExposedBricks& bricks = baked.bricks;
+    return sim::bake_memory({baked.depth, bricks.brick_codes, bricks.cells, bricks.octant_codes, bricks.octant_levels,
+                             bricks.octant_materials},
+                            baked.lit.rows, baked.lit.colours, baked.materials, colours, 1);
+}
 
 /// Bakes: the words and materials of the memory are then those with light. `sun`: towards it, scene frame; zeros for
 /// none. `sky`: linear red, green and blue. `samples`: 1 … 4096. Returns how many voxels were baked.
@@ -34,7 +49,7 @@ EXPORT(vx_bake) double vx_bake(const double* sun, const double* sky, int samples
     return guarded([&] {
         const sim::Daylight daylight{{sun[0], sun[1], sun[2]}, {sky[0], sky[1], sky[2]}, samples};
         const octree::VerifiedMemory memory({result.words.data(), result.words.size(), result.grid.depth});
-        const sim::ExposedBricks bricks = sim::exposed_bricks(memory, 1);
+        sim::ExposedBricks bricks = sim::exposed_bricks(memory, 1);
         const sim::SurfacePoints points = sim::surface_points(memory, bricks, placed_triangles().view(), 1);
         const size_t count = points.voxels.size();
         const sim::PointsView view{count, points.origins.data(), points.normals.data()};
@@ -44,13 +59,13 @@ EXPORT(vx_bake) double vx_bake(const double* sun, const double* sky, int samples
                            sim::Method::automatic, engine);
         sim::receive_light(memory, view, sim::sky_directions(samples).view(), from_sky.data(), open_sky.data(), 1,
                            sim::Method::automatic, engine);
-        const sim::LitVoxels lit =
+        sim::LitVoxels lit =
             sim::light_voxels(points.voxels, bricks.cells, {from_sun, from_sky, open_sky}, result.materials, daylight);
-        sim::BakedMemory made = sim::bake_memory({result.grid.depth, bricks.brick_codes, bricks.cells,
-                                                  bricks.octant_codes, bricks.octant_levels, bricks.octant_materials},
-                                                 lit.rows, lit.colours, result.materials, sim::kMostBakedColours, 1);
+        baked = {result.grid.depth, result.materials, std::move(bricks), std::move(lit)};
+        sim::BakedMemory made = baked_memory(sim::kMostBakedColours);
+        result.is_baked = true;
         result.words = std::move(made.words);
         result.materials = std::move(made.materials);
-        return static_cast<double>(lit.rows.size());
+        return static_cast<double>(baked.lit.rows.size());
     });
 }

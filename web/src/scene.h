@@ -1,6 +1,7 @@
 // The scene of the C interface, from which memories are built, and what was built last.
 #pragma once
 
+#include <voxrt/bake/baked_light.h>
 #include <voxrt/octree/words.h>
 #include <voxrt/voxelize/colour/assign_colours.h>
 #include <voxrt/voxelize/grid_fit.h>
@@ -68,9 +69,13 @@ struct Result {
     std::vector<int64_t> object_voxels;
     std::vector<uint8_t> object_modes;
     std::vector<voxelize::ObjectWarning> warnings;
+    bool is_baked = false;
 };
 
 extern Scene scene;
 extern Result result;
+
+/// The memory that was baked last, with at most so many colours.
+sim::BakedMemory baked_memory(int colours);
 
 } // namespace voxrt::web

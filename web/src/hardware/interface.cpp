@@ -77,7 +77,7 @@ EXPORT(vx_load) int vx_load(const uint32_t* words, size_t count) {
         if (count < 1 || count > vx_word_limit())
             throw std::invalid_argument("the hardware holds 1 … " + std::to_string(vx_word_limit()) + " words, not " +
                                         std::to_string(count));
-        design().load({words, count}, false);
+        design().load({words, count}, false, false);
         return 0;
     });
 }

@@ -1,0 +1,74 @@
+"""``voxrt render --cameras``: the pictures of each camera alone, also from a cluster."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+CAMERAS = [{"position": [20.5, 30, 60], "look": [0, -1, -3]}, {}, {"position": [-10, 30, 60]}]
+
+
+def cameras(folder, entries=None):
+    (folder / "path.json").write_text(json.dumps(CAMERAS if entries is None else entries))
+    return "path.json"
+
+
+def render(voxrt, *arguments):
+    return voxrt("render", "house.mem", "--engine", "model", "--size", "32x24", *arguments)
+
+
+@pytest.fixture
+def house(voxrt, folder):
+    assert voxrt("build", "house.obj", "--depth", 4).code == 0
+    return folder
+
+
+@pytest.mark.parametrize("detail", [[], ["--lod"]])
+def test_a_path_has_the_pictures_of_its_cameras(voxrt, house, detail):
+    finished = render(voxrt, "--cameras", cameras(house), "-o", "p.png", "--check", "--json", *detail)
+    assert finished.code == 0, finished.err
+    told = json.loads(finished.out)
+    assert [one["outputs"]["picture"] for one in told] == ["p-0000.png", "p-0001.png", "p-0002.png"]
+    assert [one["wrong_pixels"] for one in told] == [0, 0, 0]
+    alone = (["--position", "20.5,30,60", "--look", "0,-1,-3"], [], ["--position", "-10,30,60"])
+    for number, sight in enumerate(alone):
+        assert render(voxrt, *sight, *detail, "-o", "one.png").code == 0
+        assert (house / "one.png").read_bytes() == (house / f"p-{number:04d}.png").read_bytes()
+
+
+def test_a_cluster_gives_the_same_pictures(voxrt, house):
+    pytest.importorskip("distributed")
+    assert render(voxrt, "--cameras", cameras(house), "-o", "a.png").code == 0
+    finished = render(voxrt, "--cameras", cameras(house), "-o", "b.png", "--workers", 1, "--check")
+    assert finished.code == 0, finished.err
+    assert "0 pixels differ" in finished.out + finished.err
+    for number in range(3):
+        assert (house / f"a-{number:04d}.png").read_bytes() == (house / f"b-{number:04d}.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({}, "path.json: is not a list of cameras"),
+        ([], "path.json: is not a list of cameras"),
+        ([1], "path.json: camera 0: is not an object"),
+        ([{"where": [1, 2, 3]}], "path.json: camera 0: is not an object"),
+        ([{}, {"look": [1, 2]}], "path.json: camera 1: look must be three numbers"),
+        ([{"look": [0, 0, 1e30]}], "path.json: camera 0: "),
+    ],
+)
+def test_a_file_that_is_no_path_is_one_line(voxrt, house, entries, said):
+    finished = render(voxrt, "--cameras", cameras(house, entries), "-o", "p.png")
+    assert finished.code == 2
+    assert said in finished.error
+    assert not list(house.glob("*.png"))
+
+
+def test_what_does_not_go_together_is_refused(voxrt, house):
+    path = cameras(house)
+    assert "give --cameras" in render(voxrt, "--workers", 2).error
+    assert "leave --position" in render(voxrt, "--cameras", path, "--position", "1,2,3").error
+    assert "name a .png" in render(voxrt, "--cameras", path, "-o", "p.gif").error
+    assert "exclude each other" in render(voxrt, "--cameras", path, "--workers", 2, "--scheduler", "tcp://x:1").error
+    assert "cannot be read" in render(voxrt, "--cameras", "none.json").error

@@ -1,0 +1,191 @@
+"""Pictures of one memory from many cameras: one after another, or on a cluster."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from voxrt.pictures import render
+from voxrt.viewpoint import ViewpointError, aim_camera
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator, Sequence
+
+    from voxrt.build_options import Engine
+    from voxrt.octree import Rom
+    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim import Dram, Frame
+
+_MOST_CAMERAS = 1 << 20
+_KEYS = {"position", "look", "right", "up"}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PictureJob:
+    """What all pictures of a path have in common: the arguments of :func:`voxrt.render` but for the camera.
+
+    Attributes
+    ----------
+    rom, size, engine, config, lighting, samples, background, dram, root, lod
+        As :func:`voxrt.render` takes them.
+    check
+        Whether both engines render each picture.
+    """
+
+    rom: Rom
+    size: tuple[int, int]
+    engine: Engine
+    config: str
+    lighting: Lighting
+    samples: int
+    background: tuple[int, int, int] | Literal["transparent"] | None
+    dram: Dram | None
+    root: int
+    lod: bool
+    check: bool
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PathPicture:
+    """A picture of a path.
+
+    Attributes
+    ----------
+    number
+        That of its camera, counted from 0.
+    frame
+        The picture.
+    wrong_pixels
+        Pixels that differ between the engines; None if that was not asked for.
+    """
+
+    number: int
+    frame: Frame
+    wrong_pixels: int | None
+
+
+def read_cameras(path: str | os.PathLike[str], rom: Rom, size: tuple[int, int]) -> list[Camera]:
+    """Read a file of cameras: JSON, a list of objects with any of `position`, `look`, `right` and `up`.
+
+    They mean what the options of ``voxrt render`` of these names mean, three numbers each. What a camera does not say
+    is chosen to show the whole scene.
+
+    Parameters
+    ----------
+    path
+        The file.
+    rom, size
+        The memory, and columns and rows of the pictures.
+
+    Raises
+    ------
+    ViewpointError
+        The file cannot be read, or says something else.
+
+    Examples
+    --------
+    >>> import voxrt
+    >>> from pathlib import Path
+    >>> rom = voxrt.build("examples/house.obj", depth=4).rom
+    >>> _ = Path("path.json").write_text('[{"position": [8, 20, 60], "look": [0, -1, -3]}, {}]')
+    >>> len(read_cameras("path.json", rom, (640, 480)))
+    2
+    """
+    try:
+        entries = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ViewpointError(f"{path}: cannot be read: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        raise ViewpointError(f"{path}: is not JSON: {error}") from None
+    if not isinstance(entries, list) or not 1 <= len(entries) <= _MOST_CAMERAS:
+        raise ViewpointError(f'{path}: is not a list of cameras; write [{{"position": [x, y, z], ...}}, ...]')
+    return [_camera(f"{path}: camera {number}", one, rom, size) for number, one in enumerate(entries)]
+
+
+def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture | str:
+    """Render a picture, here or on a worker; returns it, or what is wrong."""
+    from voxrt.sim import check  # noqa: PLC0415 - most paths do without
+
+    try:
+        if job.check:
+            checked = check(
+                job.rom,
+                camera,
+                job.size,
+                lighting=job.lighting,
+                samples=job.samples,
+                background=job.background,
+                config=job.config,
+                dram=job.dram,
+                root=job.root,
+                lod=job.lod,
+            )
+            frame: Frame = getattr(checked, job.engine)
+            return PathPicture(number, frame, checked.wrong_pixels)
+        frame = render(
+            job.rom,
+            camera,
+            size=job.size,
+            engine=job.engine,
+            config=job.config,
+            lighting=job.lighting,
+            samples=job.samples,
+            background=job.background,
+            dram=job.dram,
+            root=job.root,
+            lod=job.lod,
+        )
+    except Exception as error:  # noqa: BLE001 - not every exception can travel
+        return f"camera {number}: {error}"
+    return PathPicture(number, frame, None)
+
+
+def take_pictures(
+    job: PictureJob, cameras: Sequence[Camera], scheduler: str | None = None, workers: int | None = None
+) -> Iterator[PathPicture]:
+    """Render the pictures of a path, in its order; on a cluster if one is named, each by one task.
+
+    Raises
+    ------
+    ToolError
+        A picture cannot be rendered, or the cluster is not there or lost.
+    """
+    from voxrt.errors import ToolError  # noqa: PLC0415 - few paths need it
+
+    made: Iterator[Any]
+    if scheduler is None and workers is None:
+        made = (take_picture(job, number, camera) for number, camera in enumerate(cameras))
+    else:
+        from voxrt.cluster import in_order  # noqa: PLC0415 - few paths do this
+
+        made = in_order(take_picture, job, cameras, scheduler=scheduler, workers=workers)
+    for one in made:
+        if isinstance(one, str):
+            raise ToolError(one)
+        yield one
+
+
+def _camera(where: str, said: object, rom: Rom, size: tuple[int, int]) -> Camera:
+    if not isinstance(said, dict) or not said.keys() <= _KEYS:
+        raise ViewpointError(f"{where}: is not an object with position, look, right and up alone")
+    for name, value in said.items():
+        if not (isinstance(value, list) and len(value) == 3) or not all(
+            isinstance(one, int | float) and not isinstance(one, bool) for one in value
+        ):
+            raise ViewpointError(f"{where}: {name} must be three numbers")
+    try:
+        position = said.get("position")
+        if position is not None:
+            position = tuple(round(16 * one) for one in position)
+        look, right, up = (None if name not in said else _register(said[name]) for name in ("look", "right", "up"))
+        return aim_camera(rom, size, position=position, look=look, right=right, up=up)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise ViewpointError(f"{where}: {error}") from None
+
+
+def _register(said: list[float]) -> tuple[int, int, int]:
+    x, y, z = said
+    return int(x), int(y), int(z)

@@ -1,0 +1,268 @@
+"""The finished tiles of a build, in a folder beside its output, so that a build that was killed goes on from them.
+
+A tile is the octree of a square of columns, as words of the whole world, and what the square has of each object. Its
+file ends with a digest. The folder has the key of the build: of what decides the voxels, and of the program. Tiles of
+another key are removed.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from contextlib import suppress
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from voxrt.export.atomic import write_atomically
+from voxrt.octree import Octree
+from voxrt.outputs import OutputError
+from voxrt.voxelize import AssetError, DoesNotFitError
+
+try:
+    import fcntl
+except ImportError:  # no POSIX system: nobody tells whether another build uses the folder
+    fcntl = None  # type: ignore[assignment]
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+    from numpy.typing import NDArray
+
+    from voxrt.voxelize import ColumnBlock
+
+_HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of tallies
+_MAGIC = b"voxrtil1"
+_DIGEST = 16
+_TALLIES = 5  # numbers per row: the object, and its tally
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Tile:
+    """A finished tile, or several that were joined.
+
+    Attributes
+    ----------
+    octree
+        The octree of the whole world, empty outside of the tile.
+    tallies
+        What the tile has of the objects that it reaches: int64, shape (N, 5), the number of an object and its row of
+        :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
+    """
+
+    octree: Octree
+    tallies: NDArray[np.int64]
+
+
+def sparse_tallies(tallies: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the rows of objects with a tally: from shape (O, 4) to (N, 5).
+
+    Examples
+    --------
+    >>> sparse_tallies(np.array([[0, 0, 0, 0], [7, 0, 0, 1]])).tolist()
+    [[1, 7, 0, 0, 1]]
+    """
+    rows = np.flatnonzero(tallies.any(axis=1))
+    return np.column_stack([rows, tallies[rows]]).astype(np.int64)
+
+
+def sum_tallies(tallies: NDArray[np.int64], objects: int) -> NDArray[np.int64]:
+    """Return the sum of rows of tallies by object: from shape (N, 5) to (O, 4).
+
+    Examples
+    --------
+    >>> sum_tallies(np.array([[1, 7, 0, 0, 1], [1, 2, 0, 0, 1]]), 2).tolist()
+    [[0, 0, 0, 0], [9, 0, 0, 2]]
+    """
+    total = np.zeros((objects, 4), np.int64)
+    np.add.at(total, tallies[:, 0], tallies[:, 1:])
+    return total
+
+
+def write_tile(path: Path, key: str, tile: Tile) -> int:
+    """Write a tile, whole or not at all; returns its bytes.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    tallies = np.ascontiguousarray(tile.tallies, "<i8")
+    words = np.ascontiguousarray(tile.octree.words, "<u4")
+    header = _HEADER.pack(_MAGIC, bytes.fromhex(key), tile.octree.depth, 0, len(words), len(tallies))
+    parts = [header, tallies.tobytes(), words.tobytes()]
+    digest = blake2b(digest_size=_DIGEST)
+    for part in parts:
+        digest.update(part)
+    write_atomically(path, [*parts, digest.digest()])
+    return sum(map(len, parts)) + _DIGEST
+
+
+def read_tile(path: Path, key: str) -> Tile | None:
+    """Read a tile; None where there is none, or it is damaged or of another build."""
+    try:
+        data = np.fromfile(path, np.uint8)
+    except OSError:
+        return None
+    if len(data) < _HEADER.size + _DIGEST:
+        return None
+    body = data[:-_DIGEST]
+    magic, own, depth, _, words, rows = _HEADER.unpack(body[: _HEADER.size].tobytes())
+    if (magic, own.hex()) != (_MAGIC, key) or blake2b(body.data, digest_size=_DIGEST).digest() != bytes(
+        data[-_DIGEST:]
+    ):
+        return None
+    split = _HEADER.size + 8 * _TALLIES * rows
+    if len(body) != split + 4 * words:
+        return None
+    tallies = body[_HEADER.size : split].view("<i8").astype(np.int64).reshape(-1, _TALLIES)
+    return Tile(Octree(depth, body[split:].view("<u4").astype(np.uint32, copy=False)), tallies)
+
+
+def tile_name(block: ColumnBlock) -> str:
+    """Return the name of a tile.
+
+    Examples
+    --------
+    >>> from voxrt.voxelize import ColumnBlock
+    >>> tile_name(ColumnBlock(0, 4096, 4096))
+    '0-4096'
+    """
+    return f"{block.x}-{block.y}"
+
+
+class TileStore:
+    """The folder of the tiles of one build, locked from :meth:`claim` to the end of the ``with`` block.
+
+    The folder goes when the block ends, or fails because the asset is unsound. It stays if the block is interrupted or
+    fails otherwise.
+
+    Parameters
+    ----------
+    folder
+        ``NAME.tiles`` beside the output.
+    key
+        What tells builds apart, for whoever reads and writes tiles while another process has the folder locked.
+    """
+
+    def __init__(self, folder: Path, key: str = "") -> None:
+        self.folder, self.key = folder, key
+        self._lock: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._lock is None:
+            return
+        self.words.unlink(missing_ok=True)
+        if kind is None or issubclass(kind, AssetError | DoesNotFitError):
+            self._remove()
+        else:
+            for path in self.folder.glob(".*.tmp"):
+                path.unlink(missing_ok=True)
+        os.close(self._lock)
+        self._lock = None
+
+    def claim(self, key: str, side: int) -> int:
+        """Make the folder, lock it, and remove the tiles of another key.
+
+        Parameters
+        ----------
+        key
+            What tells builds apart: 32 hexadecimal digits.
+        side
+            Columns per side of a tile, for new tiles.
+
+        Returns
+        -------
+        int
+            Columns per side of the tiles that are there, if these take at most four times the memory; else `side`.
+
+        Raises
+        ------
+        OutputError
+            The folder cannot be made, is somebody else's, or another build uses it.
+        """
+        self.key = key
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            lock = os.open(self.folder, os.O_RDONLY)
+        except OSError as error:
+            raise self._refused(f"cannot be used: {error.strerror or error}") from error
+        try:
+            side = self._take(lock, side)
+        except BaseException:
+            os.close(lock)
+            raise
+        self._lock = lock
+        return side
+
+    @property
+    def words(self) -> Path:
+        """Where the words of the whole octree go."""
+        return self.folder / "words"
+
+    def path(self, name: str) -> Path:
+        """Return the file of a tile."""
+        return self.folder / f"{name}.tile"
+
+    def read(self, name: str) -> Tile | None:
+        """Return a finished tile, or None."""
+        return read_tile(self.path(name), self.key)
+
+    def write(self, name: str, tile: Tile) -> int:
+        """Keep a finished tile; returns its bytes.
+
+        Raises
+        ------
+        OutputError
+            The disk is full, most often.
+        """
+        try:
+            return write_tile(self.path(name), self.key, tile)
+        except OSError as error:
+            raise OutputError(
+                f"{self.path(name)}: cannot be written: {error.strerror or error}; finished tiles stay, and the same "
+                "build goes on from them"
+            ) from error
+
+    def _take(self, lock: int, side: int) -> int:
+        if fcntl is not None:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise self._refused("another build uses it") from None
+        try:
+            there = self._key_file.read_text("ascii", "replace").split() if self._key_file.is_file() else []
+            if len(there) == 2 and there[0] == self.key and there[1].isdecimal() and int(there[1]) <= 2 * side:
+                return int(there[1])
+            if not self._key_file.is_file() and any(self.folder.iterdir()):
+                raise self._refused("has files that no build put there")
+            for path in self._own_files():
+                path.unlink(missing_ok=True)
+            write_atomically(self._key_file, f"{self.key} {side}\n".encode())
+        except OSError as error:
+            raise self._refused(f"cannot be written: {error.strerror or error}") from error
+        return side
+
+    def _refused(self, why: str) -> OutputError:
+        return OutputError(f"{self.folder}: {why}; name another output")
+
+    def _remove(self) -> None:
+        for path in self._own_files():
+            path.unlink(missing_ok=True)
+        with suppress(OSError):  # somebody else put a file there
+            self.folder.rmdir()
+
+    def _own_files(self) -> list[Path]:
+        return [*self.folder.glob("*.tile"), *self.folder.glob(".*.tmp"), self.words, self._key_file]
+
+    @property
+    def _key_file(self) -> Path:
+        return self.folder / "key"

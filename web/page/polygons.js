@@ -1,0 +1,72 @@
+// Concave polygons of OBJ files as triangles: OBJLoader cuts every polygon into a fan from its first corner, which is right
+// for convex ones. A concave quadrilateral becomes a fan from its reflex corner, or from the one opposite to it; a concave
+// polygon of more corners is cut by its ears, in its plane.
+
+import { dot, subtract } from "./vectors.js";
+
+const cross = ([ax, ay, az], [bx, by, bz]) => [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
+const STRAIGHT = 1e-9; // a corner that turns back by less, of the square of the polygon's area, is straight
+
+// The text with these polygons replaced; all other lines stay.
+export function withoutConcave(text) {
+  const lines = text.replace(/\\\r?\n/g, " ").split("\n");
+  if (!lines.some((line) => /^\s*f\s/.test(line) && line.trim().split(/\s+/).length > 4)) return text;
+  const places = [];
+  return lines.map((line) => {
+    const words = line.split("#")[0].trim().split(/\s+/);
+    if (words[0] === "v") places.push(words.slice(1, 4).map(Number));
+    if (words[0] !== "f" || words.length < 5) return line;
+    const corners = words.slice(1);
+    const points = corners.map((corner) => places.at(Number.parseInt(corner, 10) - (corner.startsWith("-") ? 0 : 1)));
+    if (points.some((point) => !point?.every(Number.isFinite))) return line;
+    const triangles = cutConcave(points);
+    return triangles ? triangles.map((triangle) => `f ${triangle.map((at) => corners[at]).join(" ")}`).join("\n") : line;
+  }).join("\n");
+}
+
+// Triangles of a concave polygon, as indices; null for a convex one, or one without area.
+export function cutConcave(corners) {
+  const count = corners.length;
+  const points = corners.map((corner) => subtract(corner, corners[0])); // near the origin, products keep their digits
+  const next = (i) => points[(i + 1) % count];
+  const normal = points.reduce((sum, point, i) => cross(point, next(i)).map((part, axis) => part + sum[axis]), [0, 0, 0]);
+  const least = -STRAIGHT * dot(normal, normal);
+  const back = points.map((point, i) => dot(cross(subtract(point, points[(i + count - 1) % count]), subtract(next(i), point)), normal) < least);
+  if (!back.some(Boolean)) return null;
+  if (count === 4) return back[1] || back[3] ? [[1, 2, 3], [1, 3, 0]] : null;
+  return ears(flat(points, normal));
+}
+
+// Without the axis along which the normal is longest, counter-clockwise.
+function flat(points, normal) {
+  const sizes = normal.map(Math.abs);
+  const axis = sizes.indexOf(Math.max(...sizes));
+  const [a, b] = normal[axis] < 0 ? [(axis + 2) % 3, (axis + 1) % 3] : [(axis + 1) % 3, (axis + 2) % 3];
+  return points.map((point) => [point[a], point[b]]);
+}
+
+const side = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+
+// Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves.
+function ears(points) {
+  const left = points.map((_, i) => i);
+  const triangles = [];
+  while (left.length > 3) {
+    const at = left.findIndex((_, i) => isEar(points, left, i));
+    if (at < 0) return null;
+    triangles.push([left.at(at - 1), left[at], left[(at + 1) % left.length]]);
+    left.splice(at, 1);
+  }
+  return [...triangles, left];
+}
+
+function isEar(points, left, i) {
+  const [a, b, c] = [left.at(i - 1), left[i], left[(i + 1) % left.length]].map((at) => points[at]);
+  if (side(a, b, c) <= 0) return false;
+  return left.every((at) => {
+    const point = points[at];
+    if (point === a || point === b || point === c) return true;
+    if ([a, b, c].some(([x, y]) => x === point[0] && y === point[1])) return true;
+    return side(a, b, point) < 0 || side(b, c, point) < 0 || side(c, a, point) < 0;
+  });
+}
