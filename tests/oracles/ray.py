@@ -1,4 +1,4 @@
-"""The pixel as the contract states it, in rational arithmetic, walking unit voxels one at a time.
+"""The pixel as the contract states it, in rational arithmetic, walking unit voxels of the world one at a time.
 
 Slow on purpose: no octree, no mirroring, no weights, no integers scaled to avoid a division. A ray is o + t d with t a
 Fraction; the planes it crosses are sorted by (t, axis).
@@ -7,7 +7,7 @@ Fraction; the planes it crosses are sorted by (t, axis).
 from __future__ import annotations
 
 from fractions import Fraction
-from math import floor
+from math import ceil, floor
 
 import numpy as np
 
@@ -43,6 +43,7 @@ def cells(side, position, direction):
     cell = [first_cell(o, d) for o, d in zip(origin, direction, strict=True)]
     face, t = FACE_NONE, None
     while True:
+        cell = before_entry(side, origin, direction, cell)
         if all(0 <= c < side for c in cell):
             yield tuple(cell), face, t
         crossings = []
@@ -58,6 +59,28 @@ def cells(side, position, direction):
             return
         t, face = min(crossings)
         cell[face] += 1 if direction[face] > 0 else -1
+
+
+def before_entry(side, origin, direction, cell):
+    """Give the cell from which a ray crosses the last plane before the world; `cell` where it has crossed all of them.
+
+    Of planes crossed at the same time, those of a lower axis are crossed first.
+    """
+    planes = [side if c >= side else 0 for c in cell]
+    waits = [
+        axis for axis in range(3) if (cell[axis] >= side and direction[axis] < 0) or (cell[axis] < 0 < direction[axis])
+    ]
+    if not waits:
+        return cell
+    t, last = max(((planes[axis] - origin[axis]) / direction[axis], axis) for axis in waits)
+    found = list(cell)
+    for axis, d in enumerate(direction):
+        at = origin[axis] + d * t  # planes up to here are crossed; the one here only if its axis is lower
+        if d > 0:
+            found[axis] = max(cell[axis], floor(at) if axis < last else ceil(at) - 1)
+        elif d < 0:
+            found[axis] = min(cell[axis], ceil(at) - 1 if axis < last else floor(at))
+    return found
 
 
 def trace(voxels, position, direction):
