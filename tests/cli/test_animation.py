@@ -15,7 +15,7 @@ from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View
 from voxrt.board_scenes import board_scene
-from voxrt.cli.app import run
+from voxrt.cli.run import run
 from voxrt.export import blob_bytes
 from voxrt.serve.blob import read_blob as read_on_board
 from voxrt.serve.mem_files import read_mem_files

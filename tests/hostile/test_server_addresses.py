@@ -13,7 +13,7 @@ from fakes.serving import run, serving
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from voxrt.cli.app import run as voxrt
+from voxrt.cli.run import run as voxrt
 from voxrt.serve.frame_client import open_client
 
 _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))

@@ -13,7 +13,7 @@ from fakes.blob import blob_of
 from fakes.device import scene
 from websockets.asyncio.server import serve
 
-from voxrt.cli.app import run as voxrt
+from voxrt.cli.run import run as voxrt
 from voxrt.serve import frame_client
 from voxrt.serve.packets import unpack_frame
 

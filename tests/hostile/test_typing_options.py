@@ -14,7 +14,7 @@ from PIL import Image
 
 from voxrt import BuildOptions, build, export
 from voxrt.cli import progress
-from voxrt.cli.app import run
+from voxrt.cli.run import run
 from voxrt.estimate import BuildEstimate, estimate_build
 from voxrt.fitting import fit_budget
 

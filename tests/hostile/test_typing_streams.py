@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from voxrt.cli.app import run
+from voxrt.cli.run import run
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 ODD = b"h\xff\xfeuse"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from voxrt.cli.app import run
+from voxrt.cli.run import run
 from voxrt.rtl.configurations import RTL, list_sources, read_configurations
 
 HOUSE = Path(__file__).resolve().parents[2] / "examples" / "house.obj"
