@@ -35,6 +35,11 @@ class ColumnBlock(NamedTuple):
         Its lowest column, in voxels along the grid's axes.
     side
         Columns per side.
+
+    Examples
+    --------
+    >>> ColumnBlock(x=0, y=512, side=256).side
+    256
     """
 
     x: int

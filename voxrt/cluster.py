@@ -272,6 +272,7 @@ def _local_cluster(cluster: Any, workers: int) -> Iterator[Any]:  # noqa: ANN401
                 dashboard_address="127.0.0.1:0",
                 memory_limit=0,
                 local_directory=scratch,
+                env={"TMPDIR": scratch},  # what a killed worker leaves goes with it
                 silence_logs=logging.CRITICAL,
             )
             stack.enter_context(started)

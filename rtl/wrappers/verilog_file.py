@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import os
 
-_READ_CLOCKS = {0: 2, 1: 5}  # by MemoryForm, from an address of the memory port to its word
+_READ_CLOCKS = {0: 3, 1: 6}  # by MemoryForm, from an address of the memory port to its word
 
 
 class VerilogFileError(ValueError):

@@ -56,7 +56,7 @@ def test_every_page_is_in_the_manual(pages):
 
 
 def test_constants_have_their_text_and_value(pages):
-    assert "Value: ``('report', 'seed-rtl', 'msb')``" in pages["voxrt.octree"]
+    assert "Value: ``('report', 'seed-rtl', 'msb', 'lod')``" in pages["voxrt.octree"]
 
 
 def test_writing_removes_pages_of_packages_that_are_gone(tmp_path):

@@ -137,7 +137,7 @@ def _read_scene(path: Path) -> None:
 def _read_rom(path: Path) -> None:
     """Read as told nothing, and as told a depth and a dialect."""
     refusals = []
-    for said in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}):
+    for said in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}, {"depth": 3, "dialect": "lod"}):
         try:
             blob, _ = export.read_any(path, **said)
         except REFUSALS as error:
@@ -145,7 +145,7 @@ def _read_rom(path: Path) -> None:
             continue
         octree.census(blob.rom.octree)
         assert len(blob.rom.materials) <= 256
-    if len(refusals) == 3:
+    if len(refusals) == 4:
         raise refusals[0]
 
 

@@ -50,7 +50,7 @@ def test_the_package_says_the_same(name):
     except PackageNotFoundError:
         pytest.skip(f"{name} is not installed")
     classifiers = [line for line in told.get_all("Classifier") or [] if line.startswith("License")]
-    said = " ".join([told["License-Expression"] or "", told["License"] or "", *classifiers])
+    said = " ".join([told.get("License-Expression") or "", told.get("License") or "", *classifiers])
     licence = listed()[name][0]
     (key,) = (key for key in SAID if re.match(rf"{re.escape(key)}(?![\w-])", licence))
     assert any(word in said for word in SAID[key]), said

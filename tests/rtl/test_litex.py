@@ -27,7 +27,7 @@ module bench;
   wire [23:0] pixel_rgb;
   wire [31:0] dat_r;
   reg [63:0] writes [0:COUNT-1];
-  integer n, pixels = 0, clocks = 0;
+  integer n, pixels = 0, reads = 0, clocks = 0;
   top dut (.clk(clk), .rst(rst), .host_adr(adr), .host_dat_w(dat_w), .host_sel(4'hF), .host_cyc(cyc), .host_stb(cyc),
     .host_we(we), .host_dat_r(dat_r), .host_cti(3'b0), .host_bte(2'b0), .host_ack(ack),
     .pixel_valid(pixel_valid), .pixel_rgb(pixel_rgb));
@@ -38,8 +38,8 @@ module bench;
     if (pixel_valid === 1'b1) begin
       $display("%h", pixel_rgb);
       pixels = pixels + 1;
-      if (pixels == PIXELS) $finish;
     end
+    if (pixels == PIXELS && reads == 3) $finish;
   end
   initial begin
     $readmemh("boot.hex", writes);
@@ -63,6 +63,7 @@ module bench;
       @(posedge clk);
       while (!ack) @(posedge clk);
       $display("%h", dat_r);
+      reads = reads + 1;
       @(negedge clk);
       cyc = 0;
       @(negedge clk);

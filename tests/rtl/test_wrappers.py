@@ -24,7 +24,7 @@ pytestmark = [
 def test_the_file_says_what_it_is(verilog, tmp_path):
     parameters = read_parameters(verilog)
     assert (parameters["Lanes"], parameters["MaxDepth"], parameters["BlockBits"]) == (1, 16, 12)
-    assert (read_clocks(parameters), memory_bytes(parameters)) == (2, 1 << 18)
+    assert (read_clocks(parameters), memory_bytes(parameters)) == (3, 1 << 18)
     other = tmp_path / "other.v"
     other.write_text("module other; endmodule\n")
     with pytest.raises(VerilogFileError, match=r"other\.v: is no core; write one: voxrt core --config tiny --verilog"):

@@ -43,7 +43,8 @@ def start(arguments: Sequence[str]) -> NoReturn:
         code = _INTERRUPTED
     if _signal.getsignal(_signal.SIGINT) is not _signal.SIG_IGN:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
-    gc.freeze()  # the process ends: a last search for garbage would take as long as a small build
+    if gc.get_threshold()[0] != USUAL_GARBAGE:
+        gc.freeze()  # the process ends: a last search for garbage would take as long as a small build
     sys.exit(code)
 
 
