@@ -75,7 +75,7 @@ std::vector<uint8_t> picture(const Words& words, const std::vector<voxelize::Tab
     static constexpr uint8_t kNoMirrors[256] = {};
     const std::array<uint8_t, 768> palette = palette_of(materials);
     std::vector<uint8_t> colour(3 * kWidth * kHeight), material(kWidth * kHeight), face(kWidth * kHeight);
-    sim::render(verified(words), {palette.data(), kNoMirrors, 0, true, {}, {}}, camera,
+    sim::render(verified(words), {palette.data(), kNoMirrors, 0, true, {}, {}}, sim::Lod{}, camera,
                 {kWidth, kHeight, colour.data(), material.data(), face.data()}, 1, sim::tile_engines()[0].render_tile);
     return colour;
 }
