@@ -282,7 +282,7 @@ def test_a_budget_gives_up_what_voxrt_build_gives_up(browser: Browser, tmp_path:
 def test_a_scene_is_fitted_to_a_board_by_a_click(browser: Browser) -> None:
     opened(browser, "#scene=planet&depth=9")
     assert browser.until(shown("planet", 9))
-    browser.run("document.querySelector('#boards button').click()")
+    browser.run("document.querySelector('[aria-label=\"Fit to pynq-z1\"]').click()")
     assert browser.until(f"document.querySelector('#boards .fits') && {RESTS}", 60), notice(browser)
     assert browser.run("return Number(document.querySelector('#budget-words').value)") == voxrt.octree.BOARDS["pynq-z1"]
     browser.run("document.querySelector('#copy').click()")
