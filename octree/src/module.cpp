@@ -3,6 +3,7 @@
 #include "breadth_first.h"
 #include "build.h"
 #include "coarsen.h"
+#include "dag_counts.h"
 #include "dense.h"
 #include "diff.h"
 #include "disk_assembly.h"
@@ -12,6 +13,7 @@
 #include "leaves.h"
 #include "means.h"
 #include "mem_text.h"
+#include "occupancy_dag.h"
 #include "query.h"
 #include "regions.h"
 #include "sight_costs.h"
@@ -225,6 +227,35 @@ nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned leve
     }));
 }
 
+nb::object bind_occupancy_dag(const Vector<Word>& words, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    return words_to_numpy(run([&] { return occupancy_dag(memory); }));
+}
+
+nb::object bind_occupied_octree(const Vector<Word>& words, unsigned depth) {
+    return words_to_numpy(run([&] {
+        BlockPool pool;
+        const Node root = occupied_octree(words.data(), words.shape(0), depth, pool);
+        return breadth_first_words(pool, root);
+    }));
+}
+
+// A row per level; the columns are the fields of DagLevel.
+nb::object bind_dag_levels(const Vector<Word>& words, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    std::vector<std::uint64_t> rows;
+    for (const DagLevel& level : run([&] { return dag_levels(memory); }))
+        rows.insert(rows.end(), {level.tree_nodes, level.tree_words, level.nodes, level.words, level.mirrored_nodes,
+                                 level.mirrored_words});
+    const std::size_t count = rows.size() / 6;
+    return to_numpy(std::move(rows), {count, 6});
+}
+
+std::size_t bind_mirrored_blocks(const Vector<Word>& words, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    return run([&] { return mirrored_blocks(memory); });
+}
+
 nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,
                                const nb::ndarray<const std::uint8_t, nb::shape<-1, 3>, nb::c_contig>& colours) {
     const Memory memory = memory_of(words, depth);
@@ -380,6 +411,10 @@ NB_MODULE(_native, m) {
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
+    m.def("occupancy_dag", &bind_occupancy_dag, "words"_a.noconvert(), "depth"_a);
+    m.def("occupied_octree", &bind_occupied_octree, "words"_a.noconvert(), "depth"_a);
+    m.def("dag_levels", &bind_dag_levels, "words"_a.noconvert(), "depth"_a);
+    m.def("mirrored_blocks", &bind_mirrored_blocks, "words"_a.noconvert(), "depth"_a);
     m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
     m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
     m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);

@@ -18,7 +18,7 @@ from voxrt.cli.messages import name_file, summarize
 from voxrt.cli.results import print_json, warning_entries
 from voxrt.cli.source import read_source
 from voxrt.outputs import check_folder, writing
-from voxrt.writers import PANE_WRITERS
+from voxrt.writers import WORD_WRITERS
 
 if TYPE_CHECKING:
     from voxrt.cli.source import Source
@@ -43,11 +43,13 @@ def convert(
     Parameters
     ----------
     source
-        A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .vox (MagicaVoxel), or .txt
-        (a node listing of the original's authoring script). Or an asset, which is built first.
+        A memory: .mem, .coe, .mif or .bin (with or without a manifest beside it), .blob, .svdag (a sparse voxel
+        DAG), .vox (MagicaVoxel), or .txt (a node listing of the original's authoring script). Or an asset, which is
+        built first.
     target
         The file to write. Whole memories: .mem, .coe, .mif or .bin, each with a manifest beside it, or .blob. For
-        other programs: .vox (MagicaVoxel), .npz (NumPy), .ply, .glb (glTF), .vtu (ParaView, PyVista) or .html.
+        other programs: .svdag (which voxels are solid, as a sparse voxel DAG), .vox (MagicaVoxel), .npz (NumPy), .ply,
+        .glb (glTF), .vtu (ParaView, PyVista) or .html.
     depth
         Levels of the octree, for an asset or if FROM does not state them.
     from_dialect
@@ -79,7 +81,7 @@ def convert(
         if target.suffix.lower() not in voxrt.WRITABLE_SUFFIXES:
             raise UsageError(f"{target}: is not a format to write; name one of {', '.join(voxrt.WRITABLE_SUFFIXES)}")
         check_folder(target.parent)
-        whole = target.suffix.lower() not in PANE_WRITERS
+        whole = target.suffix.lower() in WORD_WRITERS
         read = read_source(source, depth, from_dialect, _colours(material), frames=whole)
         files = voxrt.convert(read.blob, target, dialect=dialect)
     if reporting.json:
