@@ -3,8 +3,8 @@
 Surfaces of meshes, counted as papers on sparse voxel DAGs count: geometry alone, child masks with pointers of 32 bits,
 cubes of 4 voxels per side as 64 bits. So materials are left out, and nodes are shared again. Beside the graph: the
 memory as the hardware reads it; a plain octree in the same form and as ooc_svo_builder stores it (24 bytes per node,
-down to single voxels); and what would remain if nodes that are equal up to mirroring were stored once (SSVDAG), which is
-an analysis: neither files nor hardware have mirrors. One mesh is made here; meshes that are not there are left out.
+down to single voxels); and what would remain if nodes that are equal up to mirroring were stored once (SSVDAG), an
+analysis: neither files nor hardware have mirrors. One mesh is made here; meshes that are not there are left out.
 """
 
 from __future__ import annotations
@@ -125,12 +125,12 @@ Surfaces (`--fill surface`), by `bench/dag.py`; {machine}, Python {python}; seco
 counting. *memory*: words of 32 bits as the hardware reads them, with materials; *mirrored*: if blocks that are equal up
 to mirroring along axes were stored once. *graph*: geometry alone, as the papers count: materials are left out and nodes
 shared again; a node is a word with the child mask and a pointer of 32 bits per child, a cube of 4 voxels per side 64
-bits. *mirrored nodes*: those that symmetry would leave, an analysis; their words are of the same form, with the mirror in
+bits. *mirrored nodes*: those that symmetry would leave, an analysis; their words have the same form, with the mirror in
 three bits of a pointer. *plain octree*: the form of the graph without sharing. *ooc_svo*: 24 bytes per node down to
 single voxels. MB are 10⁶ bytes.
 
 For comparison, of other scenes: Kämpe, Sintorn, Assarsson (2013), EpicCitadel, 131,072 per side, 19 billion voxels:
-945 MB, 0.4 bits per voxel. Jaspe-Villanueva, Marton, Gobbetti (2016), PowerPlant, 65,536 per side: 167 MB as a graph and
+945 MB, 0.4 bits per voxel. Jaspe-Villanueva, Marton, Gobbetti (2016), PowerPlant, 65,536 per side: 167 MB as a graph,
 86 MB with symmetry, of which a part is shorter pointers: their nodes have pointers of 16 or 32 bits, ours 32.
 
 """

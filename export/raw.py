@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import mmap
+import os
+from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +22,9 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 """Words that are converted at a time."""
+
+_MAPPED = 1 << 24
+"""Bytes from which a file is mapped: copies of smaller ones cost nothing, and cannot change."""
 
 
 def raw_bytes(words: NDArray[np.uint32]) -> Iterator[bytes]:
@@ -52,7 +58,9 @@ def write_raw(path: Path, words: NDArray[np.uint32]) -> None:
 
 
 def read_raw(path: Path) -> WordFile:
-    """Read a ``.bin`` file.
+    """Read a ``.bin`` file. A large one is mapped: its words take memory as they are read, and can be let go again.
+
+    A mapped file may be replaced, as voxrt replaces files, but nobody may write into it or cut it while it is in use.
 
     Raises
     ------
@@ -67,7 +75,20 @@ def read_raw(path: Path) -> WordFile:
     >>> len(read_raw(Path("dot.bin")).words)
     17
     """
-    data = read_bytes(path)
+    data = _mapped(path)
+    if data is None:
+        data = read_bytes(path)
     if len(data) % 4:
         raise RomError(f"{path}: {len(data)} bytes are not words of 4; the file is cut short, or no octree memory")
-    return word_file(np.frombuffer(data, dtype="<u4").astype(np.uint32), None)
+    return word_file(np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False), None)
+
+
+def _mapped(path: Path) -> mmap.mmap | None:
+    """Map a large file; None for others, and for what is no file."""
+    try:
+        with path.open("rb") as file:
+            if not S_ISREG(os.fstat(file.fileno()).st_mode) or os.fstat(file.fileno()).st_size < _MAPPED:
+                return None
+            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except OSError:
+        return None  # reading says why

@@ -60,7 +60,8 @@ def decode(
     Returns
     -------
     Octree
-        With words of its own, read-only.
+        With words of its own, read-only. Words of dialect ``report`` that are read-only, such as those of a mapped
+        file, are not copied.
 
     Raises
     ------
@@ -89,9 +90,13 @@ def decode(
         )
     if len(words) == 0:
         raise RomError(f"{source or 'memory'}: there is no word in it; an octree memory has at least its root")
-    report = leaf_materials(words, dialect, source=source, lines=lines)
     limit = MAX_DEPTH if depth is None else depth
-    verdict = _native.validate(report, limit)
+    verdict = _native.validate(words, limit) if dialect == "report" else None
+    if verdict is None or verdict.fault:
+        report = leaf_materials(words, dialect, source=source, lines=lines)
+        verdict = _native.validate(report, limit)
+    else:  # the words are read once, and large memories stay where they are
+        report = words if not words.flags.writeable else words.copy()
     if verdict.fault == "length":
         raise RomError(
             f"{source or 'memory'}: {len(words)} words are not a root and blocks of 8 (1 + 8k); the file is cut short, "

@@ -32,6 +32,7 @@ Dialect: TypeAlias = Literal["report", "seed-rtl", "msb", "lod"]
 DIALECTS: tuple[Dialect, ...] = get_args(Dialect)
 
 _LEAF = np.uint32(0x80000000)
+_PIECE = 1 << 20  # words looked at at a time
 _TAGS: dict[Dialect, np.uint32] = {
     "report": np.uint32(0xFFFFFF00),
     "seed-rtl": np.uint32(0xFFFFFFF0),
@@ -214,6 +215,27 @@ def detect_dialect(
     >>> detect_dialect(np.array([1, *[0x80000000] * 7, 0x80000002], np.uint32))
     'msb'
     """
+    try:
+        return _dialect_of(_different_leaves(words))
+    except RomError:
+        return _dialect_of(words, source, lines)  # again, for the address
+
+
+def _different_leaves(words: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Return the leaves of a memory, each once, without arrays of its size."""
+    found = [np.zeros(0, np.uint32)]
+    for first in range(0, len(words), _PIECE):
+        piece = words[first : first + _PIECE]
+        leaves = piece[(piece & _LEAF) != 0]
+        tagged = leaves >= _TAGS["report"]
+        found.append(_TAGS["report"] | np.flatnonzero(np.bincount(leaves[tagged] & np.uint32(0xFF))).astype(np.uint32))
+        found.append(np.unique(leaves[~tagged]))
+    return np.unique(np.concatenate(found))
+
+
+def _dialect_of(
+    words: NDArray[np.uint32], source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
+) -> Dialect:
     leaves = (words & _LEAF) != 0
     masks = _leaf_words(words)
     if masks["msb"][leaves].all() and leaves.any():

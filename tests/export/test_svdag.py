@@ -11,15 +11,15 @@ from voxrt import export, octree
 from voxrt.octree import Rom, RomError
 
 
-def rom(cells, depth):
-    return Rom("a", octree.from_dense(np.asarray(cells, np.uint8), depth), export.default_materials(9))
+def rom(cells):
+    return Rom("a", octree.from_dense(np.asarray(cells, np.uint8)), export.default_materials(9))
 
 
 @pytest.fixture
 def path(tmp_path):
     cells = np.zeros((8, 8, 8), np.uint8)
     cells[0, 0, 0], cells[7, 0, 0] = 7, 9
-    export.write_svdag(tmp_path / "a.svdag", rom(cells, 3))
+    export.write_svdag(tmp_path / "a.svdag", rom(cells))
     return tmp_path / "a.svdag"
 
 
@@ -32,14 +32,14 @@ def test_layout(path):
 def test_a_file_is_read_as_a_memory_of_one_material(path):
     read, warnings = export.read_svdag(path)
     assert np.argwhere(octree.to_dense(read.octree)).tolist() == [[0, 0, 0], [7, 0, 0]]
-    assert [warning.code for warning in warnings] == ["assumed-palette"]
+    assert [warning.kind for warning in warnings] == ["assumed-palette"]
     blob, warnings = voxrt.read_any(path)
     assert bytes(blob.rom.octree.words) == bytes(read.octree.words)
     assert len(warnings) == 1
 
 
 def test_a_world_without_solid_voxels(tmp_path):
-    files = voxrt.convert(rom(np.zeros((4, 4, 4)), 2), tmp_path / "none.svdag")
+    files = voxrt.convert(rom(np.zeros((4, 4, 4))), tmp_path / "none.svdag")
     assert files == (tmp_path / "none.svdag",)
     assert len(files[0].read_bytes()) == 32
     assert not octree.to_dense(export.read_svdag(files[0])[0].octree).any()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from voxrt import octree
@@ -75,19 +75,21 @@ def dense_cells(draw, materials=3):
     return cells
 
 
+@settings(max_examples=20, deadline=None)
 @given(cells=dense_cells())
 def test_a_graph_has_the_voxels_of_the_memory(cells):
-    graph = octree.occupancy_dag(octree.from_dense(cells, 4))
+    graph = octree.occupancy_dag(octree.from_dense(cells))
     np.testing.assert_array_equal(solid_voxels(graph.words, 4), cells != 0)
     np.testing.assert_array_equal(octree.to_dense(graph.octree()), cells != 0)
-    again = octree.from_dense((cells != 0).astype(np.uint8), 4)
+    again = octree.from_dense((cells != 0).astype(np.uint8))
     assert bytes(graph.octree().words) == bytes(again.words)
     assert bytes(octree.occupancy_dag(again).words) == bytes(graph.words)
 
 
+@settings(max_examples=20, deadline=None)
 @given(cells=dense_cells())
 def test_counts_are_those_of_all_cubes(cells):
-    counts = octree.dag_census(octree.from_dense(cells, 4))
+    counts = octree.dag_census(octree.from_dense(cells))
     solid = cells != 0
     assert counts.tree_nodes[:2].tolist() == [solid.sum(), len(cubes_of(solid, 1))]
     assert not any(np.any(part[:2]) for part in (counts.nodes, counts.words, counts.mirrored_nodes))
@@ -100,7 +102,7 @@ def test_counts_are_those_of_all_cubes(cells):
         assert (counts.nodes[level], counts.words[level]) == (len(distinct), sum(distinct.values()))
         assert counts.mirrored_nodes[level] == len(mirrored)
         assert counts.mirrored_words[level] == sum(mirrored.values())
-    assert len(octree.occupancy_dag(octree.from_dense(cells, 4)).words) == counts.words.sum()
+    assert len(octree.occupancy_dag(octree.from_dense(cells)).words) == counts.words.sum()
 
 
 def octants_of(cube):
@@ -115,6 +117,7 @@ def pattern(cube):
     return tuple(pattern(octant) for octant in octants_of(cube))
 
 
+@settings(max_examples=20, deadline=None)
 @given(cells=dense_cells())
 def test_mirrored_blocks_are_those_of_all_patterns(cells):
     blocks = set()
@@ -127,16 +130,16 @@ def test_mirrored_blocks_are_those_of_all_patterns(cells):
                 visit(octant)
 
     visit(cells)
-    assert octree.mirrored_blocks(octree.from_dense(cells, 4)) == len(blocks)
+    assert octree.mirrored_blocks(octree.from_dense(cells)) == len(blocks)
 
 
 def test_worlds_without_and_with_all_voxels():
-    empty = octree.from_dense(np.zeros((8, 8, 8), np.uint8), 3)
+    empty = octree.from_dense(np.zeros((8, 8, 8), np.uint8))
     graph = octree.occupancy_dag(empty)
     assert len(graph.words) == 0
     assert not octree.to_dense(graph.octree()).any()
     assert not octree.dag_census(empty).tree_nodes.any()
-    full = octree.from_dense(np.full((8, 8, 8), 9, np.uint8), 3)
+    full = octree.from_dense(np.full((8, 8, 8), 9, np.uint8))
     graph = octree.occupancy_dag(full)
     assert graph.words.tolist() == [0xFF, *[9] * 8, 0xFFFFFFFF, 0xFFFFFFFF]
     assert graph.octree().words.tolist() == [0xFFFFFF01]
@@ -146,7 +149,7 @@ def test_worlds_without_and_with_all_voxels():
 
 
 def test_a_world_of_depth_1_has_no_graph():
-    tree = octree.from_dense(np.ones((2, 2, 2), np.uint8), 1)
+    tree = octree.from_dense(np.ones((2, 2, 2), np.uint8))
     for count in (octree.occupancy_dag, octree.dag_census):
         with pytest.raises(DoesNotFitError, match="2 levels or more, and the octree 1"):
             count(tree)
