@@ -65,7 +65,7 @@ def read_svdag(path: Path) -> tuple[Rom, tuple[SceneWarning, ...]]:
     >>> write_svdag(Path("house.svdag"), voxrt.build("examples/house.obj", depth=4).rom)
     >>> rom, warnings = read_svdag(Path("house.svdag"))
     >>> rom, warnings[0].kind
-    (<Rom 'house': depth 4, 497 words, 1 material>, 'assumed-palette')
+    (<Rom 'house': depth 4, 449 words, 1 material>, 'assumed-palette')
     """
     data = read_bytes(path)
     if not data.startswith(_MAGIC):
