@@ -78,6 +78,13 @@ class DagCensus:
     mirrored_nodes, mirrored_words
         If nodes that are equal up to mirroring along axes were stored once, and each pointer held its mirror in three
         of its bits.
+
+    Examples
+    --------
+    >>> from voxrt.octree import from_points
+    >>> counts = dag_census(from_points([[0, 0, 0], [4, 0, 0]], [1, 1], depth=3))
+    >>> counts.tree_nodes.tolist(), counts.nodes.tolist()
+    ([2, 2, 2, 1], [0, 0, 1, 1])
     """
 
     tree_nodes: NDArray[np.uint64]
