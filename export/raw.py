@@ -75,9 +75,7 @@ def read_raw(path: Path) -> WordFile:
     >>> len(read_raw(Path("dot.bin")).words)
     17
     """
-    data = _mapped(path)
-    if data is None:
-        data = read_bytes(path)
+    data = _mapped(path) or read_bytes(path)
     if len(data) % 4:
         raise RomError(f"{path}: {len(data)} bytes are not words of 4; the file is cut short, or no octree memory")
     return word_file(np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False), None)

@@ -44,10 +44,10 @@ def write_svdag(path: Path, rom: Rom) -> None:
     >>> write_svdag(Path("house.svdag"), voxrt.build("examples/house.obj", depth=4).rom)
     """
     graph = occupancy_dag(rom.octree)
-    words = graph.words.astype("<u4", copy=False)
-    root = 0 if len(words) else _NO_ROOT
-    header = _HEADER.pack(_MAGIC, _VERSION, graph.depth, root, zlib.crc32(words), len(words))
-    write_atomically(path, [header, words.tobytes()])
+    words = graph.words.astype("<u4", copy=False).tobytes()
+    root = 0 if words else _NO_ROOT
+    header = _HEADER.pack(_MAGIC, _VERSION, graph.depth, root, zlib.crc32(words), len(graph.words))
+    write_atomically(path, [header, words])
 
 
 def read_svdag(path: Path) -> tuple[Rom, tuple[SceneWarning, ...]]:
