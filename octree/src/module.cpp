@@ -6,6 +6,7 @@
 #include "dense.h"
 #include "diff.h"
 #include "disk_assembly.h"
+#include "encoded_rows.h"
 #include "fit_candidates.h"
 #include "hidden.h"
 #include "interior.h"
@@ -216,6 +217,14 @@ nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>&
                         to_numpy(std::move(recoloured), {count}));
 }
 
+nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
+    if (block_bits > 29)
+        throw std::invalid_argument("block_bits is " + std::to_string(block_bits) + ", not 0 ... 29");
+    std::vector<std::uint32_t> rows = run([&] { return encoded_rows(words.data(), words.shape(0), block_bits); });
+    const std::size_t count = rows.size();
+    return to_numpy(std::move(rows), {count});
+}
+
 nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
     return words_to_numpy(run([&] {
@@ -380,6 +389,7 @@ NB_MODULE(_native, m) {
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
+    m.def("encoded_rows", &bind_encoded_rows, "words"_a.noconvert(), "block_bits"_a);
     m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
     m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
     m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);
