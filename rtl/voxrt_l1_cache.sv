@@ -47,8 +47,8 @@ module voxrt_l1_cache
   localparam int unsigned TagBits1 = LineBits - SetBits;
   localparam int unsigned Sets = 2 ** SetBits;
   localparam int unsigned WayBits = Ways > 1 ? $clog2(Ways) : 1;
-  // Lines asked for at a time: as many as the queue of answers holds.
-  localparam int unsigned Outstanding = 8;
+  // Lines asked for at a time: as many as the queue of answers holds. Each set asks for one at most.
+  localparam int unsigned Outstanding = Sets < 8 ? Sets : 8;
   localparam int unsigned CountBits = $clog2(Outstanding) + 1;
 
   // Ways by set.
@@ -189,8 +189,6 @@ module voxrt_l1_cache
     end
   end
 
-  assign idle_o = asked_q == '0 && !read1_q && !points && !prefetch;
-
   // Requests.
   logic unused_request_ready;
 
@@ -286,6 +284,7 @@ module voxrt_l1_cache
     end
   end
 
+  assign idle_o = asked_q == '0 && !read1_q && !points && !prefetch;
   assign ack_o  = ack_q;
   assign word_o = word_q;
 
