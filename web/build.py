@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 WASM = BUILD / "voxrt.wasm"
 
 ROOMS = {"voxelize": "voxelize/src", "octree": "octree/src", "sim": "sim/src/model", "bake": "sim/src/bake"}
-LEFT_OUT = {"module.cpp", "colour_bindings.cpp", "scene_bindings.cpp", "block_file.cpp", "disk_assembly.cpp"}
-OTHER_PROCESSORS = ("_avx2.cpp", "_avx512.cpp")
+LEFT_OUT = {"block_file.cpp", "disk_assembly.cpp", "module.cpp"}
+LEFT_OUT_ENDS = ("_avx2.cpp", "_avx512.cpp", "_bindings.cpp")
 
 
 def main() -> None:
@@ -36,7 +36,7 @@ def our_units() -> list[Unit]:
     flags = (*zig("c++"), *COMPILED, "-I", str(BUILD / "include"))
     folders = [ROOT / folder for folder in (*ROOMS.values(), "voxelize/src/colour", "web/src")]
     sources = [path for folder in folders for path in sorted(folder.glob("*.cpp")) if path.name not in LEFT_OUT]
-    return [Unit(source, flags) for source in sources if not source.name.endswith(OTHER_PROCESSORS)]
+    return [Unit(source, flags) for source in sources if not source.name.endswith(LEFT_OUT_ENDS)]
 
 
 def link_headers() -> None:

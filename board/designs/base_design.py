@@ -159,6 +159,17 @@ def patch_config(
     return _SECTION.sub(replace, config)
 
 
+def places(bits: int) -> list[int]:
+    """Give where words of a slice begin in the rows of 18 bits that follow each other: those of one or two rows.
+
+    Examples
+    --------
+    >>> places(9), places(36)
+    ([0, 9], [0])
+    """
+    return _PLACES.get(bits, [0])
+
+
 def _words(bits: int) -> int:
     return 512 if bits == 36 else _ROWS * len(_PLACES[bits])
 

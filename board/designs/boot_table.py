@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from voxrt.octree._native import encoded_rows
 
 from ..register_writes import camera_writes, lighting_writes, material_rows, register_writes
 from ..registers import MATERIALS
@@ -208,10 +209,4 @@ def encode_octree(words: NDArray[np.uint32], block_bits: int) -> NDArray[np.uint
     >>> encode_octree(np.array([1, 9, *[0xFFFFFF07] * 15], dtype=np.uint32), 5)[:3].tolist()
     [1, 519, 519]
     """
-    payload_bits = max(block_bits, 9)
-    rows = np.full(8 << block_bits, 1 << payload_bits, dtype=np.uint32)
-    if len(words) > 1 + len(rows):
-        raise ValueError(f"an octree of {len(words)} words does not fit a memory of {1 + len(rows)}")
-    leaf = words[1:] >> 31 == 1
-    rows[: len(words) - 1] = np.where(leaf, np.uint32(1 << payload_bits) | words[1:] & 0xFF, words[1:] >> 3)
-    return rows
+    return encoded_rows(np.ascontiguousarray(words), block_bits)

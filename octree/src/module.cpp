@@ -7,6 +7,7 @@
 #include "dense.h"
 #include "diff.h"
 #include "disk_assembly.h"
+#include "encoded_rows.h"
 #include "fit_candidates.h"
 #include "hidden.h"
 #include "interior.h"
@@ -218,6 +219,14 @@ nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>&
                         to_numpy(std::move(recoloured), {count}));
 }
 
+nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
+    if (block_bits > 29)
+        throw std::invalid_argument("block_bits is " + std::to_string(block_bits) + ", not 0 ... 29");
+    std::vector<std::uint32_t> rows = run([&] { return encoded_rows(words.data(), words.shape(0), block_bits); });
+    const std::size_t count = rows.size();
+    return to_numpy(std::move(rows), {count});
+}
+
 nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
     return words_to_numpy(run([&] {
@@ -415,6 +424,7 @@ NB_MODULE(_native, m) {
     m.def("occupied_octree", &bind_occupied_octree, "words"_a.noconvert(), "depth"_a);
     m.def("dag_levels", &bind_dag_levels, "words"_a.noconvert(), "depth"_a);
     m.def("mirrored_blocks", &bind_mirrored_blocks, "words"_a.noconvert(), "depth"_a);
+    m.def("encoded_rows", &bind_encoded_rows, "words"_a.noconvert(), "block_bits"_a);
     m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
     m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
     m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);

@@ -3,6 +3,7 @@
 import pytest
 
 import voxrt as package
+from voxrt.octree import coarsen
 
 
 @pytest.fixture(scope="module")
@@ -36,3 +37,7 @@ def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
     finished = voxrt("bitstream", deep, "--board", "ulx3s-85f")
     assert finished.code == 4
     assert "and ulx3s-85f holds 32,769 words and 10 levels; build it with --depth " in finished.err
+    fits = int(finished.err.split("--depth ")[1].split(",")[0])
+    tree = package.read_any(deep)[0].rom.octree
+    assert len(coarsen(tree, tree.depth - fits).words) <= 32_769
+    assert fits == 10 or len(coarsen(tree, tree.depth - fits - 1).words) > 32_769

@@ -129,7 +129,9 @@ def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
     warn(warnings)
     tree = blob.rom.octree
     if len(tree.words) > capacity or tree.depth > most:
-        fits = next(n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, n).words) <= capacity)
+        fits = next(
+            n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, tree.depth - n).words) <= capacity
+        )
         raise voxrt.DoesNotFitError(
             f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} holds {capacity:,} words "
             f"and {most} levels; build it with --depth {fits}, or give the asset"

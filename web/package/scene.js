@@ -193,7 +193,18 @@ function appearanceOfThree(material, geometry, warn) {
     name: material.name || "material", factor: [r, g, b, 1],
     texture: image && { image, wrap: [WRAPS[material.map.wrapS], WRAPS[material.map.wrapT]], nearest: material.map.magFilter === NEAREST },
   };
-  return { entry: known[kind], uvOf: image && ((vertex, out) => { out[0] = uv.getX(vertex); out[1] = uv.getY(vertex); }), colourOf: colour && colours(colour) };
+  return { entry: known[kind], uvOf: image && coordinatesOf(uv, material.map), colourOf: colour && colours(colour) };
+}
+
+// Sets u and v, which the texture's offset, repeat and rotation move.
+function coordinatesOf(uv, texture) {
+  texture.updateMatrix();
+  const [a, b, , c, d, , e, f] = texture.matrix.elements;
+  return (vertex, out) => {
+    const [u, v] = [uv.getX(vertex), uv.getY(vertex)];
+    out[0] = a * u + c * v + e;
+    out[1] = b * u + d * v + f;
+  };
 }
 
 // Sets linear colour and alpha from an attribute.

@@ -200,8 +200,6 @@ async function readPly(main, folder, voxrt) {
 }
 
 async function readUsd(main, folder, voxrt) {
-  const { USDLoader } = await addon("loaders/USDLoader");
-  const root = new USDLoader(await folder.manager()).parse(main.bytes.buffer);
-  folder.close();
-  return sceneOf(root, voxrt);
+  const usd = await import("./usd.js");
+  return usd.readUsd(main, folder, voxrt);
 }

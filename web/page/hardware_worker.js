@@ -1,12 +1,13 @@
 // The verilated hardware off the page's thread, and the exact model beside it. Messages as of worker.js.
 
+import { answerWith, count } from "./worker_answers.js";
 import { Hardware } from "./voxrt/hardware.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 
 let voxrt, hardware;
 let onProgress = () => {};
 
-const calls = {
+answerWith({
   async start({ module }) {
     [voxrt, hardware] = await Promise.all([
       Voxrt.load(module),
@@ -35,9 +36,7 @@ const calls = {
     voxrt.shade(look);
     return { ...made, seconds, wrong: differing(made, voxrt.render(camera, size)) };
   },
-};
-
-const count = (number) => number.toLocaleString("en");
+});
 
 function differing(one, other) {
   let wrong = 0;
@@ -45,11 +44,3 @@ function differing(one, other) {
     if (one.material[i] !== other.material[i] || one.face[i] !== other.face[i] || [0, 1, 2].some((channel) => one.colour[3 * i + channel] !== other.colour[3 * i + channel])) wrong++;
   return wrong;
 }
-
-onmessage = async ({ data: { id, call, ...given } }) => {
-  try {
-    postMessage({ id, result: await calls[call](given, (stage) => postMessage({ id, stage })) });
-  } catch (error) {
-    postMessage({ id, problem: String(error?.message ?? error).split("\n")[0] });
-  }
-};

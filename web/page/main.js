@@ -1,6 +1,7 @@
 // The static page: dropped files and examples become a memory in one worker, and pictures of it in several. The camera and
 // its controls are those of the server's page.
 
+import { BoardPanel } from "./board_panel.js";
 import { Budget } from "./budget.js";
 import { Builder } from "./builder.js";
 import { FIELD_OF_VIEW, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
@@ -30,7 +31,7 @@ const canvas = $("picture");
 const picture = new Picture(canvas);
 const figures = new Figures($("figures"));
 const glide = new Glide();
-let painter, builder, frames, light, inspector, daylight, budget;
+let painter, builder, frames, light, inspector, daylight, budget, boardPanel;
 let view = null; // the camera for people of camera.js
 let memory = null; // what worker.js built, with voxels and bounds
 let source = null; // {files, example}
@@ -171,7 +172,8 @@ function describe() {
     meter.setAttribute("aria-label", `Memory of ${board} in use`);
     const verdict = Object.assign(document.createElement("span"), { className: fits ? "fits" : "large", textContent: fits ? "fits" : `${(words.length / limit).toFixed(1)} × too large` });
     row.append(Object.assign(document.createElement("span"), { textContent: board }), meter, verdict);
-    if (!fits && !fixed) verdict.replaceWith(fitButton(board, limit, verdict.textContent));
+    if (fits && designs.includes(board)) verdict.replaceWith(boardPanel.button(board));
+    else if (!fits && !fixed) verdict.replaceWith(fitButton(board, limit, verdict.textContent));
     return row;
   }));
   $("warnings").replaceChildren(...warnings.map(({ message, count }) => Object.assign(document.createElement("li"), { textContent: count > 1 ? `${message} (${count})` : message })));
@@ -337,13 +339,15 @@ function animate({ gestures, flight }) {
 }
 
 let boards = {};
+let designs = []; // the boards that have bitstreams
 let examples = {};
 async function start() {
-  const [module, { boards: known, examples: scenes }] = await Promise.all([
+  const [module, { boards: known, designs: placed, examples: scenes }] = await Promise.all([
     WebAssembly.compileStreaming(fetch("voxrt/voxrt.wasm")).catch(async () => WebAssembly.compile(await (await fetch("voxrt/voxrt.wasm")).arrayBuffer())),
     fetch("site.json").then((answer) => answer.json()),
   ]);
   boards = known;
+  designs = placed;
   examples = scenes;
   painter = new Painter(module);
   builder = new Builder(module);
@@ -352,6 +356,7 @@ async function start() {
   light.hello(painter.hello);
   inspector = new Inspector(app);
   new HardwarePanel(app, module);
+  boardPanel = new BoardPanel(app, module);
   painter.addEventListener("frame", ({ detail }) => {
     window.voxrt = { newest: detail, view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
     const samples = frames.receive(detail);

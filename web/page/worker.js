@@ -1,12 +1,13 @@
 // One instance of voxrt off the page's thread: it builds memories, renders rows of frames, follows rays. Messages are
 // {id, call, ...}; answers {id, result} or {id, problem}, and {id, stage} before.
 
+import { answerWith } from "./worker_answers.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 
 let voxrt = null;
 let parsed = null; // the files that were read last: {source, read}
 
-const calls = {
+answerWith({
   async start({ module }) { voxrt = await Voxrt.load(module); },
 
   // `source` numbers the files: those that were read last are not read again.
@@ -40,14 +41,4 @@ const calls = {
     return { colour, top };
   },
   follow({ origin, direction }) { return voxrt.follow(origin, direction); },
-};
-
-onmessage = async ({ data: { id, call, ...given } }) => {
-  try {
-    const result = await calls[call](given, (stage) => postMessage({ id, stage }));
-    const moved = result?.colour ? [result.colour.buffer] : [];
-    postMessage({ id, result }, moved);
-  } catch (error) {
-    postMessage({ id, problem: String(error?.message ?? error).split("\n")[0] });
-  }
-};
+});

@@ -9,6 +9,7 @@
 //     vx_memory(...); vx_shading(...); vx_render(...);
 #include "export.h"
 #include "interface_error.h"
+#include "memory.h"
 
 #include <voxrt/octree/breadth_first.h>
 #include <voxrt/octree/coarsen.h>
@@ -30,6 +31,7 @@ namespace {
 
 using namespace voxrt;
 using web::guarded;
+using web::loaded;
 
 struct Frame {
     int32_t width = 0, height = 0;
@@ -49,13 +51,13 @@ Frame frame;
 std::vector<int32_t> readings;
 std::vector<int32_t> outline;
 
-const octree::VerifiedMemory& loaded() {
+} // namespace
+
+const octree::VerifiedMemory& voxrt::web::loaded() {
     if (!memory)
         throw std::invalid_argument("no memory is loaded: call vx_memory first");
     return *memory;
 }
-
-} // namespace
 
 EXPORT(vx_alloc) void* vx_alloc(size_t bytes) { return std::malloc(bytes > 0 ? bytes : 1); }
 EXPORT(vx_free) void vx_free(void* buffer) { std::free(buffer); }

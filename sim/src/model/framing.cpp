@@ -140,11 +140,29 @@ Camera frame_points(const std::vector<Point>& points, int32_t width, int32_t hei
     Axes ahead = axes;
     for (double& part : ahead[0])
         part *= focal;
-    const Point eye = eye_that_sees(points, ahead, width, height);
-    Camera camera = scaled(axes, focal, width, height);
+    return look_along(eye_that_sees(points, ahead, width, height), kThreeQuarter, width, height);
+}
+
+Camera look_along(const Point& eye, const Point& look, int32_t width, int32_t height) {
+    Camera camera = scaled(axes_along(look), focal_length(width, height), width, height);
     for (int axis = 0; axis < 3; ++axis)
         camera.position[axis] = static_cast<int32_t>(std::nearbyint(eye[axis] * 16));
     return camera;
+}
+
+Camera refit(const Camera& camera, const Size& made_for, const Size& size) {
+    if (size == made_for)
+        return camera;
+    const double longer = static_cast<double>(std::min(size[0], size[1])) / std::min(made_for[0], made_for[1]);
+    Axes rows;
+    for (int axis = 0; axis < 3; ++axis) {
+        rows[0][axis] = camera.look[axis] * longer;
+        rows[1][axis] = camera.right[axis];
+        rows[2][axis] = camera.up[axis];
+    }
+    Camera made = scaled(rows, 1.0, size[0], size[1]);
+    std::copy_n(camera.position, 3, made.position);
+    return made;
 }
 
 Camera frame_along(const Point& look, const std::vector<Point>& points, int32_t width, int32_t height) {

@@ -4,6 +4,7 @@
 #include "frame_tile.h"
 #include "ray.h"
 #include "similarity.h"
+#include "views_bindings.h"
 
 #include <voxrt/voxelize/python.h>
 
@@ -343,6 +344,7 @@ NB_MODULE(_model, m) {
         .def("cameras", &OwnedViews::cameras, "The registers: int32, shape (6, 4, 3).");
     m.def("choose_fit", &chosen_fit, nb::arg("fits"),
           "The index of the fit whose worst figure is the best: (surface voxels changed, psnr, ssim) each.");
+    bind_views(m);
     m.def("peak_signal_to_noise", &signal_to_noise, nb::arg("picture"), nb::arg("other"), "similarity.h");
     m.def("structural_similarity", &similarity, nb::arg("picture"), nb::arg("other"), "similarity.h");
 }

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace voxrt::rtl {
-std::unique_ptr<Design> make_tiny(); // sim/src/rtl/configuration.cpp.in
+std::unique_ptr<Design> VOXRT_MAKE_DESIGN(); // sim/src/rtl/configuration.cpp.in
 }
 
 /// What the C++ library lacks here: destructors of a thread's variables, of a thread that does not end.
@@ -39,7 +39,7 @@ struct Frame {
 Frame frame;
 
 rtl::Design& design() {
-    static const std::unique_ptr<rtl::Design> made = rtl::make_tiny();
+    static const std::unique_ptr<rtl::Design> made = rtl::VOXRT_MAKE_DESIGN();
     return *made;
 }
 

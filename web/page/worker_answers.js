@@ -1,0 +1,15 @@
+// How the page's workers answer: hand.js has the other end.
+
+export const count = (number) => number.toLocaleString("en");
+
+// calls: functions by name. They take what was sent, and `say`, which reports a stage.
+export function answerWith(calls) {
+  onmessage = async ({ data: { id, call, ...given } }) => {
+    try {
+      const result = await calls[call](given, (stage) => postMessage({ id, stage }));
+      postMessage({ id, result }, result?.colour ? [result.colour.buffer] : []);
+    } catch (error) {
+      postMessage({ id, problem: String(error?.message ?? error).split("\n")[0] });
+    }
+  };
+}
