@@ -199,6 +199,63 @@ def test_the_other_formats_drop_too(browser: Browser, tmp_path: Path, kind: str)
     assert np.array_equal(colours, render(built.rom, registers, tuple(size), engine="model").colour)
 
 
+USDA = """#usda 1.0
+(
+    defaultPrim = "flag"
+    upAxis = "Y"
+)
+def Mesh "flag" (prepend apiSchemas = ["MaterialBindingAPI"])
+{
+    int[] faceVertexCounts = [4]
+    int[] faceVertexIndices = [0, 1, 2, 3]
+    point3f[] points = [(0, 0, 0), (4, 0, 0), (4, 3, 1), (0, 3, 1)]
+    texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1)] (interpolation = "vertex")
+    rel material:binding = </flag/look>
+    def Material "look"
+    {
+        token outputs:surface.connect = </flag/look/surface.outputs:surface>
+        def Shader "surface"
+        {
+            uniform token info:id = "UsdPreviewSurface"
+            color3f inputs:diffuseColor.connect = </flag/look/picture.outputs:rgb>
+            token outputs:surface
+        }
+        def Shader "picture"
+        {
+            uniform token info:id = "UsdUVTexture"
+            asset inputs:file = @flag.png@
+            float2 inputs:st.connect = </flag/look/reader.outputs:result>
+            float3 outputs:rgb
+        }
+        def Shader "reader"
+        {
+            uniform token info:id = "UsdPrimvarReader_float2"
+            string inputs:varname = "st"
+            float2 outputs:result
+        }
+    }
+}
+"""
+
+
+def test_a_package_of_usd_has_its_textures(browser: Browser, tmp_path: Path) -> None:
+    utils = pytest.importorskip("pxr.UsdUtils")
+    squares = np.array([[[200, 30, 40], [250, 250, 240]], [[20, 60, 160], [240, 200, 30]]], np.uint8)
+    Image.fromarray(squares.repeat(8, 0).repeat(8, 1)).save(tmp_path / "flag.png")
+    (tmp_path / "flag.usda").write_text(USDA)
+    assert utils.CreateNewUsdzPackage(str(tmp_path / "flag.usda"), str(tmp_path / "flag.usdz"))
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    drop(browser, tmp_path / "flag.usdz")
+    assert browser.until(shown("flag", 7)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    rom = voxrt.build(tmp_path / "flag.usdz", depth=7).rom
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert len(rom.materials) > 4
+    assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+    assert browser.faults() == []
+
+
 def saved(browser: Browser, folder: Path, button: str, name: str) -> bytes:
     """Click a button and return the file that the browser saves."""
     browser.cdp("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=False)

@@ -193,7 +193,7 @@ function appearanceOfThree(material, geometry, warn) {
     name: material.name || "material", factor: [r, g, b, 1],
     texture: image && { image, wrap: [WRAPS[material.map.wrapS], WRAPS[material.map.wrapT]], nearest: material.map.magFilter === NEAREST },
   };
-  return { entry: known[kind], uvOf: image && coordinatesOf(uv, material.map), colourOf: colour && colours(colour) };
+  return { entry: known[kind], uvOf: image && coordinatesOf(uv, material.map), colourOf: colour ? colours(colour) : null };
 }
 
 // Sets u and v, which the texture's offset, repeat and rotation move.
