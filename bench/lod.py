@@ -3,7 +3,8 @@
 Usage: ``python bench/lod.py [--only pictures|cost] [--write]``. Assets come from the folder ``VOXRT_ASSETS``.
 Pictures, 320x240 from the default camera at depth 10, are compared with pictures of 16 samples per pixel without level
 of detail. The cost, 640x480, is that of the verilated core with a memory of latency 50 and interval 3; every pixel is
-compared with the exact model. ``--write`` puts the tables into ``bench/results/lod.md``.
+compared with the exact model. Rays stop at cells of several widths. ``--write`` puts the tables into
+``bench/results/lod.md``.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ from cached import ASSETS, GARDEN, GARGO, ROOT, SKULL, TRUCK, rom_of
 
 RESULTS = ROOT / "bench" / "results" / "lod.md"
 SIZE, FAR_SIZE, DEPTH = (640, 480), (320, 240), 10
+PICTURE_CELLS = (0.5, 0.75, 1.0)
+COST_CELLS = (0.0, 0.5, 1.0, 1.5, 2.0)
+"""Widths of the widest cell that rays stop at, in pixels."""
 PICTURES = {
     "skull": SKULL,
     "gargo": GARGO,
@@ -53,15 +57,21 @@ class Table(NamedTuple):
 
 def pictures() -> Table:
     """Compare pictures with and without level of detail with those of 16 samples."""
-    rows = [("asset", "SSIM off", "SSIM on", "PSNR off, dB", "PSNR on, dB")]
+    heads = ["asset", "off: SSIM, dB", *(f"{cell:g}: SSIM, dB" for cell in PICTURE_CELLS)]
+    rows = [tuple(heads)]
+    better = dict.fromkeys(PICTURE_CELLS, 0)
     for name, asset in PICTURES.items():
         rom = with_means(rom_of(name, asset, DEPTH))
         wanted = voxrt.render(rom, size=FAR_SIZE, engine="model", samples=4).colour
-        shown = [voxrt.render(rom, size=FAR_SIZE, engine="model", lod=lod).colour for lod in (False, True)]
-        likeness = [f"{structural_similarity(wanted, one):.4f}" for one in shown]
-        noise = [f"{peak_signal_to_noise(wanted, one):.2f}" for one in shown]
-        rows.append((name, *likeness, *noise))
+        found = []
+        for cell in (0.0, *PICTURE_CELLS):
+            shown = voxrt.render(rom, size=FAR_SIZE, engine="model", lod=cell).colour
+            found.append((structural_similarity(wanted, shown), peak_signal_to_noise(wanted, shown)))
+            if cell:
+                better[cell] += found[-1][0] > found[0][0] and found[-1][1] > found[0][1]
+        rows.append((name, *(f"{likeness:.4f}, {noise:.2f}" for likeness, noise in found)))
         print(*rows[-1], flush=True)
+    rows.append(("both better", "", *map(str, better.values())))
     return Table(f"Pictures of {FAR_SIZE[0]}x{FAR_SIZE[1]}, depth {DEPTH}, against 16 samples per pixel", rows)
 
 
@@ -72,15 +82,15 @@ def costs(config: str) -> Table:
     for name, asset, depth in COSTS:
         rom = with_means(rom_of(name, asset, depth))
         camera = voxrt.aim_camera(rom, SIZE)
-        for lod in (False, True):
-            checked = voxrt.check(rom, camera, SIZE, config=config, lod=lod)
+        for cell in COST_CELLS:
+            checked = voxrt.check(rom, camera, SIZE, config=config, lod=cell)
             cost = checked.rtl.cost
             assert cost.words_read is not None
             assert cost.cycles is not None
             assert cost.cache is not None
             rows.append(
                 (
-                    f"{name} {depth}{', level of detail' if lod else ''}",
+                    f"{name} {depth}, {f'cells of {cell:g}' if cell else 'off'}",
                     f"{cost.words_read / cost.rays:.2f}",
                     f"{cost.cycles / cost.rays:.2f}",
                     f"{100 * (1 - cost.cache.line_requests / cost.words_read):.1f}",
@@ -106,7 +116,8 @@ def main() -> None:
         tables.append(pictures())
     if asked.only != "pictures":
         tables.append(costs(asked.config))
-    text = '# Level of detail\n\n`python bench/lod.py --write`. "On" is with level of detail.\n\n'
+    text = "# Level of detail\n\n`python bench/lod.py --write`. "
+    text += "A number is the width in pixels of the widest cell that rays stop at.\n\n"
     text += "\n".join(table.text() for table in tables)
     print(text)
     if asked.write:

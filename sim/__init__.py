@@ -60,11 +60,12 @@ _HOMES = {
     "voxrt.sim.external_memory": ("CacheCost", "Dram"),
     "voxrt.sim.frame": ("FACE_NONE", "Frame", "RenderCost"),
     "voxrt.sim.framing": ("frame_animation", "frame_scene", "outline", "outline_frames"),
+    "voxrt.sim.hardware": ("shader_features",),
     "voxrt.sim.image": ("write_png",),
     "voxrt.sim.likeness": ("Comparison", "Likeness", "View", "compare", "comparison_sheet"),
     "voxrt.sim.path": ("RayPath", "Reading", "follow_pixel", "follow_ray"),
     "voxrt.sim.ray_query": ("RayHits", "cast_rays"),
-    "voxrt.sim.rendering": ("Engine", "EngineCheck", "check", "render", "shader_features"),
+    "voxrt.sim.rendering": ("Engine", "EngineCheck", "check", "render"),
     "voxrt.sim.samples": ("Background",),
     "voxrt.sim.similarity": ("peak_signal_to_noise", "structural_similarity"),
 }
@@ -83,11 +84,12 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.sim.external_memory import CacheCost, Dram
     from voxrt.sim.frame import FACE_NONE, Frame, RenderCost
     from voxrt.sim.framing import frame_animation, frame_scene, outline, outline_frames
+    from voxrt.sim.hardware import shader_features
     from voxrt.sim.image import write_png
     from voxrt.sim.likeness import Comparison, Likeness, View, compare, comparison_sheet
     from voxrt.sim.path import RayPath, Reading, follow_pixel, follow_ray
     from voxrt.sim.ray_query import RayHits, cast_rays
-    from voxrt.sim.rendering import Engine, EngineCheck, check, render, shader_features
+    from voxrt.sim.rendering import Engine, EngineCheck, check, render
     from voxrt.sim.samples import Background
     from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 else:

@@ -4,41 +4,39 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from voxrt.octree import Rom, encode, frame_octree
+from voxrt.octree import Rom, frame_octree
 from voxrt.octree.camera import (
     BOUNCE_LIMIT,
     DIRECTION_LIMIT,
     PLAIN_LIGHTING,
-    POSITION_UNITS,
     SAMPLES,
     lod_scale,
     sample_cameras,
 )
 from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of, registers_of, shading_of
-from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
-from voxrt.sim.external_memory import CacheCost, Dram
+from voxrt.sim.errors import SimulatorError
 from voxrt.sim.frame import Frame, RenderCost
+from voxrt.sim.hardware import render_hardware
 from voxrt.sim.samples import join_samples, put_background
-from voxrt.sim.verilated import import_verilated
-from voxrt.voxelize.arguments import choice, instance, text, whole, whole_array
+from voxrt.voxelize.arguments import choice, instance, real, text, whole, whole_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.sim.external_memory import Dram
     from voxrt.sim.samples import Background
 
 Engine: TypeAlias = Literal["rtl", "model"]
 
 _FACES = 6
 _FRAME_LIMIT = 1 << 14
-_RTL_FRAME_LIMIT = (1 << 12) - 1
-_CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
+_WIDEST_CELL = 1024.0  # in pixels
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -76,7 +74,7 @@ def render(
     config: str = "tiny",
     dram: Dram | None = None,
     root: int = 0,
-    lod: bool = False,
+    lod: float = 0.0,
 ) -> Frame:
     """Render a frame.
 
@@ -108,8 +106,9 @@ def render(
         The word of the memory that is the root of what is rendered: the register ``root``. The frames of an animation
         (:class:`~voxrt.octree.Animation`) have roots of their own.
     lod
-        Stop rays at cells that are not wider than a pixel. The memory needs mean materials:
-        :func:`~voxrt.octree.with_means`. Not with a light or mirrors.
+        Level of detail: the width in pixels of the widest cell that rays stop at, below 1024; True is 1. 0: they go
+        down to the leaves. The memory needs mean materials: :func:`~voxrt.octree.with_means`. Not with a light or
+        mirrors.
 
     Returns
     -------
@@ -142,7 +141,7 @@ def render(
         raise SimulatorError("the model has no external memory: leave dram out, or render with --engine rtl")
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     root = whole("root", root, 0, len(rom.octree.words) - 1)
-    _check_lod(rom, lighting, lod=lod)
+    lod = _checked_lod(rom, lighting, lod)
     return join_samples(
         [
             _render_one(
@@ -166,7 +165,7 @@ def check(
     config: str = "tiny",
     dram: Dram | None = None,
     root: int = 0,
-    lod: bool = False,
+    lod: float = 0.0,
 ) -> EngineCheck:
     """Render with both engines and compare every sample of every pixel.
 
@@ -196,7 +195,7 @@ def check(
     """
     rom, cameras, size = _checked(rom, camera, size, lighting=lighting, samples=samples, background=background)
     root = whole("root", root, 0, len(rom.octree.words) - 1)
-    _check_lod(rom, lighting, lod=lod)
+    lod = _checked_lod(rom, lighting, lod)
     hardware: Engine = "rtl"
     rtl, model = (
         [
@@ -245,13 +244,13 @@ def _render_one(
     config: str,
     dram: Dram | None,
     root: int,
-    lod: bool,
+    lod: float,
 ) -> Frame:
-    scale = lod_scale(camera) if lod else 0
+    scale = lod_scale(camera, lod) if lod else 0
     if engine == "model":
         shown = replace(rom, octree=frame_octree(rom.octree, root))
         return _render_model(shown, camera, size, lighting, threads=whole("threads", threads, 0, 1024), scale=scale)
-    return _render_rtl(
+    return render_hardware(
         rom, camera, size, lighting, config=text("config", config), dram=dram, root=root, scale=scale, lod=lod
     )
 
@@ -284,127 +283,6 @@ def _render_model(
     )
 
 
-def shader_features(config: str) -> frozenset[str]:
-    """Return the shading features that a configuration of the ray tracer has built in.
-
-    Parameters
-    ----------
-    config
-        The configuration's name.
-
-    Returns
-    -------
-    frozenset[str]
-        Some of ``"light"``, ``"mirrors"`` and ``"lod"``.
-
-    Raises
-    ------
-    NoSuchConfigurationError
-        The installation has no ray tracer of that configuration.
-    SimulatorError
-        The ray tracer is not in this installation.
-
-    Examples
-    --------
-    >>> sorted(shader_features("lit"))
-    ['light', 'mirrors']
-    """
-    return frozenset(_ray_tracer(config).FEATURES[config])
-
-
-def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be absent
-    _rtl = import_verilated("render with --engine model")
-    if config not in _rtl.CONFIGS:
-        raise NoSuchConfigurationError(config, _rtl.CONFIGS)
-    return _rtl
-
-
-def _render_rtl(
-    rom: Rom,
-    camera: Camera,
-    size: tuple[int, int],
-    lighting: Lighting,
-    *,
-    config: str,
-    dram: Dram | None,
-    root: int,
-    scale: int,
-    lod: bool,
-) -> Frame:
-    started = time.perf_counter()
-    _rtl = _ray_tracer(config)
-    tracer = _rtl.Tracer(config)
-    if absent := lighting.features - shader_features(config):
-        raise SimulatorError(
-            f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
-            "take configuration 'lit' or render with --engine model"
-        )
-    if lod and "lod" not in shader_features(config):
-        raise SimulatorError(
-            f"ray tracer configuration {config!r} is built without level of detail; take one with caches, such as "
-            "'cached1', or render with --engine model"
-        )
-    place = tuple(value / POSITION_UNITS for value in camera.position)
-    for misfit, problem in (
-        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
-        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
-        (
-            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
-            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
-        ),
-        (
-            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
-            f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
-        ),
-        (max(size) > _RTL_FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_RTL_FRAME_LIMIT}"),
-    ):
-        if misfit:
-            raise SimulatorError(
-                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
-            )
-    if dram is not None and not tracer.cached:
-        raise SimulatorError(
-            f"ray tracer configuration {config!r} has its memory on the chip, without latency or interval; "
-            "take one with caches, such as 'cached4'"
-        )
-    memory = Dram() if dram is None else dram
-    words = encode(rom.octree.words, "lod", rom.octree.means) if lod else rom.octree.words
-    tracer.load(words, lod_words=lod)
-    pixels = tracer.render(
-        registers_of(camera),
-        size[0],
-        size[1],
-        rom.octree.depth,
-        palette_of(rom),
-        **shading_of(rom, lighting),
-        latency=memory.latency,
-        interval=memory.interval,
-        jitter=memory.jitter,
-        dram_seed=memory.seed,
-        lod_scale=scale,
-        root=root,
-    )
-    if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
-        raise SimulatorError(
-            f"the light is {DIRECTION_LIMIT // (2 * POSITION_UNITS)} voxels or more from what it should light: "
-            "too far for the ray tracer; move it nearer or render with --engine model"
-        )
-    if pixels["errors"]:
-        raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
-    return Frame(
-        colour=pixels["colour"],
-        material=pixels["material"],
-        face=pixels["face"],
-        cost=RenderCost(
-            size[0] * size[1],
-            pixels["words_read"],
-            pixels["cycles"],
-            time.perf_counter() - started,
-            CacheCost(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
-        ),
-    )
-
-
 def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
     # Directions are linear in the pixel: the largest stand in the corners.
     largest = max(
@@ -420,13 +298,15 @@ def _check_directions(camera: Camera, size: tuple[int, int]) -> None:
         )
 
 
-def _check_lod(rom: Rom, lighting: Lighting, *, lod: bool) -> None:
+def _checked_lod(rom: Rom, lighting: Lighting, lod: float) -> float:
     if not lod:
-        return
+        return 0.0
+    lod = 1.0 if lod is True else real("lod", lod, above=0.0, below=_WIDEST_CELL)
     if lighting.on or lighting.bounces:
         raise SimulatorError("level of detail does not go with a light or mirrors; render without them, or without lod")
     if rom.octree.means is None:
         raise SimulatorError(f"{rom.name} has no mean materials; build it with --lod")
+    return lod
 
 
 def _check_lighting(lighting: Lighting) -> None:

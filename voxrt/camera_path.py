@@ -44,7 +44,7 @@ class PictureJob:
     background: tuple[int, int, int] | Literal["transparent"] | None
     dram: Dram | None
     root: int
-    lod: bool
+    lod: float
     check: bool
 
 

@@ -69,7 +69,7 @@ def render(
     threads: int = 0,
     dram: Dram | None = None,
     root: int = 0,
-    lod: bool = False,
+    lod: float = 0.0,
 ) -> Frame:
     """Render a picture of a memory.
 
@@ -100,7 +100,8 @@ def render(
     root
         The word of the memory that is the root of what is rendered; 0 but for the frames of an animation.
     lod
-        Level of detail: rays stop at cells that are not wider than a pixel. The memory is built with ``lod=True``.
+        Level of detail: the width in pixels of the widest cell that rays stop at; True is 1. 0: they go down to the
+        leaves. The memory is built with ``lod=True``.
 
     Returns
     -------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,15 @@ if TYPE_CHECKING:
 LOD_SCALE_BITS = 20
 
 
-def lod_scale(camera: Camera) -> int:
-    """Compute 2**20 / |right|, rounded down: what tells rays how wide a pixel is.
+def lod_scale(camera: Camera, cell: float = 1.0) -> int:
+    """Compute 2**20 / (cell |right|), rounded down: what tells rays how wide the cells are that they stop at.
 
     Parameters
     ----------
     camera
         The camera. All its pixels are as wide as those in the middle, along right.
+    cell
+        Width of the widest cell that rays stop at, in pixels, above 0.
 
     Returns
     -------
@@ -29,6 +32,8 @@ def lod_scale(camera: Camera) -> int:
     >>> from voxrt.octree.camera import Camera
     >>> lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 8000), right=(-16, 0, 0), up=(0, 16, 0)))
     65536
+    >>> lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 8000), right=(-16, 0, 0), up=(0, 16, 0)), cell=0.5)
+    131072
     """
-    square = sum(component * component for component in camera.right)
+    square = sum(component * component for component in camera.right) * Fraction(cell) ** 2
     return min((1 << LOD_SCALE_BITS) - 1, isqrt((1 << 2 * LOD_SCALE_BITS) // square)) if square else 0

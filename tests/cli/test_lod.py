@@ -44,12 +44,14 @@ def test_pictures_do_not_depend_on_when_the_means_were_made(voxrt, folder):
         ("also", "detailed"),
         ("one", "noise", "--lod"),
         ("other", "detailed", "--lod"),
+        ("fine", "detailed", "--lod", "--lod-cell", "0.25"),
     ):
         assert voxrt("render", f"{memory}.mem", *options, *more, "-o", f"{picture}.png").code == 0
-    read = {name: (folder / f"{name}.png").read_bytes() for name in ("plain", "also", "one", "other")}
+    read = {name: (folder / f"{name}.png").read_bytes() for name in ("plain", "also", "one", "other", "fine")}
     assert read["plain"] == read["also"]
     assert read["one"] == read["other"]
     assert read["one"] != read["plain"]
+    assert read["one"] != read["fine"]
 
 
 @pytest.mark.usefixtures("noise")
@@ -57,6 +59,12 @@ def test_what_does_not_go_together_is_told_in_one_line(voxrt):
     finished = voxrt("render", "noise.mem", "--lod", "--engine", "model", "--bounces", "2")
     assert finished.code == 2
     assert "--lod does not go with --light or --bounces" in finished.error
+    finished = voxrt("render", "noise.mem", "--lod-cell", "2")
+    assert finished.code == 2
+    assert "--lod-cell is of --lod; give both" in finished.error
+    finished = voxrt("render", "noise.mem", "--lod", "--lod-cell", "-2")
+    assert finished.code == 2
+    assert "-2 is not between 0 and 1024 pixels" in finished.error
     finished = voxrt("build", "noise.mem", "--lod", "--dialect", "msb")
     assert finished.code == 2
     assert "--lod has its own dialect, and msb has no mean materials" in finished.error

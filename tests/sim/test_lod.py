@@ -1,5 +1,7 @@
 """Level of detail in the exact model: against the rule in rational arithmetic, and off as without it."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from oracles import lod, ray
@@ -98,6 +100,42 @@ def test_the_scale_is_the_width_of_a_pixel():
     assert lod_scale(camera) == (1 << 20) // 13
     assert lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 9), right=(0, 0, 0), up=(0, 1, 0))) == 0
     assert lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 9), right=(1, 0, 0), up=(0, 1, 0))) == (1 << 20) - 1
+
+
+@pytest.mark.parametrize("cell", [0.25, 0.5, 1 / 3, 1.5, 2, 7])
+def test_the_scale_of_narrower_and_wider_cells(cell):
+    right = (3, -4, 12)
+    scale = lod_scale(Camera(position=(0, 0, 0), look=(0, 0, 900), right=right, up=(0, 13, 0)), cell)
+    assert scale <= (1 << 20) / (13 * Fraction(cell)) < scale + 1
+
+
+def test_a_picture_has_the_cells_that_are_asked_for():
+    rng = np.random.default_rng(12)
+    voxels = (rng.random((32,) * 3) < 0.4).astype(np.uint8) * rng.integers(1, 4, (32,) * 3).astype(np.uint8)
+    colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
+    rom = with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
+    size = (24, 18)
+    camera = voxrt.aim_camera(rom, size)
+    registers = np.array([camera.position, camera.look, camera.right, camera.up], np.int32)
+    frames = []
+    for cell in (True, 1, 0.5, 4):
+        shown = voxrt.render(rom, camera, size=size, engine="model", lod=cell)
+        scale = lod_scale(camera, float(cell))
+        wanted = _model.Memory(rom.octree.words, rom.octree.depth).render(
+            PALETTE, registers, *size, means=rom.octree.means, lod_scale=scale
+        )
+        np.testing.assert_array_equal(shown.material, wanted.material)
+        frames.append(shown.material)
+    np.testing.assert_array_equal(frames[0], frames[1])
+    assert (frames[1] != frames[2]).any()
+    assert (frames[1] != frames[3]).any()
+
+
+@pytest.mark.parametrize("cell", [-1, float("nan"), 1024, "wide"])
+def test_cells_that_are_none_are_refused(cell):
+    rom = with_means(Rom("dots", from_dense(np.ones((4, 4, 3), int)), (EMPTY, Material("red", (255, 0, 0)))))
+    with pytest.raises((TypeError, ValueError), match="lod must be a finite number above 0 and below 1024"):
+        voxrt.render(rom, size=(8, 8), engine="model", lod=cell)
 
 
 def test_a_far_view_reads_fewer_words():

@@ -1,0 +1,155 @@
+"""Frames of the verilated ray tracer."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from voxrt.octree import Rom, encode
+from voxrt.octree.camera import DIRECTION_LIMIT, POSITION_UNITS
+from voxrt.sim.engine_arguments import palette_of, registers_of, shading_of
+from voxrt.sim.errors import NoSuchConfigurationError, SimulatorError
+from voxrt.sim.external_memory import CacheCost, Dram
+from voxrt.sim.frame import Frame, RenderCost
+from voxrt.sim.verilated import import_verilated
+
+if TYPE_CHECKING:
+    from voxrt.octree.camera import Camera, Lighting
+
+_FRAME_LIMIT = (1 << 12) - 1
+_CACHE_COUNTS = ("words_read", "word_requests", "line_requests", "lines_read")
+
+
+def shader_features(config: str) -> frozenset[str]:
+    """Return the shading features that a configuration of the ray tracer has built in.
+
+    Parameters
+    ----------
+    config
+        The configuration's name.
+
+    Returns
+    -------
+    frozenset[str]
+        Some of ``"light"``, ``"mirrors"`` and ``"lod"``.
+
+    Raises
+    ------
+    NoSuchConfigurationError
+        The installation has no ray tracer of that configuration.
+    SimulatorError
+        The ray tracer is not in this installation.
+
+    Examples
+    --------
+    >>> sorted(shader_features("lit"))
+    ['light', 'mirrors']
+    """
+    return frozenset(_ray_tracer(config).FEATURES[config])
+
+
+def render_hardware(
+    rom: Rom,
+    camera: Camera,
+    size: tuple[int, int],
+    lighting: Lighting,
+    *,
+    config: str,
+    dram: Dram | None,
+    root: int,
+    scale: int,
+    lod: float,
+) -> Frame:
+    """Render a frame on the verilated ray tracer.
+
+    Parameters
+    ----------
+    rom, camera, size, lighting, config, dram, root, lod
+        As :func:`voxrt.sim.render` takes them, checked.
+    scale
+        Of the level of detail: the register ``lod.scale``; 0 without.
+
+    Raises
+    ------
+    NoSuchConfigurationError, SimulatorError
+        As :func:`voxrt.sim.render` does.
+    """
+    started = time.perf_counter()
+    _rtl = _ray_tracer(config)
+    tracer = _rtl.Tracer(config)
+    if absent := lighting.features - shader_features(config):
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} is built without {' and '.join(sorted(absent))}; "
+            "take configuration 'lit' or render with --engine model"
+        )
+    if lod and "lod" not in shader_features(config):
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} is built without level of detail; take one with caches, such as "
+            "'cached1', or render with --engine model"
+        )
+    place = tuple(value / POSITION_UNITS for value in camera.position)
+    for misfit, problem in (
+        (len(rom.octree.words) > tracer.memory_words, f"{len(rom.octree.words)} words; it holds {tracer.memory_words}"),
+        (rom.octree.depth > tracer.max_depth, f"a depth of {rom.octree.depth}; it goes to {tracer.max_depth}"),
+        (
+            not all(-tracer.position_limit <= value < tracer.position_limit for value in camera.position),
+            f"a camera at {place} voxels; it reaches ±{tracer.position_limit // POSITION_UNITS}",
+        ),
+        (
+            lighting.on and not all(-tracer.light_limit <= value < tracer.light_limit for value in lighting.position),
+            f"a light outside of ±{tracer.light_limit // POSITION_UNITS} voxels",
+        ),
+        (max(size) > _FRAME_LIMIT, f"a frame of {size[0]}x{size[1]} pixels; it counts to {_FRAME_LIMIT}"),
+    ):
+        if misfit:
+            raise SimulatorError(
+                f"{rom.name} does not fit ray tracer configuration {config!r}: {problem}; render it with --engine model"
+            )
+    if dram is not None and not tracer.cached:
+        raise SimulatorError(
+            f"ray tracer configuration {config!r} has its memory on the chip, without latency or interval; "
+            "take one with caches, such as 'cached4'"
+        )
+    memory = Dram() if dram is None else dram
+    words = encode(rom.octree.words, "lod", rom.octree.means) if lod else rom.octree.words
+    tracer.load(words, lod_words=bool(lod))
+    pixels = tracer.render(
+        registers_of(camera),
+        size[0],
+        size[1],
+        rom.octree.depth,
+        palette_of(rom),
+        **shading_of(rom, lighting),
+        latency=memory.latency,
+        interval=memory.interval,
+        jitter=memory.jitter,
+        dram_seed=memory.seed,
+        lod_scale=scale,
+        root=root,
+    )
+    if pixels["errors"] == ["direction overflow"]:  # the camera's directions fit: it is the light's
+        raise SimulatorError(
+            f"the light is {DIRECTION_LIMIT // (2 * POSITION_UNITS)} voxels or more from what it should light: "
+            "too far for the ray tracer; move it nearer or render with --engine model"
+        )
+    if pixels["errors"]:
+        raise SimulatorError(f"the ray tracer reports {', '.join(pixels['errors'])} in its frame of {rom.name}")
+    return Frame(
+        colour=pixels["colour"],
+        material=pixels["material"],
+        face=pixels["face"],
+        cost=RenderCost(
+            size[0] * size[1],
+            pixels["words_read"],
+            pixels["cycles"],
+            time.perf_counter() - started,
+            CacheCost(*(pixels[count] for count in _CACHE_COUNTS)) if tracer.cached else None,
+        ),
+    )
+
+
+def _ray_tracer(config: str) -> Any:  # noqa: ANN401 - the native module may be absent
+    _rtl = import_verilated("render with --engine model")
+    if config not in _rtl.CONFIGS:
+        raise NoSuchConfigurationError(config, _rtl.CONFIGS)
+    return _rtl
