@@ -1,0 +1,162 @@
+"""Verify that a board traces its pictures in time: ``python bench/beam.py NAME [--frames 60] [--write]``.
+
+The sources of the board's design are simulated from power-on, with the octree and the boot table that ``voxrt
+bitstream`` makes of each scene. A monitor at the DVI pins measures each frame. Each picture is compared with the exact
+model's, and the board's counters of late rows and late frames are read by the serial line. ``--write`` writes
+``bench/results/beam-NAME.md``. Needs a C++ compiler; a frame takes seconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import struct
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+import voxrt
+from voxrt.beam import SCREEN, BeamFit, fit_beam
+from voxrt.bitstream import BaseDesign, read_board
+from voxrt.board.designs import build
+from voxrt.board.designs.boot_table import BOARD_REGISTERS, boot_table, encode_octree
+from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
+from voxrt.board_scenes import board_scene
+from voxrt.export import Blob
+from voxrt.octree import Rom, from_dense
+from voxrt.orbit import orbit
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from rtl_scenes import terrain
+
+if TYPE_CHECKING:
+    from voxrt.octree.camera import Camera
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = ("house.obj", "planet.glb", "courtyard.glb")
+PERIOD = 3
+"""Frames per camera of the boot table."""
+MATERIALS = (
+    voxrt.Material("empty", (0, 0, 0)),
+    voxrt.Material("grass", (96, 160, 72)),
+    voxrt.Material("earth", (150, 120, 84)),
+)
+
+
+class Seen(NamedTuple):
+    """What a monitor and a host saw of a scene."""
+
+    beam: BeamFit
+    words: int
+    frames: int
+    exact: int
+    vga: int
+    underruns: int
+    late: int
+
+    @property
+    def holds(self) -> bool:
+        """Every frame is exact and in time."""
+        return self.exact == self.vga == self.frames and self.underruns == self.late == 0
+
+
+def rom_of(name: str, capacity: int) -> Rom:
+    """Build an example for a memory of so many words, or make the terrain."""
+    if name != "terrain":
+        return voxrt.build(ROOT / "examples" / name, budget=capacity).rom
+    return Rom("terrain", from_dense(terrain(6)), MATERIALS)
+
+
+def watch(rom: Rom, design: BaseDesign, program: Path, folder: Path, frames: int) -> Seen:
+    """Run a board from power-on for a number of frames."""
+    lighting = voxrt.Lighting()
+    core = design.core
+    beam = fit_beam(
+        rom,
+        orbit(rom, SCREEN),
+        lighting,
+        lanes=core["Lanes"],
+        ray_clocks=core["RayClocks"],
+        clock_hz=design.clock_hz,
+    )
+    cameras = orbit(rom, beam.size)
+    scene = board_scene(Blob(rom))
+    contents = {
+        "octree": encode_octree(scene.words, core["BlockBits"]),
+        "table": boot_table(scene, cameras, lighting, scale=beam.scale, period=PERIOD),
+    }
+    with BoardSimulation(program, folder, contents) as simulation:
+        simulation.frames(1)  # until the first vertical blanking the screen is black
+        exact = vga = 0
+        for number in range(frames):
+            pixels, timing = simulation.frames(1)[0]
+            vga += timing.is_vga
+            exact += np.array_equal(pixels, picture(rom, cameras[number // PERIOD], beam))
+        underruns, late = (counter(simulation, name) for name in ("underruns", "late"))
+    return Seen(beam, len(rom.octree.words), frames, exact, vga, underruns, late)
+
+
+def picture(rom: Rom, camera: Camera, beam: BeamFit) -> np.ndarray:
+    """Give what the screen must show: each pixel of the exact model as a square."""
+    frame = voxrt.render(rom, camera, size=beam.size, engine="model").colour
+    return frame.repeat(1 << beam.scale, 0).repeat(1 << beam.scale, 1)
+
+
+def counter(simulation: BoardSimulation, name: str) -> int:
+    """Read a register of the board by the serial line."""
+    request = bytes([0x56, 1, 0, 1]) + BOARD_REGISTERS[name].to_bytes(3, "little")
+    answer = simulation.transfer(request + struct.pack("<I", zlib.crc32(request)), 12)
+    assert answer[0] == 0x76, answer.hex()
+    return int.from_bytes(answer[4:8], "little")
+
+
+def report(name: str, design: BaseDesign, found: dict[str, Seen]) -> str:
+    """Give the table in Markdown."""
+    lanes = f"{design.core['Lanes']} lane{'' if design.core['Lanes'] == 1 else 's'}"
+    heads = ("scene", "words", "picture", "cycles per pixel", "lines ahead")
+    heads += ("frames", "exact", "timing of 640 x 480", "rows repeated", "frames late")
+    lines = [
+        f"# {name}: pictures in time",
+        "",
+        f"`python bench/beam.py {name} --write`: sources of the board's design, simulated;",
+        f"{lanes} at {design.clock_hz / 1e6:.1f} MHz, pixel clock 25 MHz.",
+        "",
+        f"| {' | '.join(heads)} |",
+        f"|---|--:|---|{'--:|' * 7}",
+    ]
+    for scene, seen in found.items():
+        beam, size = seen.beam, f"{seen.beam.size[0]} x {seen.beam.size[1]}"
+        row = [scene, f"{seen.words:,}", size, f"{beam.cycles_per_pixel:.2f}", f"{beam.lead:.1f}"]
+        row += [str(count) for count in (seen.frames, seen.exact, seen.vga, seen.underruns, seen.late)]
+        lines.append(f"| {' | '.join(row)} |")
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Watch each scene; give the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("name", choices=build.board_names())
+    parser.add_argument("--frames", type=int, default=60)
+    parser.add_argument("--scenes", nargs="*", default=[*EXAMPLES, "terrain"])
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    design = read_board(options.name).design
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        program = compile_sources(build.read_board(options.name), Path(folder, "program"))
+        for scene in options.scenes:
+            rom = rom_of(scene, design.capacity)
+            found[scene] = watch(rom, design, program, Path(folder), options.frames)
+            print(scene, found[scene], file=sys.stderr)
+    text = report(options.name, design, found)
+    print(text, end="")
+    if options.write:
+        (ROOT / "bench" / "results" / f"beam-{options.name}.md").write_text(text, encoding="utf-8")
+    return 0 if all(seen.holds for seen in found.values()) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
