@@ -1,16 +1,18 @@
-"""What a cluster costs and what it would gain: ``python bench/cluster.py ASSET --depth 12``.
+"""What several processes cost and what a cluster would gain: ``python bench/cluster.py ASSET:DEPTH ... [--write]``.
 
-First the asset is built in one process, and by two workers with one thread each on this machine: processor seconds,
-of the whole command and its children. Then each tile is made alone, and the times and sizes that were measured are
-scheduled on paper for more workers: tiles in order to whoever is free, then the squares that workers join, then the
-last join and the writing on one machine.
+First each asset is built by one process, and by two workers with one thread each on this machine: processor seconds
+of the whole command with its children, the least of several rounds that take turns. Then each tile is made alone, and
+the times and sizes that were measured are scheduled on paper for more workers: tiles in order to whoever is free, then
+the squares that workers join, then the last join on one machine.
 """
 
 from __future__ import annotations
 
 import argparse
+import filecmp
 import heapq
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -25,6 +27,9 @@ from voxrt.cluster import cluster_side
 
 FAN_IN = 4
 MOST_PIECES = 16
+JOINERS = 8
+MEMORY = "2G"
+RESULTS = Path(__file__).resolve().parent / "results" / "cluster.md"
 
 
 class Made(NamedTuple):
@@ -35,47 +40,66 @@ class Made(NamedTuple):
 
 
 def main() -> None:
-    """Measure, and print the plan."""
+    """Measure, and print both tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("asset", type=Path)
-    parser.add_argument("--depth", type=int, default=12)
+    parser.add_argument("assets", nargs="+", metavar="ASSET:DEPTH")
     parser.add_argument("--fill", default="surface", choices=("surface", "auto", "solid"))
-    parser.add_argument("--workers", type=int, nargs="*", default=[2, 8, 64])
-    parser.add_argument("--plan-only", action="store_true", help="do not build on a cluster of two workers")
+    parser.add_argument("--workers", type=int, nargs="*", default=[2, 8, 64], help="of the plan")
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    if not options.plan_only:
-        compare(options.asset, options.depth, options.fill)
-    plan(options.asset, options.depth, options.fill, options.workers)
+    asked = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
+    costs = ["| asset | side | one process, s | two workers, s | more |", "|---|--:|--:|--:|--:|"]
+    print("\n".join(costs))
+    for asset, depth in asked:
+        costs.append(compare(asset, depth, options.fill, options.rounds))
+        print(costs[-1], flush=True)
+    plans = [
+        "| asset | side | workers | tiles | s | largest, s | MB | joins on workers, s | last join, s | all, s | gain |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    print("\n" + "\n".join(plans))
+    for asset, depth in asked:
+        for workers in options.workers:
+            plans.append(plan(asset, depth, options.fill, workers))
+            print(plans[-1], flush=True)
+    if options.write:
+        about = ABOUT.format(
+            machine=platform.machine(), python=platform.python_version(), memory=MEMORY, rounds=options.rounds
+        )
+        RESULTS.write_text("\n".join([about, *costs, PLANS, *plans]) + "\n")
 
 
-def compare(asset: Path, depth: int, fill: str) -> None:
-    """Build alone and on two workers, and print what the cluster costs."""
-    with TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "voxrt", "build", str(asset), "--depth", str(depth), "--fill", fill, "-q"]
-        alone = processor_seconds([*command, "--memory", "2G", "-o", f"{folder}/alone.bin"])
-        two = processor_seconds([*command, "--workers", "2", "-o", f"{folder}/two.bin"])
-        same = Path(folder, "alone.bin").read_bytes() == Path(folder, "two.bin").read_bytes()
-        started = processor_seconds([sys.executable, "-c", START], folder)
-    print(f"alone                    {alone:8.1f} s of processor time")
-    print(f"two workers              {two:8.1f} s, {100 * (two / alone - 1):+.0f} %, the same bytes: {same}")
-    print(f"of it to start a cluster {started:8.1f} s; without, {100 * ((two - started) / alone - 1):+.0f} %")
+ABOUT = """# Several processes
 
+Surfaces (`--fill surface`) of scans, by `bench/cluster.py`; {machine}, Python {python}, `--memory {memory}`; processor
+seconds of the whole command with its children, the least of {rounds} rounds. *more*: what two workers on one machine
+take beyond one process; their results have the same bytes.
+"""
 
-START = """
-import voxrt, voxrt.pipeline
-from voxrt.cluster import connected
-if __name__ == "__main__":
-    with connected(None, 2) as client:
-        client.run(__import__, "voxrt.cluster_tasks")
+PLANS = """
+Each tile made alone, and the processor seconds scheduled on paper. *all*: the longest path of analysis, tiles, joins on
+workers, and the last join; loading and writing are left out. *gain*: that of one worker, who joins nothing, over it.
 """
 
 
-def processor_seconds(command: list[str], folder: str | None = None) -> float:
+def compare(asset: Path, depth: int, fill: str, rounds: int) -> str:
+    """Build alone and by two workers; returns a row of what that costs."""
+    with TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "voxrt", "build", str(asset), "--depth", str(depth), "--fill", fill, "-q"]
+        command += ["--memory", MEMORY]
+        alone, two = [], []
+        for _ in range(rounds):
+            alone.append(processor_seconds([*command, "-o", f"{folder}/alone.bin"]))
+            two.append(processor_seconds([*command, "--workers", "2", "-o", f"{folder}/two.bin"]))
+        if not filecmp.cmp(f"{folder}/alone.bin", f"{folder}/two.bin", shallow=False):
+            raise SystemExit(f"{asset}: two workers gave other bytes")
+    more = 100 * (min(two) / min(alone) - 1)
+    return f"| {asset.stem} | {1 << depth:,} | {min(alone):.2f} | {min(two):.2f} | {more:+.0f} % |"
+
+
+def processor_seconds(command: list[str]) -> float:
     """Run a command; returns its processor seconds, with those of its children."""
-    if command[1] == "-c":  # processes that are spawned import the script
-        script = Path(folder or ".") / "start.py"
-        script.write_text(command[2])
-        command = [command[0], str(script)]
     process = subprocess.Popen(command)
     _, status, usage = os.wait4(process.pid, 0)
     if status:
@@ -83,43 +107,37 @@ def processor_seconds(command: list[str], folder: str | None = None) -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def plan(asset: Path, depth: int, fill: str, workers: list[int]) -> None:
-    """Make each tile alone, and print how long so many workers would take."""
-    build_options = voxrt.BuildOptions(depth=depth, fill=fill, threads=1)
+def plan(asset: Path, depth: int, fill: str, workers: int) -> str:
+    """Make each tile alone; returns a row of how long so many workers would take."""
+    options = voxrt.BuildOptions(depth=depth, fill=fill, threads=1)
     scene = voxrt.load(asset)
     grid = voxrt.fit_grid(scene, depth=depth)
     scene = voxrt.voxelize.assign_colours(scene, grid)
     begun = process_time()
-    voxelizer = block_voxelizer(scene, grid, build_options)
-    blocks = voxelizer.blocks(cluster_side(grid, plan_build(scene, grid, build_options, on_disk=True)))
+    voxelizer = block_voxelizer(scene, grid, options)
+    voxelizer.prepare()
     analysis = process_time() - begun
+    blocks = voxelizer.blocks(cluster_side(voxelizer, grid, plan_build(scene, grid, options, on_disk=True), workers))
     tiles: dict[tuple[int, int], Made] = {}
     for block in blocks:
         begun = process_time()
         tree = octree.build(voxelizer.voxelize(block)[0], threads=1)
         tiles[block.x // block.side, block.y // block.side] = Made(tree, process_time() - begun)
     levels = [tiles]
-    while len(levels[-1]) > MOST_PIECES:
+    while workers >= JOINERS and len(levels[-1]) > MOST_PIECES:
         groups: dict[tuple[int, int], list[Made]] = {}
         for (x, y), piece in levels[-1].items():
             groups.setdefault((x // FAN_IN, y // FAN_IN), []).append(piece)
         levels.append({place: joined(depth, parts) for place, parts in groups.items()})
-    last = joined(depth, list(levels[-1].values()))
-    size = sum(one.tree.words.nbytes for one in tiles.values())
-    largest = max(one.seconds for one in tiles.values())
-    total = sum(one.seconds for one in tiles.values())
-    print(f"analysis on each worker  {analysis:8.2f} s")
-    print(f"{len(tiles):4d} tiles              {total:8.2f} s, at most {largest:.2f} s; {size / 1e6:.0f} MB")
-    for level in levels[1:]:
-        joins = sum(one.tree.words.nbytes for one in level.values()) / 1e6
-        seconds = [one.seconds for one in level.values()]
-        print(f"{len(level):4d} joins             {sum(seconds):8.2f} s, at most {max(seconds):.2f} s; {joins:.0f} MB")
-    print(f"the last join            {last.seconds:8.2f} s; {last.tree.words.nbytes / 1e6:.0f} MB")
-    for count in workers:
-        path = analysis + last.seconds
-        path += sum(scheduled([one.seconds for one in level.values()], count) for level in levels)
-        gain = (analysis + total + last.seconds) / path
-        print(f"{count:4d} workers             {path:8.2f} s, {gain:.1f} times as fast as one")
+    last = joined(depth, list(levels[-1].values())).seconds
+    size = sum(one.tree.words.nbytes for one in tiles.values()) / 1e6
+    total, largest = sum(one.seconds for one in tiles.values()), max(one.seconds for one in tiles.values())
+    joins = sum(one.seconds for level in levels[1:] for one in level.values())
+    path = analysis + last + sum(scheduled([one.seconds for one in level.values()], workers) for level in levels)
+    return (
+        f"| {asset.stem} | {1 << depth:,} | {workers} | {len(tiles)} | {total:.2f} | {largest:.2f} | {size:.0f} | "
+        f"{joins:.2f} | {last:.2f} | {path:.2f} | {(analysis + total) / path:.1f} |"
+    )
 
 
 def joined(depth: int, parts: list[Made]) -> Made:

@@ -18,12 +18,13 @@ import numpy as np
 
 from voxrt.export.atomic import write_atomically
 from voxrt.export.provenance import Provenance
-from voxrt.export.word_file import read_bytes
+from voxrt.export.word_file import mapped_bytes
 from voxrt.octree import Animation, AnimationFrame, Rom, RomError, census, check_roots, decode, frame_octree
 from voxrt.octree.camera import BOUNCE_LIMIT, FACES, Camera, Faces, Lighting
 from voxrt.voxelize import Grid, Material
 
 if TYPE_CHECKING:
+    from mmap import mmap
     from pathlib import Path
 
 MAGIC = b"VOXRTBLB"
@@ -153,7 +154,7 @@ def write_blob(path: Path, blob: Blob) -> None:
 
 
 def read_blob(path: Path) -> Blob:
-    """Read a blob.
+    """Read a blob. A large one is mapped, as :func:`read_raw` maps files.
 
     Raises
     ------
@@ -169,7 +170,7 @@ def read_blob(path: Path) -> Blob:
     >>> read_blob(path).rom
     <Rom 'house': depth 4, 721 words, 5 materials>
     """
-    sections = _sections(path, read_bytes(path))
+    sections = _sections(path, mapped_bytes(path))
     for name in (b"NAME", b"WRLD", b"MATL", b"WORD"):
         if name not in sections:
             raise _damaged(path, f"section {name.decode()}", "is missing")
@@ -178,7 +179,7 @@ def read_blob(path: Path) -> Blob:
         view = _VIEW.unpack(sections[b"VIEW"]) if b"VIEW" in sections else None
         light = _LIGHT.unpack(sections[b"LITE"]) if b"LITE" in sections else None
         faces = _FACES.unpack(sections[b"FACE"]) if b"FACE" in sections else FACES
-        title = sections[b"NAME"].decode()
+        title = bytes(sections[b"NAME"]).decode()
     except (struct.error, UnicodeDecodeError):
         raise _damaged(
             path, "section NAME, WRLD, VIEW, LITE or FACE", "has another layout than that of version 1"
@@ -186,9 +187,10 @@ def read_blob(path: Path) -> Blob:
     words = sections[b"WORD"]
     if len(words) % 4:
         raise _damaged(path, "section WORD", f"{len(words)} bytes are not words of 4")
-    octree = decode(np.frombuffer(words, dtype="<u4").astype(np.uint32), "report", depth, source=str(path))
-    materials = _materials(path, sections[b"MATL"])
-    animation = _animation(path, sections[b"FRMS"]) if b"FRMS" in sections else None
+    aligned = np.require(np.frombuffer(words, "<u4").astype(np.uint32, copy=False), requirements="A")
+    octree = decode(aligned, "report", depth, source=str(path))
+    materials = _materials(path, bytes(sections[b"MATL"]))
+    animation = _animation(path, bytes(sections[b"FRMS"])) if b"FRMS" in sections else None
     highest = check_roots(octree, animation.roots, source=str(path)) if animation else max(census(octree).voxels)
     if highest >= len(materials):
         raise _damaged(path, "section MATL", f"ends at material {len(materials) - 1} and {highest} is in use")
@@ -196,13 +198,14 @@ def read_blob(path: Path) -> Blob:
         Rom(title, octree, materials, _grid(path, depth, place) if known else None),
         None if view is None else Camera(view[:3], view[3:6], view[6:9], view[9:]),
         None if light is None else _lighting(light, faces),
-        _provenance(path, sections[b"PROV"]) if b"PROV" in sections else Provenance(),
+        _provenance(path, bytes(sections[b"PROV"])) if b"PROV" in sections else Provenance(),
         animation,
     )
 
 
-def _sections(path: Path, data: bytes) -> dict[bytes, bytes]:
-    if not data.startswith(MAGIC):
+def _sections(path: Path, whole: bytes | mmap) -> dict[bytes, memoryview]:
+    data = memoryview(whole)
+    if data[: len(MAGIC)] != MAGIC:
         raise RomError(f"{path}: does not start with {MAGIC.decode()}; name a blob")
     if len(data) < _HEADER.size:
         raise _damaged(path, "header", "is cut short")

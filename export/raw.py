@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import mmap
-import os
-from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
-from voxrt.export.word_file import WordFile, read_bytes, word_file
+from voxrt.export.word_file import WordFile, mapped_bytes, word_file
 from voxrt.octree import RomError
 
 if TYPE_CHECKING:
@@ -22,9 +19,6 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 """Words that are converted at a time."""
-
-_MAPPED = 1 << 24
-"""Bytes from which a file is mapped: copies of smaller ones cost nothing, and cannot change."""
 
 
 def raw_bytes(words: NDArray[np.uint32]) -> Iterator[bytes]:
@@ -75,18 +69,7 @@ def read_raw(path: Path) -> WordFile:
     >>> len(read_raw(Path("dot.bin")).words)
     17
     """
-    data = _mapped(path) or read_bytes(path)
+    data = mapped_bytes(path)
     if len(data) % 4:
         raise RomError(f"{path}: {len(data)} bytes are not words of 4; the file is cut short, or no octree memory")
     return word_file(np.frombuffer(data, dtype="<u4").astype(np.uint32, copy=False), None)
-
-
-def _mapped(path: Path) -> mmap.mmap | None:
-    """Map a large file; None for others, and for what is no file."""
-    try:
-        with path.open("rb") as file:
-            if not S_ISREG(os.fstat(file.fileno()).st_mode) or os.fstat(file.fileno()).st_size < _MAPPED:
-                return None
-            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    except OSError:
-        return None  # reading says why

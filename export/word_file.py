@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import mmap
+import os
 from dataclasses import dataclass
+from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 from voxrt.octree import RomError, _native
@@ -16,6 +19,9 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 """Words that are formatted at a time."""
+
+_MAPPED = 1 << 24
+"""Bytes from which a file is mapped: copies of smaller ones cost nothing, and cannot change."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -60,3 +66,18 @@ def read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise RomError(f"{path}: cannot be read: {error.strerror}; name an octree memory") from None
+
+
+def mapped_bytes(path: Path) -> bytes | mmap.mmap:
+    """Map a large file, or read another one whole; RomError where that fails.
+
+    A mapped file may be replaced, as voxrt replaces files, but nobody may write into it or cut it while it is in use.
+    """
+    try:
+        with path.open("rb") as file:
+            status = os.fstat(file.fileno())
+            if S_ISREG(status.st_mode) and status.st_size >= _MAPPED:
+                return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except OSError:
+        pass  # reading says why
+    return read_bytes(path)

@@ -16,11 +16,13 @@ class Assembly:
     ----------
     depth
         Levels of the world, 1 … 16.
+    expected_blocks
+        Blocks of 8 words to make room for at once; more are as welcome, and cost the moving of those before.
 
     Raises
     ------
     TypeError, ValueError
-        The depth is none.
+        The depth is none, or so many blocks cannot be.
 
     Examples
     --------
@@ -32,9 +34,9 @@ class Assembly:
     True
     """
 
-    def __init__(self, depth: int) -> None:
+    def __init__(self, depth: int, *, expected_blocks: int = 0) -> None:
         self._depth = whole("depth", depth, 1, MAX_DEPTH)
-        self._native = _native.Assembly(self._depth)
+        self._native = _native.Assembly(self._depth, whole("expected_blocks", expected_blocks, 0, 1 << 28))
 
     def add(self, part: Octree) -> None:
         """Add a part.

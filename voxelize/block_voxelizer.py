@@ -102,6 +102,15 @@ class BlockVoxelizer:
         made._objects = tuple(objects)  # noqa: SLF001 - one of us
         return made
 
+    def prepare(self) -> None:
+        """Analyse the meshes and bin their triangles now."""
+        _ = self._native
+
+    def use_threads(self, threads: int) -> None:
+        """Use so many threads from now on; 0 takes as many as the machine has."""
+        self._threads = arguments.whole("threads", threads, 0, MOST_THREADS)
+        self._native.use_threads(self._threads)
+
     @cached_property
     def _native(self) -> _native.BlockVoxelizer:
         wanted = np.zeros(0 if self._objects is None else len(self._parts.scene.objects), np.uint8)

@@ -182,7 +182,14 @@ def build_octree(
 
 
 def join_tiles(names: Iterable[str], depth: int, store: TileStore, cache: int) -> Octree:
-    """Join finished tiles to the octree of the world, in the store's file of words.
+    """Join finished tiles to the octree of the world.
+
+    Parameters
+    ----------
+    names, depth, store
+        The tiles, the levels of the world, and where tiles are.
+    cache
+        Bytes of memory for blocks: these go to the disk, and the words to the store's file. 0 to join in memory.
 
     Raises
     ------
@@ -190,13 +197,19 @@ def join_tiles(names: Iterable[str], depth: int, store: TileStore, cache: int) -
         A tile is missing or damaged, or the disk is full.
     """
     try:
-        whole = octree.DiskAssembly(depth, store.folder, cache=cache)
+        whole: octree.DiskAssembly | octree.Assembly
+        if cache:
+            whole = octree.DiskAssembly(depth, store.folder, cache=cache)
+        else:
+            names = tuple(names)
+            blocks = sum(path.stat().st_size for path in map(store.path, names) if path.exists()) // _BYTES_OF_BLOCK
+            whole = octree.Assembly(depth, expected_blocks=min(blocks, 1 << 28))
         for name in names:
             tile = store.read(name)
             if tile is None:
                 raise OutputError(f"{store.path(name)}: is missing or damaged; build again, which makes it anew")
             whole.add(tile.octree)
-        return whole.octree(store.words)
+        return whole.octree() if isinstance(whole, octree.Assembly) else whole.octree(store.words)
     except OSError as error:
         raise OutputError(
             f"{store.folder}: cannot be written: {error.strerror or error}; finished tiles stay, and the same build "

@@ -131,7 +131,7 @@ class BuildOptions:
         Build on the cluster of this Dask scheduler, such as ``tcp://host:8786``. Its workers open the asset and write
         tiles at the same paths as this machine. Needs the extra ``cluster``.
     workers
-        Build on a cluster of so many processes on this machine, 1 to 1024. Needs the extra ``cluster``.
+        Build by so many processes of this machine, 1 to 1024.
 
     Raises
     ------

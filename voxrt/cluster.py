@@ -1,23 +1,21 @@
-"""Builds on many machines, by dask.distributed: tiles become tasks, and this process writes the result."""
+"""Builds by several processes: tiles become tasks, of dask.distributed or here, and this process writes the result."""
 
 from __future__ import annotations
 
 import logging
 import os
-import signal
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
-from multiprocessing import resource_tracker
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from voxrt.blockwise import block_voxelizer, join_tiles, tiles_key
-from voxrt.cluster_tasks import TileDone, TileJob, make_tile, merge_tiles
+from voxrt.cluster_tasks import TileDone, TileJob, inherited_scene, make_tile, merge_tiles
 from voxrt.errors import ToolError
+from voxrt.local_workers import completed
 from voxrt.tile_store import sum_tallies, tile_name
 
 if TYPE_CHECKING:
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
     from voxrt.octree import Octree
     from voxrt.stage_clock import StageClock
     from voxrt.tile_store import TileStore
-    from voxrt.voxelize import ColumnBlock, Grid, Scene, VoxelizationReport
+    from voxrt.voxelize import BlockVoxelizer, ColumnBlock, Grid, Scene, VoxelizationReport
 
 T = TypeVar("T")
 
@@ -40,17 +38,19 @@ _WAIT = 60.0
 _FAN_IN = 4
 """Tiles along each side of a square that one task joins."""
 
-_LOCAL = {
-    "distributed.worker.profile.enabled": False,  # a sampler beside native code
-    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 28,  # Dask's gives all back after each tile
-}
-"""Dask's configuration for workers on this machine."""
-
 _LOOK = 0.5
 """Seconds between two questions after the number of workers."""
 
 _MOST_PIECES = 16
 """So many octrees are joined by this process alone."""
+
+_JOINERS = 8
+"""With fewer workers this process joins all tiles: what they would join, it would join again."""
+
+_TILES_PER_WORKER = 4
+"""Tiles differ in work; so many even it out, and each has blocks that others have too."""
+
+_LEAST_SIDE = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,15 +73,17 @@ class ClusterProgress:
     bytes: int
 
 
-def cluster_side(grid: Grid, plan: BuildPlan) -> int:
-    """Return the columns per side of a tile: a sixteenth of the grid's, or 512; less where the memory asks for it."""
-    side = max(512, grid.size // 16)
-    return side if plan.side is None else min(side, plan.side)
+def cluster_side(voxelizer: BlockVoxelizer, grid: Grid, plan: BuildPlan, workers: int) -> int:
+    """Return the columns per side of a tile: a few tiles per worker, more where the memory asks for it."""
+    side = grid.size if plan.side is None else plan.side
+    while side > _LEAST_SIDE and len(voxelizer.blocks(side)) < _TILES_PER_WORKER * workers:
+        side //= 2
+    return side
 
 
 @contextmanager
-def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
-    """Connect to a scheduler, or, without its address, start workers on this machine.
+def connected(scheduler: str) -> Iterator[Client]:
+    """Connect to a scheduler.
 
     Raises
     ------
@@ -90,7 +92,7 @@ def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         the block where a scheduler or its workers are lost.
     """
     try:
-        from distributed import Client, LocalCluster  # noqa: PLC0415 - the extra `cluster`
+        from distributed import Client  # noqa: PLC0415 - the extra `cluster`
     except ImportError as error:
         raise ToolError(
             f"building on a cluster needs dask.distributed ({error}): pip install 'voxrt-build[cluster]'"
@@ -98,16 +100,12 @@ def connected(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     for name in ("distributed", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said in one line, here
     with ExitStack() as stack:
-        address: Any = scheduler
         try:
-            if address is None:
-                address = stack.enter_context(_local_cluster(LocalCluster, workers or 1))
-            client = stack.enter_context(Client(address, timeout=_WAIT, set_as_default=False))  # type: ignore[no-untyped-call]
+            client = stack.enter_context(Client(scheduler, timeout=_WAIT, set_as_default=False))  # type: ignore[no-untyped-call]
             client.wait_for_workers(1, timeout=_WAIT)
         except (OSError, TimeoutError, ValueError) as error:
-            where = scheduler or "this machine"
             raise ToolError(
-                f"{where}: no scheduler with a worker answers ({_line(error)}); start them by "
+                f"{scheduler}: no scheduler with a worker answers ({_line(error)}); start them by "
                 "'dask scheduler' and 'dask worker ADDRESS'"
             ) from None
         yield client
@@ -124,7 +122,7 @@ def build_on_cluster(
     store: TileStore,
     told: Callable[[ClusterProgress], None] | None = None,
 ) -> tuple[Octree, VoxelizationReport]:
-    """Voxelize a scene and build its octree on a cluster: the same bytes as on one machine.
+    """Voxelize a scene and build its octree on a cluster, or by processes of this machine: the same bytes as by one.
 
     Parameters
     ----------
@@ -144,26 +142,37 @@ def build_on_cluster(
     """
     with clock.stage("voxelize"):
         voxelizer = block_voxelizer(scene, grid, options)
+        voxelizer.prepare()
         key = tiles_key(voxelizer)
-        blocks = voxelizer.blocks(store.claim(key, cluster_side(grid, plan)))
         shared = replace(options, scheduler=None, workers=None, preview=False, budget=None)
-        local_threads = max(1, (os.cpu_count() or 1) // (options.workers or 1)) if options.scheduler is None else 0
-        folder = os.fspath(store.folder.resolve())
-        job = TileJob(os.fspath(Path(asset).resolve()), shared, grid, folder, key, options.threads or local_threads)
-        with connected(options.scheduler, options.workers) as client:
+        threads = options.threads
+        if options.workers is not None:
+            threads = threads or max(1, (os.cpu_count() or 1) // options.workers)
+        job = TileJob(os.fspath(Path(asset).resolve()), shared, grid, os.fspath(store.folder.resolve()), key, threads)
+        with ExitStack() as stack:
+            workers = options.workers or 1
+            client = None if options.scheduler is None else stack.enter_context(connected(options.scheduler))
+            if client is None:
+                stack.enter_context(inherited_scene(key, voxelizer))
+            else:
+                workers = len(client.scheduler_info(n_workers=-1)["workers"])
+            blocks = voxelizer.blocks(store.claim(key, cluster_side(voxelizer, grid, plan, workers)))
             objects = {block: voxelizer.objects_of(block) for block in blocks}
-            done = _run(client, job, objects, told)
+            if client is None:
+                done = _run_here(job, objects, workers, told)
+            else:
+                done = _run(client, job, objects, workers, told)
     tallies = sum_tallies(np.concatenate([one.tallies for one in done]), len(scene.objects)) if done else None
     report = voxelizer.report(np.zeros((len(scene.objects), 4), np.int64) if tallies is None else tallies)
     del voxelizer
     with clock.stage("octree"):
-        return join_tiles([one.name for one in done], grid.depth, store, plan.cache or 1 << 28), report
+        return join_tiles([one.name for one in done], grid.depth, store, plan.cache), report
 
 
 def in_order(
     task: Callable[..., T], shared: object, arguments: Sequence[object], *, scheduler: str | None, workers: int | None
 ) -> Iterator[T]:
-    """Call task(shared, number, argument) for each argument on a cluster, and yield the results in their order.
+    """Call task(shared, number, argument) for each argument, and yield the results in their order.
 
     Parameters
     ----------
@@ -174,14 +183,17 @@ def in_order(
     arguments
         Its last argument for each call; `number` counts them from 0.
     scheduler, workers
-        As :func:`connected` takes them.
+        Of the cluster that does so; without, so many processes of this machine.
 
     Raises
     ------
     ToolError
         There is no cluster, or it is lost.
     """
-    with connected(scheduler, workers) as client:
+    if scheduler is None:
+        yield from _in_order_here(task, shared, arguments, workers or 1)
+        return
+    with connected(scheduler) as client:
         try:
             sent = client.scatter(shared, broadcast=True)  # type: ignore[no-untyped-call]
             futures = [client.submit(task, sent, number, one, pure=False) for number, one in enumerate(arguments)]
@@ -193,10 +205,46 @@ def in_order(
             raise ToolError(f"the cluster is lost ({_line(error)}); start it, and this command, again") from error
 
 
+def _in_order_here(task: Callable[..., T], shared: object, arguments: Sequence[object], workers: int) -> Iterator[T]:
+    early: dict[int, T] = {}
+    wanted = 0
+    for number, result in completed(task, shared, list(enumerate(arguments)), workers):
+        early[number] = result
+        while wanted in early:
+            yield early.pop(wanted)
+            wanted += 1
+
+
+def _run_here(
+    job: TileJob,
+    objects: dict[ColumnBlock, tuple[int, ...]],
+    workers: int,
+    told: Callable[[ClusterProgress], None] | None,
+) -> list[TileDone]:
+    """Make all tiles by processes of this machine, and join them to few where many processes can; returns these."""
+    places = [(block.x // block.side, block.y // block.side) for block in objects]
+    made: dict[tuple[int, int], TileDone] = {}
+    size = 0
+    for number, result in completed(make_tile, job, list(objects.items()), workers):
+        made[places[number]] = tile = _checked(result)
+        size += tile.bytes
+        if told is not None:
+            told(ClusterProgress(len(made), len(places), workers, size))
+    pieces, level = {place: made[place] for place in places}, 0
+    while workers >= _JOINERS and len(pieces) > _MOST_PIECES:
+        level += 1
+        groups = _squares(pieces)
+        calls = [(_square_name(level, place), parts) for place, parts in groups.items()]
+        joined = dict(completed(merge_tiles, job, calls, workers))
+        pieces = {place: _checked(joined[number]) for number, place in enumerate(groups)}
+    return list(pieces.values())
+
+
 def _run(
     client: Client,
     job: TileJob,
     objects: dict[ColumnBlock, tuple[int, ...]],
+    workers: int,
     told: Callable[[ClusterProgress], None] | None,
 ) -> list[TileDone]:
     """Make all tiles and join them to few; returns these."""
@@ -208,12 +256,12 @@ def _run(
         tiles[block.x // block.side, block.y // block.side] = future
     made = list(tiles.values())
     pieces, level = tiles, 0
-    while len(pieces) > _MOST_PIECES:
+    while workers >= _JOINERS and len(pieces) > _MOST_PIECES:
         level += 1
         pieces = _submit_merges(client, job, pieces, level)
     wanted = {future.key: future for future in (*made, *pieces.values())}
     done: dict[object, TileDone] = {}
-    finished, size, workers, looked = 0, 0, 0, 0.0
+    finished, size, looked = 0, 0, 0.0
     names = {future.key for future in made}
     try:
         for future in as_completed(list(wanted.values()), loop=client.loop):  # type: ignore[no-untyped-call]
@@ -244,41 +292,22 @@ def _submit_merges(
     client: Client, job: TileJob, pieces: dict[tuple[int, int], Future[Any]], level: int
 ) -> dict[tuple[int, int], Future[Any]]:
     """Submit tasks that join the pieces of each square; pieces that stand alone stay as they are."""
-    groups: dict[tuple[int, int], list[Future[Any]]] = {}
-    for (x, y), piece in pieces.items():
-        groups.setdefault((x // _FAN_IN, y // _FAN_IN), []).append(piece)
     joined: dict[tuple[int, int], Future[Any]] = {}
-    for (x, y), parts in groups.items():
-        name = f"joined-{level}-{x}-{y}"
-        joined[x, y] = client.submit(merge_tiles, job, name, parts, key=f"{name}-{job.key}", pure=False)
+    for place, parts in _squares(pieces).items():
+        name = _square_name(level, place)
+        joined[place] = client.submit(merge_tiles, job, name, parts, key=f"{name}-{job.key}", pure=False)
     return joined
 
 
-@contextmanager
-def _local_cluster(cluster: Any, workers: int) -> Iterator[Any]:  # noqa: ANN401 - a class of Dask
-    """Start workers on this machine. Ctrl-C is for this process alone: it ends them."""
-    import dask  # noqa: PLC0415 - the extra `cluster`
+def _squares(pieces: dict[tuple[int, int], T]) -> dict[tuple[int, int], list[T]]:
+    groups: dict[tuple[int, int], list[T]] = {}
+    for (x, y), piece in pieces.items():
+        groups.setdefault((x // _FAN_IN, y // _FAN_IN), []).append(piece)
+    return groups
 
-    resource_tracker.ensure_running()  # which unblocks SIGINT, and would do so below
-    with TemporaryDirectory(prefix="voxrt-") as scratch, ExitStack() as stack:
-        stack.enter_context(dask.config.set({"temporary-directory": scratch, **_LOCAL}))
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-        try:
-            started = cluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",
-                memory_limit=0,
-                local_directory=scratch,
-                env={"TMPDIR": scratch},  # what a killed worker leaves goes with it
-                silence_logs=logging.CRITICAL,
-            )
-            stack.enter_context(started)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        yield started
+
+def _square_name(level: int, place: tuple[int, int]) -> str:
+    return f"joined-{level}-{place[0]}-{place[1]}"
 
 
 def _line(error: BaseException) -> str:

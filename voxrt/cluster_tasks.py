@@ -1,11 +1,13 @@
 """What the workers of a cluster do: make a tile, join tiles, render a picture.
 
-A worker opens the asset itself. It keeps the scene from task to task, and does one task at a time: the native stages
-use its threads. Tasks return what failed as text, for not every exception can travel.
+A worker opens the asset itself, unless it is a fork of the process that did so. It keeps the scene from task to task,
+and does one task at a time: the native stages use its threads. Tasks return what failed as text, for not every
+exception can travel.
 """
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Lock
@@ -21,7 +23,7 @@ from voxrt.stage_clock import StageClock
 from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -77,6 +79,17 @@ class TileDone:
 _ONE_AT_A_TIME = Lock()
 _scene: dict[str, BlockVoxelizer] = {}  # by the key of the build: that of the last one
 _part: dict[tuple[str, tuple[int, ...]], BlockVoxelizer] = {}  # and that of its objects that were wanted last
+_inherited: dict[str, BlockVoxelizer] = {}  # by the key of the build: of the process that this one is a fork of
+
+
+@contextmanager
+def inherited_scene(key: str, voxelizer: BlockVoxelizer) -> Iterator[None]:
+    """Give the scene of a build to all forks of this process that are made in the block."""
+    _inherited[key] = voxelizer
+    try:
+        yield
+    finally:
+        del _inherited[key]
 
 
 def make_tile(job: TileJob, block: ColumnBlock, objects: tuple[int, ...]) -> TileDone | str:
@@ -145,6 +158,9 @@ def _joined(job: TileJob, store: TileStore, names: Sequence[str]) -> Tile | str:
 
 def _voxelizer(job: TileJob, objects: tuple[int, ...]) -> BlockVoxelizer | None:
     """Return the voxelizer of some objects; None where the scene is another one than that of the job."""
+    if (ready := _inherited.get(job.key)) is not None:
+        ready.use_threads(_threads(job))
+        return ready
     if (part := _part.get((job.key, objects))) is not None:
         return part
     _part.clear()

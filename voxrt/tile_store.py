@@ -1,7 +1,7 @@
 """The finished tiles of a build, in a folder beside its output, so that a build that was killed goes on from them.
 
 A tile is the octree of a square of columns, as words of the whole world, and what the square has of each object. Its
-file ends with a digest. The folder has the key of the build: of what decides the voxels, and of the program. Tiles of
+file ends with its CRC-32. The folder has the key of the build: of what decides the voxels, and of the program. Tiles of
 another key are removed.
 """
 
@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import os
 import struct
+import zlib
 from contextlib import suppress
 from dataclasses import dataclass
-from hashlib import blake2b
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from voxrt.voxelize import ColumnBlock
 
 _HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of tallies
-_MAGIC = b"voxrtil1"
-_DIGEST = 16
+_MAGIC = b"voxrtil2"
+_CRC32 = struct.Struct("<I")
 _TALLIES = 5  # numbers per row: the object, and its tally
 
 
@@ -94,11 +94,11 @@ def write_tile(path: Path, key: str, tile: Tile) -> int:
     words = np.ascontiguousarray(tile.octree.words, "<u4")
     header = _HEADER.pack(_MAGIC, bytes.fromhex(key), tile.octree.depth, 0, len(words), len(tallies))
     parts = [header, tallies.tobytes(), words.tobytes()]
-    digest = blake2b(digest_size=_DIGEST)
+    crc32 = 0
     for part in parts:
-        digest.update(part)
-    write_atomically(path, [*parts, digest.digest()])
-    return sum(map(len, parts)) + _DIGEST
+        crc32 = zlib.crc32(part, crc32)
+    write_atomically(path, [*parts, _CRC32.pack(crc32)])
+    return sum(map(len, parts)) + _CRC32.size
 
 
 def read_tile(path: Path, key: str) -> Tile | None:
@@ -107,13 +107,11 @@ def read_tile(path: Path, key: str) -> Tile | None:
         data = np.fromfile(path, np.uint8)
     except OSError:
         return None
-    if len(data) < _HEADER.size + _DIGEST:
+    if len(data) < _HEADER.size + _CRC32.size:
         return None
-    body = data[:-_DIGEST]
+    body, end = data[: -_CRC32.size], data[-_CRC32.size :]
     magic, own, depth, _, words, rows = _HEADER.unpack(body[: _HEADER.size].tobytes())
-    if (magic, own.hex()) != (_MAGIC, key) or blake2b(body.data, digest_size=_DIGEST).digest() != bytes(
-        data[-_DIGEST:]
-    ):
+    if (magic, own.hex()) != (_MAGIC, key) or _CRC32.pack(zlib.crc32(body.data)) != end.tobytes():
         return None
     split = _HEADER.size + 8 * _TALLIES * rows
     if len(body) != split + 4 * words:
@@ -132,6 +130,21 @@ def tile_name(block: ColumnBlock) -> str:
     '0-4096'
     """
     return f"{block.x}-{block.y}"
+
+
+_locks: set[int] = set()
+"""Descriptors of folders that this process has locked."""
+
+
+def _forget_locks() -> None:
+    """Leave the locks to the process that this one is a fork of: else they would outlive it."""
+    for lock in _locks:
+        os.close(lock)
+    _locks.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_locks)
 
 
 class TileStore:
@@ -166,6 +179,7 @@ class TileStore:
         else:
             for path in self.folder.glob(".*.tmp"):
                 path.unlink(missing_ok=True)
+        _locks.discard(self._lock)
         os.close(self._lock)
         self._lock = None
 
@@ -201,6 +215,7 @@ class TileStore:
             os.close(lock)
             raise
         self._lock = lock
+        _locks.add(lock)
         return side
 
     @property

@@ -18,8 +18,8 @@ namespace voxrt::octree {
 
 class Assembly {
 public:
-    /// An empty world of `depth` levels, 1 … kMaxDepth.
-    explicit Assembly(unsigned depth) : depth_(depth) {}
+    /// An empty world of `depth` levels, 1 … kMaxDepth. Makes room for `expected_blocks` at once.
+    explicit Assembly(unsigned depth, std::size_t expected_blocks = 512) : pool_(expected_blocks), depth_(depth) {}
 
     /// Adds a part: `size` words of an octree of the same depth. Its solid octants must be empty so far. Throws
     /// std::invalid_argument where they are not or the words are no octree, std::length_error as BlockPool does.

@@ -23,12 +23,24 @@ public:
         blocks_.reserve(expected_blocks);
     }
 
+    /// The hash of a block; fetches its place in the table, for an intern() soon.
+    std::uint64_t prepare(const Block& children) const {
+        const std::uint64_t hash = block_hash(children);
+#if defined(__GNUC__)
+        __builtin_prefetch(&slots_[tag_of(hash) & (slots_.size() - 1)]);
+#endif
+        return hash;
+    }
+
     /// The node for eight children: their leaf where all are the same leaf, else the block's number. Throws
     /// std::length_error where that would be the block beyond what 31-bit addresses can reach.
-    Node intern(const Block& children) {
+    Node intern(const Block& children) { return intern(children, block_hash(children)); }
+
+    /// The same for a block whose hash is known.
+    Node intern(const Block& children, std::uint64_t whole_hash) {
         if (is_leaf(children[0]) && all_equal(children))
             return children[0];
-        const Word hash = hash_of(children);
+        const Word hash = tag_of(whole_hash);
         const std::size_t mask = slots_.size() - 1;
         std::size_t i = hash & mask;
         for (; slots_[i].number != kFree; i = (i + 1) & mask)
@@ -67,10 +79,7 @@ private:
                 (word_pair(a, 2) ^ word_pair(b, 2)) | (word_pair(a, 3) ^ word_pair(b, 3))) == 0;
     }
 
-    static Word hash_of(const Block& children) {
-        const std::uint64_t hash = block_hash(children);
-        return static_cast<Word>(hash ^ hash >> 32);
-    }
+    static Word tag_of(std::uint64_t hash) { return static_cast<Word>(hash ^ hash >> 32); }
 
     void grow() {
         std::vector<Slot> old(2 * slots_.size(), Slot{0, kFree});

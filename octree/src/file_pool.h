@@ -16,12 +16,23 @@ public:
     std::size_t size() const { return blocks_.size(); }
     const Block& operator[](Word number) { return blocks_[number]; }
 
+    /// The hash of a block; fetches its place in the table, for an intern() soon.
+    std::uint64_t prepare(const Block& children) const {
+        const std::uint64_t hash = block_hash(children);
+#if defined(__GNUC__)
+        __builtin_prefetch(&slots_[place_of(hash)]);
+#endif
+        return hash;
+    }
+
     /// The node for eight children, as BlockPool::intern() gives it.
-    Word intern(const Block& children) {
+    Word intern(const Block& children) { return intern(children, block_hash(children)); }
+
+    /// The same for a block whose hash is known.
+    Word intern(const Block& children, std::uint64_t hash) {
         if (is_leaf(children[0]) && children == Block{children[0], children[0], children[0], children[0], children[0],
                                                       children[0], children[0], children[0]})
             return children[0];
-        const std::uint64_t hash = block_hash(children);
         std::size_t i = place_of(hash);
         for (; slots_[i].number != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
             if (slots_[i].tag == static_cast<Word>(hash) && blocks_[slots_[i].number] == children)

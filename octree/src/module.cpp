@@ -435,11 +435,11 @@ NB_MODULE(_native, m) {
     m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);
     m.def("share_hidden", &bind_share_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a);
     nb::class_<Assembly>(m, "Assembly")
-        .def(nb::new_([](unsigned depth) {
+        .def(nb::new_([](unsigned depth, std::size_t expected_blocks) {
                  require_depth(depth);
-                 return new Assembly(depth);
+                 return new Assembly(depth, expected_blocks);
              }),
-             "depth"_a)
+             "depth"_a, "expected_blocks"_a)
         .def("add", &bind_assembly_add, "words"_a.noconvert())
         .def("words", &bind_assembly_words);
     nb::register_exception_translator([](const std::exception_ptr& failure, void*) {

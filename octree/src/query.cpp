@@ -61,42 +61,71 @@ private:
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
-// Bounds of the solid voxels of a block relative to its corner, each block once per level.
+// Bounds of the solid voxels of a block relative to its corner, each block once: those of an octant twice as large are
+// twice as large.
 class BoundsFinder {
 public:
-    explicit BoundsFinder(const Memory& memory) : memory_(memory) {}
+    explicit BoundsFinder(const Memory& memory) : memory_(memory), known_(memory.size / 8) {}
 
     // Empty where high <= low.
     Box of(Word word, unsigned level) {
-        const std::int64_t side = std::int64_t{1} << level;
-        if (is_leaf(word))
+        if (is_leaf(word)) {
+            const std::int64_t side = std::int64_t{1} << level;
             return material(word) != 0 ? Box{{0, 0, 0}, {side, side, side}} : Box{};
-        const std::uint64_t key = std::uint64_t{word} << 8 | level;
-        if (const auto known = memo_.find(key); known != memo_.end())
-            return known->second;
-        work_.count_step();
-        Box bounds{};
-        bool any = false;
-        for (unsigned octant = 0; octant < 8; ++octant) {
-            const Box child = of(memory_.child(word, octant, level), level - 1);
-            if (child.high[0] == 0)
-                continue;
-            const std::array<std::int64_t, 3> corner = child_corner({0, 0, 0}, octant, side / 2);
-            for (unsigned axis = 0; axis < 3; ++axis) {
-                const std::int64_t low = corner[axis] + child.low[axis];
-                const std::int64_t high = corner[axis] + child.high[axis];
-                bounds.low[axis] = any ? std::min(bounds.low[axis], low) : low;
-                bounds.high[axis] = any ? std::max(bounds.high[axis], high) : high;
-            }
-            any = true;
         }
-        memo_.emplace(key, bounds);
+        memory_.child(word, 0, level); // checks the address
+        const std::size_t number = (std::size_t{word} - 1) / 8;
+        if (word % 8 != 1 || number >= known_.size())
+            throw std::invalid_argument("the words are not a valid octree; validate them first");
+        if (known_[number].height == 0)
+            find(number, word, level);
+        const Known& known = known_[number];
+        if (known.height > level)
+            memory_.child(word, 0, 0); // throws: what is below does not fit
+        Box bounds{};
+        for (unsigned axis = 0; axis < 3 && known.solid; ++axis) {
+            bounds.low[axis] = std::int64_t{known.low[axis]} << (level - known.height);
+            bounds.high[axis] = (std::int64_t{known.last[axis]} + 1) << (level - known.height);
+        }
         return bounds;
     }
 
 private:
+    struct Known { // of a block whose octants are as small as its levels allow
+        std::array<std::uint16_t, 3> low{}, last{};
+        std::uint8_t height = 0; // levels of the block; 0 where nothing is known yet
+        bool solid = false;
+    };
+
+    void find(std::size_t number, Word word, unsigned level) {
+        work_.count_step();
+        unsigned height = 1;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            const Word child = memory_.child(word, octant, level);
+            of(child, level - 1);
+            if (!is_leaf(child))
+                height = std::max(height, 1u + known_[(child - 1) / 8].height);
+        }
+        Known found;
+        found.height = static_cast<std::uint8_t>(height);
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            const Box child = of(memory_.child(word, octant, level), height - 1);
+            if (child.high[0] == 0)
+                continue;
+            const std::array<std::int64_t, 3> corner = child_corner({0, 0, 0}, octant, std::int64_t{1} << (height - 1));
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                const auto low = static_cast<std::uint16_t>(corner[axis] + child.low[axis]);
+                const auto last = static_cast<std::uint16_t>(corner[axis] + child.high[axis] - 1);
+                found.low[axis] = found.solid ? std::min(found.low[axis], low) : low;
+                found.last[axis] = found.solid ? std::max(found.last[axis], last) : last;
+            }
+            found.solid = true;
+        }
+        known_[number] = found;
+    }
+
     Memory memory_;
-    std::unordered_map<std::uint64_t, Box> memo_;
+    std::vector<Known> known_; // by block
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 

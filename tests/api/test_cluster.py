@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import pytest
 from oracles.meshes import icosphere
 
 import voxrt
+from voxrt.blockwise import join_tiles
+from voxrt.local_workers import completed
 
 distributed = pytest.importorskip("distributed")
 
@@ -85,21 +88,29 @@ def same(built, alone):
     assert sorted(path.name for path in built.outputs["mem"].parent.iterdir()) == ["dog.json", "dog.mem"]
 
 
-def test_squares_of_tiles_that_workers_join_give_the_same_bytes(tmp_path):
+@pytest.mark.parametrize("on_a_cluster", [False, True])
+def test_squares_of_tiles_that_workers_join_give_the_same_bytes(on_a_cluster, tmp_path, monkeypatch):
+    names = []
+
+    def look(pieces, *others):
+        names.extend(pieces)
+        return join_tiles(pieces, *others)
+
+    monkeypatch.setattr("voxrt.cluster._JOINERS", 1)
+    monkeypatch.setattr("voxrt.cluster._TILES_PER_WORKER", 32)
+    monkeypatch.setattr("voxrt.cluster.join_tiles", look)
     asset = tmp_path / "ball.obj"
     ball = icosphere(2, (0.0, 0.0, 0.0), 1.0)
     lines = [f"v {x} {y} {z}" for x, y, z in ball.positions]
     lines += [f"f {a} {b} {c}" for a, b, c in ball.triangles + 1]
     asset.write_text("\n".join(lines))
-    names = set()
     options = {"depth": 12, "fill": "surface"}
-
-    def look(_progress):
-        names.update(path.name for path in (tmp_path / "2" / "ball.tiles").glob("joined-*.tile"))
-
     one = voxrt.build(asset, tmp_path / "1" / "ball.mem", **options)
-    two = voxrt.build(asset, tmp_path / "2" / "ball.mem", workers=2, clustered=look, **options)
-    assert names
+    with scheduler(tmp_path, 2) if on_a_cluster else nullcontext((None, [])) as (address, _):
+        where = {"scheduler": address} if on_a_cluster else {"workers": 2}
+        two = voxrt.build(asset, tmp_path / "2" / "ball.mem", **where, **options)
+    assert len(names) == 4
+    assert all(name.startswith("joined-1-") for name in names)
     assert bytes(two.octree.words) == bytes(one.octree.words)
     assert two.objects == one.objects
 
@@ -126,6 +137,29 @@ def test_a_worker_that_is_killed_is_survived(alone, tmp_path):
 
         built = voxrt.build(EXAMPLES / "dog.usda", out / "dog.mem", depth=DEPTH, scheduler=address, clustered=kill)
     same(built, alone)
+
+
+def test_a_process_of_this_machine_that_is_killed_is_survived(alone, tmp_path):
+    killed = []
+
+    def kill(progress):
+        if progress.done in (1, 3):
+            killed.append(multiprocessing.active_children()[0])
+            killed[-1].kill()
+
+    built = voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, workers=2, clustered=kill)
+    assert len(killed) == 2
+    same(built, alone)
+
+
+def test_processes_that_are_killed_again_and_again_are_one_line():
+    with pytest.raises(voxrt.ToolError, match="were killed 3 times") as lost:
+        list(completed(end_this_process, None, [()], 2))
+    assert "\n" not in str(lost.value)
+
+
+def end_this_process(_shared):
+    os._exit(1)
 
 
 def test_a_lost_scheduler_is_one_line_and_its_tiles_are_used_again(alone, tmp_path):
@@ -191,8 +225,11 @@ def test_a_worker_that_finds_another_asset_is_refused(tmp_path):
     def change(_estimate):
         asset.write_text(asset.read_text().replace("v 0 0 1", "v 0 0 2"))
 
-    with pytest.raises(voxrt.ToolError, match="a worker has another file, or another version"):
-        voxrt.build(asset, tmp_path / "one.mem", depth=DEPTH, workers=1, estimated=change)
+    with (
+        scheduler(tmp_path, 1) as (address, _),
+        pytest.raises(voxrt.ToolError, match="a worker has another file, or another version"),
+    ):
+        voxrt.build(asset, tmp_path / "one.mem", depth=DEPTH, scheduler=address, estimated=change)
 
 
 def test_what_a_cluster_cannot_build_is_refused(tmp_path):

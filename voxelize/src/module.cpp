@@ -188,6 +188,11 @@ public:
                                                    std::span<const uint8_t>(wanted.data(), wanted.size()));
     }
 
+    void use_threads(int threads) {
+        require_threads(threads);
+        native_->use_threads(threads);
+    }
+
     nb::object blocks(int side) const {
         require(side >= kTileSide && side % kTileSide == 0, "block_side must be a multiple of 64");
         std::vector<int32_t> corners;
@@ -366,6 +371,7 @@ NB_MODULE(_native, m) {
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
              nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("threads"),
              nb::arg("wanted"))
+        .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "From now on so many threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
              "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")
         .def("objects_of", &PythonBlockVoxelizer::objects_of, nb::arg("x"), nb::arg("y"), nb::arg("block_side"),

@@ -429,6 +429,11 @@ BlockVoxelizer::BlockVoxelizer(int depth, std::vector<PartView> parts, size_t ob
 
 BlockVoxelizer::~BlockVoxelizer() = default;
 
+void BlockVoxelizer::use_threads(int threads) {
+    state_->workers = Workers(threads);
+    state_->scratch.resize(std::max(state_->scratch.size(), size_t(state_->workers.threads())));
+}
+
 std::vector<ColumnBlock> BlockVoxelizer::blocks(int block_side) const {
     const int tiles = state_->bins.tiles_per_side;
     const int step = std::clamp((block_side + kTileSide - 1) / kTileSide, 1, tiles);

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 SIZE_LIMIT = 1 << 14
 _LEAST_MEMORY = 1 << 26
 BRIGHTEST = 16  # of a sky
+WIDEST_CELL = 1024.0  # in pixels
 MOST_FRAMES = 4096  # of an animation
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
@@ -225,15 +226,23 @@ def _length(text: str, *, alone: bool) -> float:
     return length
 
 
-def seconds(_type: type, tokens: Sequence[Token]) -> float:
-    """Read a time."""
+def number(_type: type, tokens: Sequence[Token]) -> float:
+    """Read a finite number."""
     try:
-        number = float(tokens[0].value)
+        found = float(tokens[0].value)
     except ValueError:
         raise ValueError(f"{tokens[0].value!r} is not a number") from None
-    if not isfinite(number):
+    if not isfinite(found):
         raise ValueError(f"{tokens[0].value} is not a finite number")
-    return number
+    return found
+
+
+def cell_width(kind: type, tokens: Sequence[Token]) -> float:
+    """Read the width of a cell in pixels."""
+    width = number(kind, tokens)
+    if not 0 < width < WIDEST_CELL:
+        raise ValueError(f"{tokens[0].value} is not between 0 and {WIDEST_CELL:g} pixels")
+    return width
 
 
 def frame_choice(_type: object, tokens: Sequence[Token]) -> FrameChoice:

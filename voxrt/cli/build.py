@@ -21,10 +21,10 @@ from voxrt.cli.arguments import (
     levels,
     metres,
     metres_per_unit,
+    number,
     png,
     processes,
     samples,
-    seconds,
     shades,
     size_in_bytes,
     sky_light,
@@ -75,7 +75,7 @@ def build(
     unit: Annotated[
         float | None, _option("unit", converter=metres_per_unit, metavar="mm|cm|m|in|ft|METRES")
     ] = BuildOptions.unit,
-    time: Annotated[float | None, _option("time", converter=seconds, metavar="SECONDS")] = BuildOptions.time,
+    time: Annotated[float | None, _option("time", converter=number, metavar="SECONDS")] = BuildOptions.time,
     animation: Annotated[str | None, _option("animation", metavar="NAME")] = BuildOptions.animation,
     frames: Annotated[
         FrameChoice | None,
