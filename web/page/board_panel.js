@@ -3,6 +3,7 @@
 import { save } from "./downloads.js";
 import { $ } from "./elements.js";
 import { Hand } from "./hand.js";
+import { PLAIN } from "./mem.js";
 
 export class BoardPanel {
   // `app`: as of main.js. `module`: voxrt.wasm, compiled.
@@ -21,7 +22,7 @@ export class BoardPanel {
 
   async make(board) {
     this.hand?.stop();
-    const { name, words, depth, materials, baked } = this.app.memory();
+    const { name, words, depth, materials, lighting } = this.app.memory();
     const hand = new Hand("./board_worker.js");
     this.hand = hand;
     $("bitstream").hidden = false;
@@ -30,10 +31,11 @@ export class BoardPanel {
     this.say(`${board}: counting the clocks of pictures from all around …`);
     try {
       await hand.start(this.module);
-      const made = await hand.call("bitstream", { name: board, words, depth, materials, flat: Boolean(baked) }, ({ share }) => { $("bitstream-progress").value = share; });
+      const made = await hand.call("bitstream", { name: board, words, depth, materials, lighting: lighting ?? PLAIN }, ({ share }) => { $("bitstream-progress").value = share; });
       save(made.bits, `${name}.bit`);
       const late = made.lead < 0 ? "; some rows are repeated, because the next ones are late" : "";
-      this.say(`${board}: ${made.width}×${made.height}, ${made.framesPerSecond.toFixed(1)} frames per second${late}. Load it: openFPGALoader --board ${made.loader} ${name}.bit`);
+      const dark = made.missing.length ? `; left out, since the board has no hardware for it: ${made.missing.join(", ")}` : "";
+      this.say(`${board}: ${made.width}×${made.height}, ${made.framesPerSecond.toFixed(1)} frames per second${late}${dark}. Load it: openFPGALoader --board ${made.loader} ${name}.bit`);
     } catch (error) {
       if (this.hand === hand) this.say(error.message === "cancelled" ? "" : error.message, error.message !== "cancelled");
     }

@@ -3,7 +3,7 @@
 import { bitstreamOf, fitBeam } from "./board_bits.js";
 import { answerWith, count } from "./worker_answers.js";
 import { Hardware } from "./voxrt/hardware.js";
-import { Voxrt } from "./voxrt/voxrt.js";
+import { FACES, Voxrt } from "./voxrt/voxrt.js";
 
 let voxrt;
 
@@ -16,11 +16,14 @@ const load = async (path) => {
 answerWith({
   async start({ module }) { voxrt = await Voxrt.load(module); },
 
-  // Answers {bits, width, height, framesPerSecond, lead, loader}.
-  async bitstream({ name, words, depth, materials, flat }, say) {
+  // `lighting`: as of manifests. Answers {missing, bits, width, height, framesPerSecond, lead, loader}.
+  async bitstream({ name, words, depth, materials, lighting }, say) {
     voxrt.setMemory(words, depth); // which checks the words
     const board = await (await load(`boards/${name}.json`)).json();
     refuse(board, words, depth);
+    const { flat, on, bounces, faces } = lighting;
+    if (!flat && String(faces) !== String(FACES)) throw new Error("This memory names a shading of its own, which bitstreams of this page have not: voxrt bitstream makes one");
+    const missing = [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])];
     const [base, hardware] = await Promise.all([
       load(`boards/${name}.bit`).then((answer) => answer.arrayBuffer()),
       load(`boards/${board.hardware}.wasm`).then((answer) => Hardware.start(answer)),
@@ -30,7 +33,7 @@ answerWith({
     const { scale, framesPerSecond, lead } = fitBeam(voxrt, hardware, board, look, (done, total) => say({ share: done / total }));
     const [width, height] = board.screen.map((side) => side >> scale);
     const bits = bitstreamOf(voxrt, new Uint8Array(base), board, { words, depth, materials }, { flat, scale });
-    return { bits, width, height, framesPerSecond, lead, loader: board.loader };
+    return { missing, bits, width, height, framesPerSecond, lead, loader: board.loader };
   },
 });
 

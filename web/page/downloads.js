@@ -1,7 +1,7 @@
 // What the page hands out: the memory as .mem, its manifest, a link to the scene and the view.
 
-import { crc32, memBytes } from "./mem.js";
-import { FACES } from "./voxrt/voxrt.js";
+import { crc32 } from "./crc32.js";
+import { memBytes } from "./mem.js";
 
 export function save(bytes, name, type = "application/octet-stream") {
   const link = document.createElement("a");
@@ -11,13 +11,15 @@ export function save(bytes, name, type = "application/octet-stream") {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-// The manifest of a memory, as voxrt build writes it (export/manifest.py).
-export function manifestOf({ name, file, words, depth, materials, grid, objects, warnings, seconds, fill, baked }, voxels) {
+// The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one.
+export function manifestOf({ name, file, words, depth, materials, grid, objects, warnings, seconds, fill, lighting, baked, manifest }, voxels) {
+  const crc = crc32(memBytes(words)).toString(16).toUpperCase().padStart(8, "0");
+  if (manifest) return { ...manifest, crc32: crc };
   const [x, y, z] = grid?.origin ?? [0, 0, 0];
   const size = grid?.voxelSize;
   return {
     schema: 1, name, words: words.length, blocks: (words.length - 1) / 8, depth, dialect: "report",
-    crc32: crc32(memBytes(words)).toString(16).toUpperCase().padStart(8, "0"),
+    crc32: crc,
     voxels: voxels.reduce((sum, count, id) => (id ? sum + count : 0), 0),
     materials: materials.map((material, id) => ({
       id, name: material.name, colour: material.colour, mirror: material.mirror, authored: material.authored, voxels: voxels[id],
@@ -25,13 +27,10 @@ export function manifestOf({ name, file, words, depth, materials, grid, objects,
     world: grid && { origin: grid.origin, voxel_size: size, matrix: [[size, 0, 0, x], [0, size, 0, y], [0, 0, size, z], [0, 0, 0, 1]] },
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings, seconds: { build: seconds ?? 0 },
-    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: baked ? FLAT : null, animation: null,
+    source: { file, settings: { fill: fill ?? null } }, view: null, lighting: lighting ?? null, animation: null,
     baked: baked ? { sun: baked.sun, sky: baked.sky, samples: baked.samples, voxels: baked.voxels, colours: baked.colours, words_before: baked.wordsBefore, words: baked.words } : null,
   };
 }
-
-// What a memory with baked light is shown with.
-const FLAT = { position: [0, 0, 0], ambient: 90, on: false, flat: true, bounces: 0, faces: FACES };
 
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 

@@ -2,10 +2,6 @@
 
 import { sceneOf } from "./voxrt/scene.js";
 import { GltfLooks } from "./gltf_looks.js";
-import { code, objLooks } from "./obj_looks.js";
-import { plyLook, readsColours } from "./ply_look.js";
-import { readMem } from "./mem.js";
-import { withoutConcave } from "./polygons.js";
 
 export const FORMATS = ["glb", "gltf", "obj", "stl", "ply", "usdz", "usda", "usdc", "usd", "vox", "mem"];
 const ADDONS = "./three/addons/";
@@ -25,7 +21,8 @@ export async function readFiles(files, voxrt) {
   const kind = extension(main.name);
   try {
     if (kind === "mem") {
-      const memory = readMem(main.name, main.bytes, files.find(({ name }) => name === `${stem(main.name)}.json`));
+      const { readMem } = await import("./read_mem.js");
+      const memory = readMem(main, files.find(({ name }) => name === `${stem(main.name)}.json`));
       return { ...known, memory: { ...memory, depth: memory.depth ?? voxrt.depthOf(memory.words) } };
     }
     if (kind === "vox") {
@@ -141,6 +138,7 @@ function textOf(bytes) {
 }
 
 async function readObj(main, folder, voxrt) {
+  const [{ code, objLooks }, { withoutConcave }] = [await import("./obj_looks.js"), await import("./polygons.js")];
   const [{ OBJLoader }, { MTLLoader }] = [await addon("loaders/OBJLoader"), await addon("loaders/MTLLoader")];
   const text = textOf(main.bytes);
   const library = new Map();
@@ -191,6 +189,7 @@ function withoutReturn(bytes) {
 }
 
 async function readPly(main, folder, voxrt) {
+  const { plyLook, readsColours } = await import("./ply_look.js");
   const { PLYLoader } = await addon("loaders/PLYLoader");
   const geometry = readsColours(new PLYLoader()).parse(withoutReturn(main.bytes).buffer);
   const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);

@@ -1,10 +1,11 @@
 // The static page: dropped files and examples become a memory in one worker, and pictures of it in several. The camera and
 // its controls are those of the server's page.
 
+import { BandPicture, coloursOf } from "./band_picture.js";
 import { BoardPanel } from "./board_panel.js";
 import { Budget } from "./budget.js";
 import { Builder } from "./builder.js";
-import { FIELD_OF_VIEW, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
+import { FIELD_OF_VIEW, fromRegisters, lookAlong, pixelDirection, pose, toRegisters } from "./camera.js";
 import { DaylightControl } from "./daylight.js";
 import { linkOf, manifestOf, readLink, save } from "./downloads.js";
 import { $, isPressed, makeButton, makeToolbar, pressed } from "./elements.js";
@@ -18,7 +19,6 @@ import { memBytes } from "./mem.js";
 import { focus, frame } from "./navigation.js";
 import { dismiss, notice } from "./notices.js";
 import { Painter } from "./painter.js";
-import { Picture } from "./picture.js";
 import { makePilot } from "./pilot.js";
 import { Views } from "./views.js";
 import { BACKGROUND, FACES } from "./voxrt/voxrt.js";
@@ -28,7 +28,7 @@ const CLICK = 5; // pixels that a click may move
 const LAMP = [1.4, 1.9, 1.1]; // sides of the world
 
 const canvas = $("picture");
-const picture = new Picture(canvas);
+const picture = new BandPicture(canvas);
 const figures = new Figures($("figures"));
 const glide = new Glide();
 let painter, builder, frames, light, inspector, daylight, budget, boardPanel;
@@ -36,7 +36,9 @@ let view = null; // the camera for people of camera.js
 let memory = null; // what worker.js built, with voxels and bounds
 let source = null; // {files, example}
 const bright = matchMedia("(prefers-color-scheme: light)").matches;
-let look = { shading: "faces", features: [], light: [0, 0, 0], ambient: 90, bounces: 3, background: bright ? [228, 234, 244] : BACKGROUND };
+const PLAIN_LOOK = { shading: "faces", features: [], ambient: 90, bounces: 3 };
+const AROUND = bright ? [228, 234, 244] : BACKGROUND;
+let look = { ...PLAIN_LOOK, light: [0, 0, 0], background: AROUND };
 
 const app = {
   view: () => view,
@@ -74,7 +76,7 @@ function shading() {
   const materials = memory.materials.map((material, id) => (id ? material.colour : look.background));
   return {
     materials, mirrors: memory.materials.flatMap(({ mirror }, id) => (mirror ? [id] : [])),
-    flat: look.shading === "flat", faces: look.shading === "faces" ? FACES : null,
+    flat: look.shading === "flat", faces: look.shading === "faces" ? memory.lighting?.faces ?? FACES : null,
     light: look.features.includes("light") ? { position: look.light, ambient: look.ambient } : null,
     bounces: look.features.includes("mirrors") ? look.bounces : 0,
   };
@@ -101,12 +103,13 @@ async function build(first) {
 }
 
 async function showMemory(built, first) {
-  // Baked light is shown flat; other memories not, unless the user has chosen so.
-  if (built.baked) look.shading = "flat";
-  else if (memory?.baked) look.shading = "faces";
+  // A memory is shown as it says. What the user chooses then stays, until a memory says something else.
+  if ((first && built.lighting) || !same(built.lighting, memory?.lighting)) look = { ...look, ...lookOf(built.lighting) };
+  const [background, old] = [built, memory].map(ownBackground);
+  if (background || old) look.background = background ?? AROUND;
   memory = built;
   memory.bounds = [[0, 0, 0], Array(3).fill(2 ** built.depth)];
-  look.light = LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
+  look.light = built.lighting?.on ? built.lighting.position : LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
   inspector.clear();
   await painter.load(built, shading());
   const { voxels, outline } = await painter.census();
@@ -124,9 +127,33 @@ async function showMemory(built, first) {
   $("stage").setAttribute("aria-busy", "true");
   $("stage").dataset.scene = `${built.name} ${built.depth}`;
 }
+
+const same = (one, other) => JSON.stringify(one ?? null) === JSON.stringify(other ?? null);
+
+// The look of a lighting, whose fields are those of manifests.
+function lookOf(lighting) {
+  if (!lighting) return PLAIN_LOOK;
+  const { position, ambient, on, flat, bounces, faces } = lighting;
+  return {
+    shading: flat ? "flat" : faces ? "faces" : "report", light: position, ambient, bounces: bounces || PLAIN_LOOK.bounces,
+    features: [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])],
+  };
+}
+
+// The background that a memory has of its own, or null.
+const ownBackground = (built) => (built?.manifest && !same(built.materials[0].colour, BACKGROUND) ? built.materials[0].colour : null);
+
 let first_depth = 7; // of the memory that `view` belongs to
 
-const firstView = () => frame(lookAlong(pose([0, 0, 0], 0, 0, FIELD_OF_VIEW.usual, 1), CORNER), app.bounds(), app.size(), app.limit());
+const firstView = () => authoredView() ?? frame(lookAlong(pose([0, 0, 0], 0, 0, FIELD_OF_VIEW.usual, 1), CORNER), app.bounds(), app.size(), app.limit());
+
+const MADE_FOR = [640, 480]; // the cameras of manifests
+
+function authoredView() {
+  if (!memory.view || !memory.view.look.some(Boolean)) return null;
+  const [low, high] = memory.bounds;
+  return fromRegisters(memory.view, MADE_FOR, low.map((part, axis) => (part + high[axis]) / 2), app.size());
+}
 
 // The same view of a world of more or fewer levels.
 function rescaled(old, levels) {
@@ -358,9 +385,9 @@ async function start() {
   new HardwarePanel(app, module);
   boardPanel = new BoardPanel(app, module);
   painter.addEventListener("frame", ({ detail }) => {
-    window.voxrt = { newest: detail, view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
+    window.voxrt = { newest: detail, colours: () => coloursOf(detail), view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
     const samples = frames.receive(detail);
-    picture.show(detail, samples, false);
+    picture.show(detail, samples);
     figures.add(detail, samples);
   });
   painter.addEventListener("trouble", ({ detail }) => notice("error", "There are no frames", detail));

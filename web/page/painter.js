@@ -1,10 +1,13 @@
 // Frames by several workers, each with an instance and a copy of the memory: a frame's rows of tiles are shared out among
 // them in bands. To FrameRequests it is what a connection to a server is to the server's page.
+//
+// Buffers of bands go to the workers and back. A frame keeps its bands until the next one is shown.
 
 import { Hand } from "./hand.js";
 
 const TILE = 16; // rows of pixels
 const BANDS = 3; // per worker: they cost differently
+const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
 
@@ -15,6 +18,8 @@ export class Painter extends EventTarget {
     this.hands = [];
     this.sent = new Map(); // request -> since when
     this.queue = []; // bands that no worker has yet
+    this.buffers = new Map(); // length -> those that no band has
+    this.shown = []; // bands of the newest frame
     this.request = 0;
     this.sequence = 0;
     this.scene = 0;
@@ -32,9 +37,10 @@ export class Painter extends EventTarget {
     while (this.hands.length > wanted) this.hands.pop().stop();
     while (this.hands.length < wanted) this.hands.push(new Hand());
     await Promise.all(this.hands.map(async (hand) => {
-      if (!hand.worker) await hand.start(this.module);
+      hand.bands ??= AHEAD; // none before it has started
+      if (!hand.worker) await hand.start(this.module).then(() => { hand.bands = 0; });
       await hand.call("memory", { words, depth, shading });
-      hand.free = true;
+      this.next(hand);
     }));
   }
 
@@ -51,27 +57,31 @@ export class Painter extends EventTarget {
     this.sent.set(request, since);
     const tiles = Math.ceil(height / TILE);
     const step = Math.max(1, Math.ceil(tiles / (BANDS * this.hands.length)));
-    const job = { request, camera, size, since, scene: this.scene, left: Math.ceil(tiles / step), began: null, pixels: new Uint8Array(3 * width * height) };
+    const job = { request, camera, size, since, scene: this.scene, left: Math.ceil(tiles / step), began: null, bands: [] };
     for (let first = 0; first < tiles; first += step) this.queue.push({ job, first, end: Math.min(first + step, tiles) });
     this.hands.forEach((hand) => this.next(hand));
     return request;
   }
 
-  async next(hand) {
-    if (!hand.free) return;
-    const band = this.queue.shift();
-    if (!band) return;
-    const { job, first, end } = band;
-    hand.free = false;
+  next(hand) {
+    while (hand.bands < AHEAD && this.queue.length) this.render(hand, this.queue.shift());
+  }
+
+  async render(hand, { job, first, end }) {
+    const [width, height] = job.size;
+    const buffer = this.buffers.get(4 * width * (Math.min(TILE * end, height) - TILE * first))?.pop() ?? null;
+    hand.bands++;
     job.began ??= performance.now();
     try {
-      const { colour, top } = await hand.call("render", { camera: job.camera, size: job.size, first, end });
-      job.pixels.set(colour, 3 * top * job.size[0]);
-      hand.free = true;
+      const { camera, size } = job;
+      job.bands.push(await hand.call("render", { camera, size, first, end, buffer }, undefined, buffer ? [buffer] : []));
+      hand.bands--;
       this.next(hand);
-      if (--job.left === 0 && job.scene === this.scene) this.finish(job);
+      if (--job.left > 0) return;
+      if (job.scene === this.scene) this.finish(job);
+      else this.release(job.bands);
     } catch (error) {
-      hand.free = true;
+      hand.bands--;
       if (job.scene !== this.scene) return;
       this.sent.delete(job.request);
       this.queue = this.queue.filter((waiting) => waiting.job !== job);
@@ -79,12 +89,23 @@ export class Painter extends EventTarget {
     }
   }
 
-  finish(job) {
-    this.sent.delete(job.request);
-    const [width, height] = job.size;
+  finish({ request, since, size: [width, height], bands, camera, began }) {
+    this.sent.delete(request);
     this.dispatchEvent(new CustomEvent("frame", { detail: {
-      viewer: 1, request: job.request, requested: job.since, width, height, pixels: job.pixels, camera: job.camera,
-      seconds: (performance.now() - job.began) / 1000, rays: width * height, words: null, cycles: null, sequence: ++this.sequence,
+      viewer: 1, request, requested: since, width, height, bands, camera,
+      seconds: (performance.now() - began) / 1000, rays: width * height, words: null, cycles: null, sequence: ++this.sequence,
     } }));
+    const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
+    for (const length of this.buffers.keys()) if (!lengths.has(length)) this.buffers.delete(length);
+    this.release(this.shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));
+    this.shown = bands;
+  }
+
+  // Later bands may use the buffers of these.
+  release(bands) {
+    for (const { pixels: { buffer } } of bands) {
+      if (!this.buffers.has(buffer.byteLength)) this.buffers.set(buffer.byteLength, []);
+      this.buffers.get(buffer.byteLength).push(buffer);
+    }
   }
 }

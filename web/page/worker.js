@@ -1,6 +1,7 @@
 // One instance of voxrt off the page's thread: it builds memories, renders rows of frames, follows rays. Messages are
 // {id, call, ...}; answers {id, result} or {id, problem}, and {id, stage} before.
 
+import { FLAT } from "./mem.js";
 import { answerWith } from "./worker_answers.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 
@@ -25,7 +26,7 @@ answerWith({
     const built = voxrt.voxelize(read.scene, { depth, fill, bake, budget });
     return {
       ...built, name: read.name, file: read.file, fill, seconds: (performance.now() - start) / 1000,
-      warnings: [...read.scene.warnings, ...built.warnings],
+      warnings: [...read.scene.warnings, ...built.warnings], lighting: built.baked ? FLAT : null,
     };
   },
 
@@ -36,9 +37,6 @@ answerWith({
   shade({ shading }) { voxrt.shade(shading); },
   census() { return { voxels: voxrt.voxels(), outline: voxrt.outline() }; },
 
-  render({ camera, size, first, end }) {
-    const { colour, top } = voxrt.render(camera, size, first, end);
-    return { colour, top };
-  },
+  render({ camera, size, first, end, buffer }) { return voxrt.renderImage(camera, size, first, end, buffer); },
   follow({ origin, direction }) { return voxrt.follow(origin, direction); },
 });

@@ -7,7 +7,8 @@ export function answerWith(calls) {
   onmessage = async ({ data: { id, call, ...given } }) => {
     try {
       const result = await calls[call](given, (stage) => postMessage({ id, stage }));
-      postMessage({ id, result }, result?.colour ? [result.colour.buffer] : []);
+      const pixels = result?.pixels ?? result?.colour;
+      postMessage({ id, result }, pixels ? [pixels.buffer] : []);
     } catch (error) {
       postMessage({ id, problem: String(error?.message ?? error).split("\n")[0] });
     }

@@ -1,0 +1,73 @@
+// Point instancers of USD: copies of the prototypes below them, which the loader of three.js shows once instead.
+
+import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
+
+const MOST_COPIES = 100_000;
+
+export const isInstancer = (composer, path) => composer.specsByPath[path]?.fields?.typeName === "PointInstancer";
+
+// Put the copies of the instancer at `path` into `object`, which stands in its place. `build(object, path)` builds what is
+// below a path. found.elsewhere counts instancers with prototypes that are not below them; they show nothing.
+export function placeCopies(composer, object, path, build, found) {
+  const refuse = (problem) => { throw new Error(`${path}: ${problem}`); };
+  const below = new Object3D();
+  build(below, path);
+  const given = composer._getAttributes(path);
+  const { protoIndices = [], positions = [], scales = [] } = given;
+  const names = targetsOf(composer, path);
+  if (protoIndices.some((index) => !names[index])) refuse(`protoIndices go up to ${Math.max(...protoIndices)} and there are ${names.length} prototypes; export the instancer again`);
+  if (names.some((name) => !name.startsWith(`${path}/`))) return void found.elsewhere++;
+  const prototypes = names.map((name) => name.slice(path.length + 1).split("/").reduce((parent, part) => parent?.children.find((child) => child.name === part), below));
+  const count = protoIndices.length;
+  const turns = turnsOf(given);
+  const fits = (values, size) => values.length === 0 || values.length === size * count;
+  if (positions.length !== 3 * count || !fits(turns, 4) || !fits(scales, 3))
+    refuse(`protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`);
+  const hidden = hiddenOf(composer, path, given, count, refuse, found);
+  found.masked += hidden.size;
+  found.copies += count;
+  if (found.copies > MOST_COPIES) refuse(`more than ${MOST_COPIES.toLocaleString("en")} copies are too many here; voxrt build takes more`);
+  for (let i = 0; i < count; i++) {
+    if (hidden.has(i) || !prototypes[protoIndices[i]]) continue;
+    const copy = new Object3D();
+    copy.name = `${object.name}[${i}]`;
+    copy.matrixAutoUpdate = false;
+    const scale = scales.length ? new Vector3().fromArray(scales, 3 * i) : new Vector3(1, 1, 1);
+    const turn = turns.length ? new Quaternion().fromArray(turns, 4 * i) : new Quaternion();
+    copy.matrix.copy(new Matrix4().compose(new Vector3().fromArray(single(positions), 3 * i), turn, scale));
+    copy.add(prototypes[protoIndices[i]].clone());
+    object.add(copy);
+  }
+}
+
+const single = (values) => (values instanceof Float32Array ? values : Float32Array.from(values));
+
+// Text has them as one list: "[/a/b, /a/c]".
+function targetsOf(composer, path) {
+  const { targetPaths = [] } = composer.specsByPath[`${path}.prototypes`]?.fields ?? {};
+  return [targetPaths].flat().join().replace(/[[\]<>\s]/g, "").split(",").filter(Boolean).map((target) => (target.startsWith("/") ? target : `${path}/${target}`));
+}
+
+// Four numbers per copy: x, y, z, w, of any length, as USD takes them. Files of text have more digits than the values that they stand for.
+function turnsOf({ orientationsf = [], orientations = [] }) {
+  return orientationsf.length ? single(orientationsf) : Float64Array.from(orientations, half);
+}
+
+function half(value) {
+  if (value === 0) return 0;
+  const step = 2 ** (Math.max(Math.floor(Math.log2(Math.abs(value))), -14) - 10);
+  const steps = Math.abs(value) / step;
+  const [low, part] = [Math.floor(steps), steps - Math.floor(steps)];
+  return Math.sign(value) * step * (part > 0.5 || (part === 0.5 && low % 2) ? low + 1 : low);
+}
+
+// The copies that are masked.
+function hiddenOf(composer, path, { ids = [], invisibleIds = [] }, count, refuse, found) {
+  const has = (name) => composer.specsByPath[`${path}.${name}`];
+  if (composer.specsByPath[path].fields.inactiveIds !== undefined) refuse("copies that are not active are not read here; voxrt build reads them");
+  // The loader leaves arrays of 64 bits in binary files empty.
+  found.unread += has("invisibleIds") && !invisibleIds.length;
+  if (invisibleIds.length && has("ids") && ids.length !== count) refuse(`ids has ${ids.length} entries and there are ${count} copies; export the instancer again`);
+  const masked = new Set(Array.from(invisibleIds, Number));
+  return new Set(Array.from({ length: count }, (_, i) => i).filter((i) => masked.has(Number(ids.length ? ids[i] : i))));
+}
