@@ -15,6 +15,7 @@ import resource
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,8 @@ refused, each with the one line that `voxrt build` says. `docs/make_assets_table
 compares all of it. Meshes are built at depth {depth}; MagicaVoxel scenes (`.vox`), which `voxrt convert` reads, bring
 their own depth and have no triangles. *Triangles* counts every instance. *Materials* are those of the loaded scene.
 Warnings are given by kind, with how many times each was met. Assets may name files outside their folder here, as
-`--allow-outside` has it, for USD stages often share layers that way.
+`--allow-outside` has it, for USD stages often share layers that way. Problems of USD files are told in the words of
+usd-core {usd}.
 
 | asset | triangles | materials | solid voxels | warnings | outcome |
 |---|--:|--:|--:|---|---|
@@ -150,7 +152,7 @@ def page(rows: list[Row]) -> str:
     """Give the whole page."""
     built = sum(row.outcome == "built" for row in rows)
     refused = sum(row.outcome.startswith("refused") for row in rows)
-    head = HEAD.format(total=len(rows), built=built, refused=refused, depth=DEPTH)
+    head = HEAD.format(total=len(rows), built=built, refused=refused, depth=DEPTH, usd=version("usd-core"))
     return head + "".join(map(str, rows))
 
 

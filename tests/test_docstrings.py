@@ -21,7 +21,7 @@ NEEDS = {
     "voxrt.view.window": "pyvista",
     "voxrt.depth_likeness": "open3d",
     "voxrt.sim.rendering.check": "voxrt.sim._rtl",
-    "voxrt.sim.rendering.shader_features": "voxrt.sim._rtl",
+    "voxrt.sim.hardware.shader_features": "voxrt.sim._rtl",
 }
 """What examples need that an installation may lack, by module or by function."""
 

@@ -130,9 +130,8 @@ class Window:
         for number in range(len(self._shown)):
             enter(self.plotter, number, self._preview is not None)
             renderer = self.plotter.renderer
-            if renderer.IsInViewport(x, y) and renderer.GetZ(x, y) < 1:
-                look = np.array(self.plotter.camera.direction)
-                self.pick(number, _world_point(renderer, x, y, renderer.GetZ(x, y)) + _BEHIND * look)
+            if renderer.IsInViewport(x, y) and (point := _seen_point(renderer, x, y)) is not None:
+                self.pick(number, point + _BEHIND * np.array(self.plotter.camera.direction))
 
     def pick(self, number: int, point: NDArray[np.float64]) -> None:
         """Describe and mark the octant that holds a point (float64, shape (3,), voxels) of a pane."""
@@ -154,6 +153,7 @@ class Window:
             lighting=False,
             name=f"mark {number}",
             reset_camera=False,
+            pickable=False,
         )
         self.plotter.render()
 
@@ -200,6 +200,15 @@ class Window:
     def _end_picture(self, *_event: object) -> None:
         if self._begun is not None:
             self._slow = perf_counter() - self._begun > _PATIENCE
+
+
+def _seen_point(renderer: pyvista.Renderer, x: int, y: int) -> NDArray[np.float64] | None:
+    """Return what is seen at a place; computed, for not every driver tells the depth of a pixel."""
+    from vtkmodules.vtkRenderingCore import vtkCellPicker  # noqa: PLC0415 - optional
+
+    picker = vtkCellPicker()
+    picker.SetTolerance(0)
+    return np.array(picker.GetPickPosition()) if picker.Pick(x, y, 0, renderer) else None
 
 
 def _world_point(renderer: pyvista.Renderer, x: int, y: int, depth: float) -> NDArray[np.float64]:

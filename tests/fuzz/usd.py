@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 _LARGEST_SEED = 64 << 10
 _COUNTS = (0, 1, 255, 1 << 31, 1 << 40, (1 << 64) - 1)
 _LIMITS = Limits(memory=1 << 30, most_memory=1 << 30, seconds=10)
-_TO_BINARY = "import sys; from pxr import Sdf; Sdf.Layer.FindOrOpen(sys.argv[1]).Export(sys.argv[2])"
+_TO_BINARY = "import sys; from pxr import Sdf, Usd; Sdf.Layer.FindOrOpen(sys.argv[1]).Export(sys.argv[2])"
 
 
 def seeds(folder: Path | None, into: Path) -> list[tuple[str, bytes]]:

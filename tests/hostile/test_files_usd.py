@@ -155,7 +155,7 @@ def test_meshes_and_textures_stay_shared(tmp_path):
 
 def test_damaged_binary_stages_never_end_this_process(tmp_path):
     source = written(tmp_path, CUBE)
-    code = "import sys; from pxr import Sdf; Sdf.Layer.FindOrOpen(sys.argv[1]).Export(sys.argv[2])"
+    code = "import sys; from pxr import Sdf, Usd; Sdf.Layer.FindOrOpen(sys.argv[1]).Export(sys.argv[2])"
     crate = tmp_path / "stage.usdc"
     subprocess.run([sys.executable, "-c", code, source, crate], check=True)
     data = crate.read_bytes()

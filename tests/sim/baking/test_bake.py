@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from oracles import ray
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
 
 import voxrt
-from tests.oracles import ray
-from tests.oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
 from voxrt.octree import census, to_dense
 from voxrt.sim.baking.bake import bake_light
 from voxrt.sim.baking.daylight import SKY, SUN, Daylight, sky_directions, sky_light, sun_direction

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles import ray
+from oracles.random_worlds import dense_cubes
 
-from tests.oracles import ray
-from tests.oracles.random_worlds import dense_cubes
 from voxrt.octree import from_dense
 from voxrt.sim import _bake
 from voxrt.sim.baking.daylight import Daylight, sky_directions, sun_direction

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.meshes import icosphere
 
-from tests.oracles.meshes import icosphere
 from voxrt.sim.baking.surface_triangles import surface_triangles
 from voxrt.voxelize import EMPTY, CornerNormals, Grid, Material, Scene, SceneObject
 
