@@ -73,19 +73,11 @@ def rom_of(name: str, capacity: int) -> Rom:
 def watch(rom: Rom, design: BaseDesign, program: Path, folder: Path, frames: int) -> Seen:
     """Run a board from power-on for a number of frames."""
     lighting = voxrt.Lighting()
-    core = design.core
-    beam = fit_beam(
-        rom,
-        orbit(rom, SCREEN),
-        lighting,
-        lanes=core["Lanes"],
-        ray_clocks=core["RayClocks"],
-        clock_hz=design.clock_hz,
-    )
+    beam = fit_beam(rom, orbit(rom, SCREEN), lighting, design.tracer)
     cameras = orbit(rom, beam.size)
     scene = board_scene(Blob(rom))
     contents = {
-        "octree": encode_octree(scene.words, core["BlockBits"]),
+        "octree": encode_octree(scene.words, design.core["BlockBits"]),
         "table": boot_table(scene, cameras, lighting, scale=beam.scale, period=PERIOD),
     }
     with BoardSimulation(program, folder, contents) as simulation:

@@ -26,6 +26,23 @@ SCREEN = (640, 480)
 
 
 @dataclass(frozen=True, slots=True)
+class BoardTracer:
+    """The ray tracer of a board: what decides how fast it is.
+
+    Attributes
+    ----------
+    lanes, ray_clocks
+        Its parameters ``Lanes`` and ``RayClocks``.
+    clock_hz
+        Its clock.
+    """
+
+    lanes: int
+    ray_clocks: int
+    clock_hz: int
+
+
+@dataclass(frozen=True, slots=True)
 class BeamFit:
     """What a board shows of a scene.
 
@@ -57,10 +74,7 @@ def fit_beam(
     rom: Rom,
     cameras: Sequence[Camera],
     lighting: Lighting,
-    *,
-    lanes: int,
-    ray_clocks: int = 1,
-    clock_hz: int,
+    tracer: BoardTracer,
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> BeamFit:
     """Find the largest pictures that a board traces in time, from all around a scene.
@@ -75,10 +89,8 @@ def fit_beam(
         Of the orbit, for pictures of 640 x 480 pixels.
     lighting
         Of the pictures.
-    lanes, ray_clocks
-        Of the board's ray tracer: its parameters ``Lanes`` and ``RayClocks``.
-    clock_hz
-        Its clock.
+    tracer
+        The board's ray tracer.
     progress
         Receives how many views are complete, of how many.
 
@@ -87,9 +99,9 @@ def fit_beam(
     SimulatorError
         The verilated ray tracer is missing, or has no such lanes, or cannot hold the scene.
     """
-    config = configuration_of(lanes, ray_clocks, lighting)
+    config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
     registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
-    search = _model.BeamSearch(registers, clock_hz)
+    search = _model.BeamSearch(registers, tracer.clock_hz)
     progress(0, search.total)
     while not search.ended:
         done, band = search.done, search.band()

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from voxrt.beam import BoardTracer
 from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import boot_table, encode_octree
@@ -59,6 +60,11 @@ class BaseDesign(msgspec.Struct, frozen=True):
     def capacity(self) -> int:
         """Words of the octree memory."""
         return 1 + self.memories["octree"].rows
+
+    @property
+    def tracer(self) -> BoardTracer:
+        """Its ray tracer."""
+        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], self.clock_hz)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,9 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from build_voxrt import link_headers
 from compiler import BUILD, COMPILED, ROOT, Unit, link, run, zig
 
-from build import link_headers
 from voxrt.rtl.configurations import RTL, Configuration, read_configurations
 
 TOP = "voxrt_rtu"

@@ -1,8 +1,8 @@
 """Put the static page together: build/site, which any web server can serve, from any path.
 
-It holds the page (web/page), what it shares with the server's page (serve/page), the npm package (web/package) with the
-modules of web/build.py and web/build_hardware.py, the loaders of three.js from npm without their manuals, and example
-scenes. Nothing is bundled.
+It holds the page (web/page), what it shares with the page of the server (serve/page), the npm package (web/package)
+with the modules of web/build_voxrt.py and web/build_hardware.py, the loaders of three.js from npm without their
+manuals, and example scenes. Nothing is bundled.
 
     python web/make_site.py            # needs the package voxrt, npm, and the group `web` of pyproject.toml
     python -m http.server -d build/site
@@ -23,10 +23,10 @@ from pathlib import Path
 
 from board_files import add_boards
 from build_hardware import build_hardware
+from build_voxrt import build
 from compiler import BUILD, ROOT
 
 import voxrt
-from build import build
 from voxrt.octree import BOARDS
 
 SITE = ROOT / "build" / "site"

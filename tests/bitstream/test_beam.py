@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import voxrt
-from voxrt.beam import SCREEN, beam_lead, fit_beam
+from voxrt.beam import SCREEN, BoardTracer, beam_lead, fit_beam
 from voxrt.octree.camera import Camera, look_at
 from voxrt.orbit import orbit
 from voxrt.sim import _model
@@ -80,13 +80,13 @@ def test_bands_cost_what_the_frame_costs(house):
 
 def test_a_slow_clock_takes_larger_pixels(house):
     cameras, lighting = orbit(house, SCREEN, 1), voxrt.Lighting()
-    scales = [fit_beam(house, cameras, lighting, lanes=1, clock_hz=mega * 1_000_000).scale for mega in (800, 75, 10)]
+    scales = [fit_beam(house, cameras, lighting, BoardTracer(1, 1, mega * 1_000_000)).scale for mega in (800, 75, 10)]
     assert scales == [0, 1, 2]
 
 
 def test_lanes_that_nobody_simulates_are_refused(house):
     with pytest.raises(voxrt.SimulatorError, match="no simulated ray tracer has 3 lanes"):
-        fit_beam(house, orbit(house, SCREEN, 1), voxrt.Lighting(), lanes=3, clock_hz=75_000_000)
+        fit_beam(house, orbit(house, SCREEN, 1), voxrt.Lighting(), BoardTracer(3, 1, 75_000_000))
 
 
 def test_an_orbit_shows_all_of_the_scene_from_everywhere(house):

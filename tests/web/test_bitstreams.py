@@ -25,15 +25,8 @@ def test_a_bitstream_has_the_bytes_of_the_command(source: str, name: str, depth:
     pytest.importorskip("voxrt.sim._rtl")
     board = read_board(name)
     rom = voxrt.build(ROOT / "examples" / source, depth=depth, budget=board.design.capacity).rom
-    lighting, core = voxrt.Lighting(flat=flat), board.design.core
-    beam = fit_beam(
-        rom,
-        orbit(rom, SCREEN),
-        lighting,
-        lanes=core["Lanes"],
-        ray_clocks=core["RayClocks"],
-        clock_hz=board.design.clock_hz,
-    )
+    lighting = voxrt.Lighting(flat=flat)
+    beam = fit_beam(rom, orbit(rom, SCREEN), lighting, board.design.tracer)
     native = make_bitstream(board, board_scene(Blob(rom)), orbit(rom, beam.size), lighting, beam)
     job = {
         "words": rom.octree.words.tolist(),

@@ -123,6 +123,22 @@ def test_copies_have_the_words_of_voxrt_build(tmp_path: Path, name: str, kind: s
     assert sum(one["count"] for one in masked) == {"masked": 2, "masked by name": 1}.get(name, 0)
 
 
+def nested(levels: int, copies: int) -> str:
+    """Instancers of instancers of a roof."""
+    text = f'def Mesh "p0" {{{ROOF}}}'
+    for level in range(levels):
+        path = "".join(f"/many{above}/p{above}" for above in range(levels - 1, level, -1))
+        text = f"""
+def Xform "p{level + 1}" {{ def PointInstancer "many{level}"
+{{
+    rel prototypes = </root{path}/many{level}/p{level}>
+    int[] protoIndices = [{", ".join(["0"] * copies)}]
+    point3f[] positions = [{", ".join(f"({3 * one}, 0, 0)" for one in range(copies))}]
+    {text}
+}} }}"""
+    return "#usda 1.0\n" + text.replace(f"p{levels}", "root")
+
+
 def exported(text: str, path: Path) -> Path:
     """Write a stage as text the way USD does."""
     usd = pytest.importorskip("pxr.Usd")
@@ -135,7 +151,9 @@ def exported(text: str, path: Path) -> Path:
 def test_contradictions_are_refused_and_what_is_not_read_is_named(tmp_path: Path) -> None:
     texts = {
         "short": (stage(indices="0, 1"), "protoIndices has 2 entries"),
-        "beyond": (stage(indices="0, 1, 2, 0, 0"), "there are 2 prototypes"),
+        "beyond": (stage(indices="0, 1, 2, 0, 0"), "protoIndices[2] is 2 and there are 2 prototypes"),
+        "below": (stage(indices="0, -1, 0, 0, 0"), "protoIndices[1] is -1"),
+        "nested": (nested(levels=3, copies=60), "are too many here"),
     }
     for name, (text, said) in texts.items():
         job = {"files": [str(exported(text, tmp_path / f"{name}.usda"))], "depth": 5, "fill": "auto", "frames": []}

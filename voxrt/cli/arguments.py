@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from math import inf, isfinite
+from math import isfinite
 from pathlib import Path
 from string import hexdigits
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args
@@ -28,16 +28,6 @@ MOST_FRAMES = 4096  # of an animation
 _REGISTER = range(-(1 << 15), 1 << 15)
 _POSITION_LIMIT = 1 << 31  # in 1/16 voxel
 _TIMES = "xX\N{MULTIPLICATION SIGN}"
-_UNITS = {
-    "mm": Decimal("0.001"),
-    "cm": Decimal("0.01"),
-    "m": Decimal(1),
-    "in": Decimal("0.0254"),
-    "ft": Decimal("0.3048"),
-}
-_LENGTH = re.compile(
-    rf"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:inf|nan))?\s*({'|'.join(_UNITS)})?", re.IGNORECASE
-)
 
 FrameChoice: TypeAlias = tuple[float, float, int] | Literal["files"]
 """The frames of an animation: start, stop and count, or the assets themselves."""
@@ -196,34 +186,6 @@ def board_name(_type: type, tokens: Sequence[Token]) -> str:
 
 def _plain(name: str) -> str:
     return "".join(c for c in name.lower() if c.isalnum())
-
-
-def metres(_type: type, tokens: Sequence[Token]) -> float:
-    """Read a length, ``0.05``, ``5cm`` or ``2 in``."""
-    return _length(tokens[0].value, alone=False)
-
-
-def metres_per_unit(_type: type, tokens: Sequence[Token]) -> float:
-    """Read a unit of length: its name, or its length in metres."""
-    return _length(tokens[0].value, alone=True)
-
-
-def _length(text: str, *, alone: bool) -> float:
-    """Read a length, or where the unit may stand `alone` its name for one of it."""
-    found = _LENGTH.fullmatch(text.strip())
-    number, unit = found.groups() if found else (None, None)
-    if found is None or not (number or (alone and unit)):
-        units = f", nor one of the units {', '.join(_UNITS)}" if alone else f", with one of {', '.join(_UNITS)} or none"
-        raise ValueError(f"{text!r} is not a number{units}")
-    try:
-        length = float(Decimal(number or 1) * _UNITS[unit.lower() if unit else "m"])
-    except ArithmeticError:
-        length = inf
-    if not isfinite(length):
-        raise ValueError(f"{text} is not a finite number")
-    if length <= 0:
-        raise ValueError(f"{text} is not a positive number of metres")
-    return length
 
 
 def number(_type: type, tokens: Sequence[Token]) -> float:

@@ -82,9 +82,7 @@ def bitstream(
             blob.rom,
             cameras,
             lighting,
-            lanes=design.core["Lanes"],
-            ray_clocks=design.core["RayClocks"],
-            clock_hz=design.clock_hz,
+            design.tracer,
             progress=lambda done, total: progress("count cycles", done, total),
         )
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)

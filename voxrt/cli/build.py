@@ -19,8 +19,6 @@ from voxrt.cli.arguments import (
     corners,
     frame_choice,
     levels,
-    metres,
-    metres_per_unit,
     number,
     png,
     processes,
@@ -33,6 +31,7 @@ from voxrt.cli.arguments import (
 from voxrt.cli.arguments import background as read_colour
 from voxrt.cli.building import build_all, check_company, check_frames
 from voxrt.cli.errors import UsageError
+from voxrt.cli.lengths import metres, metres_per_unit
 from voxrt.cli.option_help import OPTION_HELP
 
 _ASSET = (

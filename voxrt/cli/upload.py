@@ -110,7 +110,7 @@ def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
 
 def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
     """Let the board at a serial line show the scene and turn, as from its bitstream."""
-    from voxrt.beam import SCREEN, fit_beam  # noqa: PLC0415
+    from voxrt.beam import SCREEN, BoardTracer, fit_beam  # noqa: PLC0415
     from voxrt.board.errors import DeviceError  # noqa: PLC0415
     from voxrt.orbit import orbit  # noqa: PLC0415
 
@@ -125,9 +125,7 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
                     rom,
                     orbit(rom, SCREEN),
                     lighting,
-                    lanes=device.lanes,
-                    ray_clocks=device.ray_clocks,
-                    clock_hz=device.clock_hz,
+                    BoardTracer(device.lanes, device.ray_clocks, device.clock_hz),
                     progress=lambda done, total: progress("count cycles", done, total),
                 )
                 device.prepare_orbit(orbit(rom, beam.size), lighting, beam.scale)

@@ -39,7 +39,7 @@ export async function readUsd(main, folder, voxrt) {
 function watch(folder) {
   const [{ load }, { compose, _buildHierarchy }] = [ImageLoader.prototype, USDComposer.prototype];
   const close = () => { Object.assign(ImageLoader.prototype, { load }); Object.assign(USDComposer.prototype, { compose, _buildHierarchy }); };
-  const found = { specs: {}, missing: 0, masked: 0, unread: 0, elsewhere: 0, copies: 0, close };
+  const found = { specs: {}, missing: 0, masked: 0, unread: 0, elsewhere: 0, copied: 0, close };
   USDComposer.prototype.compose = function (parsed, ...rest) {
     found.specs = parsed.specsByPath;
     return compose.call(this, parsed, ...rest);

@@ -2,7 +2,7 @@
 
 import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
 
-const MOST_COPIES = 100_000;
+const MOST_OBJECTS = 200_000; // of all copies together
 
 export const isInstancer = (composer, path) => composer.specsByPath[path]?.fields?.typeName === "PointInstancer";
 
@@ -15,7 +15,8 @@ export function placeCopies(composer, object, path, build, found) {
   const given = composer._getAttributes(path);
   const { protoIndices = [], positions = [], scales = [] } = given;
   const names = targetsOf(composer, path);
-  if (protoIndices.some((index) => !names[index])) refuse(`protoIndices go up to ${Math.max(...protoIndices)} and there are ${names.length} prototypes; export the instancer again`);
+  const wrong = protoIndices.findIndex((index) => !names[index]);
+  if (wrong >= 0) refuse(`protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`);
   if (names.some((name) => !name.startsWith(`${path}/`))) return void found.elsewhere++;
   const prototypes = names.map((name) => name.slice(path.length + 1).split("/").reduce((parent, part) => parent?.children.find((child) => child.name === part), below));
   const count = protoIndices.length;
@@ -25,8 +26,9 @@ export function placeCopies(composer, object, path, build, found) {
     refuse(`protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`);
   const hidden = hiddenOf(composer, path, given, count, refuse, found);
   found.masked += hidden.size;
-  found.copies += count;
-  if (found.copies > MOST_COPIES) refuse(`more than ${MOST_COPIES.toLocaleString("en")} copies are too many here; voxrt build takes more`);
+  const sizes = prototypes.map(objectsOf);
+  for (const index of protoIndices) found.copied += 1 + sizes[index];
+  if (found.copied > MOST_OBJECTS) refuse(`copies with more than ${MOST_OBJECTS.toLocaleString("en")} objects are too many here; voxrt build takes more`);
   for (let i = 0; i < count; i++) {
     if (hidden.has(i) || !prototypes[protoIndices[i]]) continue;
     const copy = new Object3D();
@@ -38,6 +40,13 @@ export function placeCopies(composer, object, path, build, found) {
     copy.add(prototypes[protoIndices[i]].clone());
     object.add(copy);
   }
+}
+
+// The copies of instancers below a prototype are copied again, and count.
+function objectsOf(prototype) {
+  let count = 0;
+  prototype?.traverse(() => count++);
+  return count;
 }
 
 const single = (values) => (values instanceof Float32Array ? values : Float32Array.from(values));

@@ -1,4 +1,4 @@
-"""Build web/src and the native sources as WebAssembly: build/web/voxrt.wasm: ``python web/build.py [--jobs N]``."""
+"""Build build/web/voxrt.wasm of web/src and the native sources: ``python web/build_voxrt.py [--jobs N]``."""
 
 from __future__ import annotations
 

@@ -1,0 +1,89 @@
+"""What tests do with the static page in a browser: open it, drop files, read its picture, save its files."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from voxrt.octree.camera import Camera, Lighting
+from voxrt.sim import render
+
+if TYPE_CHECKING:
+    from fakes.browser import Browser
+
+    from voxrt.octree import Rom
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+RESTS = "document.querySelector('#stage').getAttribute('aria-busy') === 'false'"
+REFUSES = "document.querySelector('#notice').dataset.kind === 'error' && !document.querySelector('#notice').hidden"
+
+
+def shown(name: str, depth: int) -> str:
+    """The page shows a scene, and its picture is complete."""
+    return f"document.querySelector('#stage').dataset.scene === '{name} {depth}' && {RESTS}"
+
+
+def opened(browser: Browser, fragment: str = "") -> None:
+    """Open the page anew."""
+    browser.open("about:blank")
+    browser.open(browser.address + fragment)
+
+
+def drop(browser: Browser, *files: Path) -> None:
+    """Drop files on the picture."""
+    browser.drop(*browser.middle("#stage"), [str(file) for file in files])
+
+
+def notice(browser: Browser) -> str:
+    """What the page tells, or nothing."""
+    return browser.run("const n = document.querySelector('#notice'); return n.hidden ? '' : n.innerText")
+
+
+def registers(camera: dict[str, list[int]]) -> Camera:
+    """The camera of a frame."""
+    return Camera(*(tuple(camera[part]) for part in ("position", "look", "right", "up")))
+
+
+def frame_of(browser: Browser) -> tuple[dict, list[int], np.ndarray]:
+    """The camera registers, the size and the colours of the newest frame that was rendered."""
+    script = """
+        const done = arguments[0];
+        const { camera, width, height } = window.voxrt.newest;
+        const text = window.voxrt.colours().reduce((text, byte) => text + String.fromCharCode(byte), "");
+        done({ camera, size: [width, height], pixels: btoa(text) });
+    """
+    got = browser._call("POST", f"{browser._session}/execute/async", {"script": script, "args": []})
+    width, height = got["size"]
+    colours = np.frombuffer(base64.b64decode(got["pixels"]), np.uint8).reshape(height, width, 3)
+    return got["camera"], got["size"], colours
+
+
+def shows_exactly(browser: Browser, rom: Rom, lighting: Lighting | None = None) -> bool:
+    """The newest frame is that of the exact model, run natively."""
+    camera, size, colours = frame_of(browser)
+    native = render(rom, registers(camera), tuple(size), engine="model", lighting=lighting or Lighting())
+    return np.array_equal(colours, native.colour)
+
+
+def saved(browser: Browser, folder: Path, button: str, name: str) -> bytes:
+    """Click a button and return the file that the browser saves."""
+    save_to(browser, folder)
+    browser.run("document.querySelector(arguments[0]).click()", button)
+    return file_saved(browser, folder, name)
+
+
+def save_to(browser: Browser, folder: Path) -> None:
+    """Let the browser save files in a folder."""
+    browser.cdp("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(folder), eventsEnabled=False)
+
+
+def file_saved(browser: Browser, folder: Path, name: str) -> bytes:
+    """Wait until the browser has saved a file, and return it."""
+    for _ in range(1000):
+        browser.draws()
+        if (folder / name).exists() and not list(folder.glob("*.crdownload")):
+            return (folder / name).read_bytes()
+    raise AssertionError(f"{name} was not saved; there is {[path.name for path in folder.iterdir()]}")
