@@ -33,7 +33,7 @@ def check_screen(*, off_screen: bool) -> None:
     """
     pv = import_pyvista()
     if not off_screen:
-        if not pv.system_supports_plotting():
+        if (sys.platform == "linux" and not _reaches_x_server()) or not pv.system_supports_plotting():
             raise ViewerError("there is no screen to open a window on; save a picture instead (--screenshot FILE)")
     elif sys.platform == "linux":
         screen = bool(os.environ.get("DISPLAY")) and _loads("libGL.so.1")
@@ -108,6 +108,19 @@ def _stand(plotter: pyvista.Plotter, eye: NDArray[np.float64], look: NDArray[np.
     plotter.camera.focal_point = tuple(eye + ahead * look)
     plotter.camera.up = (0, 1, 0)
     plotter.renderer.reset_camera_clipping_range()
+
+
+def _reaches_x_server() -> bool:
+    """PyVista also counts a library that draws without a screen; windows need an X server."""
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return False
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = x11.XOpenDisplay(None)
+    if display:
+        x11.XCloseDisplay(ctypes.c_void_p(display))
+    return bool(display)
 
 
 def _loads(library: str) -> bool:

@@ -102,9 +102,11 @@ def test_devices_render_on_after_a_frame_was_dropped(opened):
     with pytest.raises(FrameDropped):
         device.frame(view, drop=before)
     np.testing.assert_array_equal(device.frame(view, drop=FrameDrop()).colour, expected)
+    depth = small.depth
     if isinstance(device, ModelDevice):
-        memory.load(never_merged(12), ignore)  # every frame takes minutes
-    large = View(frame_world(small.depth, (1600, 1200)), (1600, 1200), small.background)
+        depth = 12
+        memory.load(never_merged(depth), ignore)  # every frame takes minutes
+    large = View(frame_world(depth, (1600, 1200)), (1600, 1200), small.background)
     timer = Timer(0.2, meanwhile.request)
     timer.start()
     with pytest.raises(FrameDropped):
