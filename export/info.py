@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from voxrt.octree import BOARDS, census, share, solid_bounds
+from voxrt.octree import BOARDS, census, shared_words, solid_bounds
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
@@ -97,7 +97,7 @@ def rom_info(rom: Rom) -> RomInfo:
         depth=rom.octree.depth,
         words=words,
         blocks=rom.octree.blocks,
-        shared_words=len(share(rom.octree).words),
+        shared_words=shared_words(rom.octree),
         unshared_blocks=(sum(leaves) - 1) // 7,
         voxels=counts.solid_voxels,
         bounds=solid_bounds(rom.octree),

@@ -57,6 +57,7 @@ __all__ = [
     "octant_at",
     "share",
     "share_hidden",
+    "shared_words",
     "solid_bounds",
     "surface_change",
     "to_dense",
@@ -76,7 +77,7 @@ _HOMES = {
         "join_frames",
     ),
     "voxrt.octree.assembly": ("Assembly",),
-    "voxrt.octree.budget": ("BOARDS", "Fit", "coarsen", "fit", "share"),
+    "voxrt.octree.budget": ("BOARDS", "Fit", "coarsen", "fit", "share", "shared_words"),
     "voxrt.octree.construct": ("build", "from_dense", "from_points"),
     "voxrt.octree.decoding": ("decode",),
     "voxrt.octree.dialects": ("DIALECTS", "Dialect", "detect_dialect", "encode"),
@@ -110,7 +111,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
         join_frames,
     )
     from voxrt.octree.assembly import Assembly
-    from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share
+    from voxrt.octree.budget import BOARDS, Fit, coarsen, fit, share, shared_words
     from voxrt.octree.construct import build, from_dense, from_points
     from voxrt.octree.dag import DagCensus, OccupancyDag, dag_census, mirrored_blocks, occupancy_dag
     from voxrt.octree.decoding import decode

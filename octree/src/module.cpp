@@ -17,6 +17,7 @@
 #include "occupancy_dag.h"
 #include "query.h"
 #include "regions.h"
+#include "shared_size.h"
 #include "sight_costs.h"
 #include "surface.h"
 #include "validate.h"
@@ -227,6 +228,11 @@ nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
     return to_numpy(std::move(rows), {count});
 }
 
+std::size_t bind_shared_words(const Vector<Word>& words, unsigned depth) {
+    const Memory memory = memory_of(words, depth);
+    return run([&] { return shared_words(memory); });
+}
+
 nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
     const Memory memory = memory_of(words, depth);
     return words_to_numpy(run([&] {
@@ -419,6 +425,7 @@ NB_MODULE(_native, m) {
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
+    m.def("shared_words", &bind_shared_words, "words"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
     m.def("occupancy_dag", &bind_occupancy_dag, "words"_a.noconvert(), "depth"_a);
     m.def("occupied_octree", &bind_occupied_octree, "words"_a.noconvert(), "depth"_a);

@@ -36,6 +36,7 @@ def lumps(depth, materials=1, seed=0):
 def test_sharing_gives_the_canonical_memory(cube):
     tree = octree.decode(unshared_words(cube), "report", len(cube).bit_length() - 1)
     np.testing.assert_array_equal(octree.share(tree).words, reference_words(cube))
+    assert octree.shared_words(tree) == octree.shared_words(octree.share(tree)) == len(reference_words(cube))
 
 
 @given(dense_cubes(4), st.integers(0, 4))

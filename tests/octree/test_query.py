@@ -208,6 +208,7 @@ def test_words_that_are_no_octree_never_crash_a_query(words):
         lambda: octree.census(tree),
         lambda: octree.count_in_box(tree, (0, 0, 0), (5, 5, 5)),
         lambda: octree.solid_bounds(tree),
+        lambda: octree.shared_words(tree),
         lambda: octree.to_dense(tree),
         lambda: list(octree.leaves(tree)),
         lambda: octree.diff(tree, octree.Octree(3, np.array([0xFFFFFF00], np.uint32))),

@@ -44,7 +44,7 @@ std::vector<ObjectWarning> object_warnings(const VoxelizedObjects& objects) {
         const std::string more = others > 0 ? " and " + std::to_string(others) + " more" : "";
         warnings.push_back({"mostly-filled",
                             "open objects were filled, and are more inside than shell (" + mostly_filled[0] + more +
-                                "): build thin sheets, such as cloth, with fill auto or surface",
+                                "): build thin sheets, such as cloth, with fill surface",
                             int64_t(mostly_filled.size())});
     }
     if (flipped > 0)

@@ -8,6 +8,7 @@
 #include "interior.h"
 #include "query.h"
 #include "regions.h"
+#include "shared_size.h"
 #include "surface.h"
 #include "validate.h"
 #include "verify.h"
@@ -41,6 +42,7 @@ std::vector<uint8_t> cells_of(const Memory& memory) {
 void read_all(const Memory& memory, const Memory& other) {
     leaf_counts(memory);
     solid_bounds(memory);
+    shared_words(memory);
     count_in_box(memory, Box{{0, 0, 0}, {1, 2, 3}});
     const int64_t points[] = {0, 0, 0, 1, 1, 1};
     uint8_t materials[2];

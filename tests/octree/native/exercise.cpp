@@ -14,6 +14,7 @@
 #include "leaves.h"
 #include "query.h"
 #include "regions.h"
+#include "shared_size.h"
 #include "surface.h"
 #include "validate.h"
 #include "verify.h"
@@ -148,6 +149,7 @@ void exercise_grid(Random& random, unsigned depth) {
     surface_change(memory, other);
     leaf_counts(memory);
     solid_bounds(memory);
+    shared_words(memory);
     BlockPool pool;
     coarsen(memory, 1, pool);
     const auto costs = std::make_unique<AppearanceCosts>();
