@@ -1,33 +1,14 @@
 // voxrt.octree._native: the octree for Python. The headers are the manual; here arrays are checked and handed over.
-#include "assembly.h"
-#include "breadth_first.h"
+#include "bindings.h"
 #include "build.h"
-#include "coarsen.h"
-#include "dag_counts.h"
 #include "dense.h"
 #include "diff.h"
-#include "disk_assembly.h"
-#include "encoded_rows.h"
-#include "fit_candidates.h"
-#include "hidden.h"
-#include "interior.h"
 #include "leaves.h"
-#include "means.h"
-#include "mem_text.h"
-#include "occupancy_dag.h"
 #include "query.h"
 #include "regions.h"
-#include "shared_size.h"
-#include "sight_costs.h"
-#include "surface.h"
 #include "validate.h"
 
-#include <voxrt/voxelize/python.h>
-
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <memory>
@@ -39,43 +20,14 @@ using namespace nb::literals;
 namespace voxrt::octree {
 namespace {
 
-using python::LongCall;
 using python::NamedTuple;
 using python::to_numpy;
 using python::to_read_only_numpy;
 
-template <typename T> using Vector = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-template <typename T, int Columns>
-using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
 using Volume = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Corner = std::array<std::int64_t, 3>;
 
-NamedTuple verdict_type, bounds_type, difference_type, regions_type, surface_change_type, leaves_type;
-
-// A read-only array.
-nb::object words_to_numpy(std::vector<Word>&& words) {
-    words.shrink_to_fit();
-    const std::size_t size = words.size();
-    return to_read_only_numpy(std::move(words), {size});
-}
-
-// Calls `work` without the GIL; Ctrl-C ends it.
-template <class Work> auto run(Work work) {
-    const LongCall call;
-    return work();
-}
-
-void require(bool condition, const char* message) {
-    if (!condition)
-        throw std::invalid_argument(message);
-}
-
-void require_depth(unsigned depth) { require(depth >= 1 && depth <= kMaxDepth, "depth must be 1 ... 16"); }
-
-Memory memory_of(const Vector<Word>& words, unsigned depth) {
-    require_depth(depth);
-    return {words.data(), words.shape(0), depth};
-}
+NamedTuple verdict_type, bounds_type, difference_type, regions_type, leaves_type;
 
 Box box_of(const Corner& low, const Corner& high) {
     for (unsigned axis = 0; axis < 3; ++axis)
@@ -220,154 +172,6 @@ nb::object bind_differing_regions(const Vector<Word>& first, const Vector<Word>&
                         to_numpy(std::move(recoloured), {count}));
 }
 
-nb::object bind_encoded_rows(const Vector<Word>& words, unsigned block_bits) {
-    if (block_bits > 29)
-        throw std::invalid_argument("block_bits is " + std::to_string(block_bits) + ", not 0 ... 29");
-    std::vector<std::uint32_t> rows = run([&] { return encoded_rows(words.data(), words.shape(0), block_bits); });
-    const std::size_t count = rows.size();
-    return to_numpy(std::move(rows), {count});
-}
-
-std::size_t bind_shared_words(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return run([&] { return shared_words(memory); });
-}
-
-nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned level) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] {
-        BlockPool pool;
-        const Node root = coarsen(memory, level, pool);
-        return breadth_first_words(pool, root);
-    }));
-}
-
-nb::object bind_occupancy_dag(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] { return occupancy_dag(memory); }));
-}
-
-nb::object bind_occupied_octree(const Vector<Word>& words, unsigned depth) {
-    return words_to_numpy(run([&] {
-        BlockPool pool;
-        const Node root = occupied_octree(words.data(), words.shape(0), depth, pool);
-        return breadth_first_words(pool, root);
-    }));
-}
-
-// A row per level; the columns are the fields of DagLevel.
-nb::object bind_dag_levels(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    std::vector<std::uint64_t> rows;
-    for (const DagLevel& level : run([&] { return dag_levels(memory); }))
-        rows.insert(rows.end(), {level.tree_nodes, level.tree_words, level.nodes, level.words, level.mirrored_nodes,
-                                 level.mirrored_words});
-    const std::size_t count = rows.size() / 6;
-    return to_numpy(std::move(rows), {count, 6});
-}
-
-std::size_t bind_mirrored_blocks(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return run([&] { return mirrored_blocks(memory); });
-}
-
-nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,
-                               const nb::ndarray<const std::uint8_t, nb::shape<-1, 3>, nb::c_contig>& colours) {
-    const Memory memory = memory_of(words, depth);
-    const auto costs = sight_costs({reinterpret_cast<const Colour*>(colours.data()), colours.shape(0)});
-    nb::list result;
-    std::string problem;
-    try {
-        for (std::vector<Word>& fit : run([&] { return fit_candidates(memory, limit, *costs); }))
-            result.append(words_to_numpy(std::move(fit)));
-    } catch (const DoesNotFit& failure) {
-        problem = failure.what();
-    }
-    return nb::make_tuple(result, problem);
-}
-
-nb::object bind_surface_change(const Vector<Word>& first, const Vector<Word>& second, unsigned depth) {
-    const Memory a = memory_of(first, depth);
-    const Memory b = memory_of(second, depth);
-    const SurfaceChange change = run([&] { return surface_change(a, b); });
-    return surface_change_type(change.surface, change.changed);
-}
-
-nb::object bind_hidden_voxels(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] { return hidden_voxels(memory); }));
-}
-
-nb::object bind_fill_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth,
-                            std::uint8_t material) {
-    const Memory memory = memory_of(words, depth);
-    const Memory hidden_memory = memory_of(hidden, depth);
-    return words_to_numpy(run([&] { return fill_hidden(memory, hidden_memory, material); }));
-}
-
-nb::object bind_share_hidden(const Vector<Word>& words, const Vector<Word>& hidden, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    const Memory hidden_memory = memory_of(hidden, depth);
-    return words_to_numpy(run([&] { return share_hidden(memory, hidden_memory); }));
-}
-
-nb::object bind_mean_materials(const Vector<Word>& words, unsigned depth, const Rows<std::uint16_t, 3>& light) {
-    require(light.shape(0) <= 256, "light must have 256 rows at most");
-    const Memory memory = memory_of(words, depth);
-    std::vector<LinearLight> materials(light.shape(0));
-    for (std::size_t id = 0; id < materials.size(); ++id)
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            materials[id][channel] = light(id, channel);
-    std::vector<std::uint8_t> means = run([&] { return mean_materials(memory, materials); });
-    const std::size_t count = means.size();
-    return to_read_only_numpy(std::move(means), {count});
-}
-
-nb::bytes bind_mem_text(const Vector<Word>& words, int threads) {
-    const std::size_t count = words.shape(0);
-    PyObject* text = PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(kMemLine * count));
-    if (text == nullptr)
-        throw nb::python_error();
-    const nb::bytes result = nb::steal<nb::bytes>(text);
-    run([&] { write_mem_text(words.data(), count, PyBytes_AS_STRING(text), threads); });
-    return result;
-}
-
-std::uint32_t bind_mem_text_crc32(const Vector<Word>& words, std::uint32_t before, int threads) {
-    return run([&] { return mem_text_crc32(words.data(), words.shape(0), before, threads); });
-}
-
-// None where the text is not that of mem_text().
-nb::object bind_read_mem_text(const nb::bytes& text) {
-    if (text.size() % kMemLine != 0)
-        return nb::none();
-    std::vector<Word> words(text.size() / kMemLine);
-    if (!run([&] { return read_mem_text(text.c_str(), words.size(), words.data(), 0); }))
-        return nb::none();
-    const std::size_t count = words.size();
-    return to_numpy(std::move(words), {count});
-}
-
-void bind_assembly_add(Assembly& assembly, const Vector<Word>& words) {
-    run([&] { assembly.add(words.data(), words.shape(0)); });
-}
-
-nb::object bind_assembly_words(const Assembly& assembly) {
-    return words_to_numpy(run([&] { return assembly.words(); }));
-}
-
-void bind_disk_assembly_add(DiskAssembly& assembly, const Vector<Word>& words) {
-    run([&] { assembly.add(words.data(), words.shape(0)); });
-}
-
-// Paths are bytes: a file's name need not be text.
-std::string path_of(const nb::bytes& path) { return {path.c_str(), path.size()}; }
-
-std::size_t bind_disk_assembly_write(DiskAssembly& assembly, const nb::bytes& path) {
-    const std::string target = path_of(path);
-    return run([&] { return assembly.write(target); });
-}
-
 // A LeafWalk with the words that it reads.
 class PythonLeafWalk {
 public:
@@ -402,7 +206,6 @@ void add_result_types(nb::module_& m) {
                                  "What diff() returns: counts of voxels, and their Bounds or None.");
     regions_type = NamedTuple(m, "Regions", {"low", "high", "appeared", "vanished", "recoloured"},
                               "What differing_regions() returns: a row per region.");
-    surface_change_type = NamedTuple(m, "SurfaceChange", {"surface", "changed"}, "What surface_change() returns.");
     leaves_type = NamedTuple(m, "Leaves", {"corners", "levels", "materials"}, "What LeafWalk.next() returns.");
 }
 
@@ -425,48 +228,10 @@ NB_MODULE(_native, m) {
     m.def("fill_region", &bind_fill_region, "words"_a.noconvert(), "depth"_a, "low"_a, "region"_a.noconvert());
     m.def("diff", &bind_diff, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
     m.def("differing_regions", &bind_differing_regions, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
-    m.def("shared_words", &bind_shared_words, "words"_a.noconvert(), "depth"_a);
-    m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
-    m.def("occupancy_dag", &bind_occupancy_dag, "words"_a.noconvert(), "depth"_a);
-    m.def("occupied_octree", &bind_occupied_octree, "words"_a.noconvert(), "depth"_a);
-    m.def("dag_levels", &bind_dag_levels, "words"_a.noconvert(), "depth"_a);
-    m.def("mirrored_blocks", &bind_mirrored_blocks, "words"_a.noconvert(), "depth"_a);
-    m.def("encoded_rows", &bind_encoded_rows, "words"_a.noconvert(), "block_bits"_a);
-    m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
-    m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
-    m.def("mem_text", &bind_mem_text, "words"_a.noconvert(), "threads"_a = 0);
-    m.def("mem_text_crc32", &bind_mem_text_crc32, "words"_a.noconvert(), "before"_a = 0, "threads"_a = 0);
-    m.def("read_mem_text", &bind_read_mem_text, "text"_a);
-    m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
-    m.def("hidden_voxels", &bind_hidden_voxels, "words"_a.noconvert(), "depth"_a);
-    m.def("fill_hidden", &bind_fill_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a, "material"_a);
-    m.def("share_hidden", &bind_share_hidden, "words"_a.noconvert(), "hidden"_a.noconvert(), "depth"_a);
-    nb::class_<Assembly>(m, "Assembly")
-        .def(nb::new_([](unsigned depth, std::size_t expected_blocks) {
-                 require_depth(depth);
-                 return new Assembly(depth, expected_blocks);
-             }),
-             "depth"_a, "expected_blocks"_a)
-        .def("add", &bind_assembly_add, "words"_a.noconvert())
-        .def("words", &bind_assembly_words);
-    nb::register_exception_translator([](const std::exception_ptr& failure, void*) {
-        try {
-            std::rethrow_exception(failure);
-        } catch (const FileError& error) {
-            errno = error.code().value();
-            PyErr_SetFromErrnoWithFilename(PyExc_OSError, error.path.c_str());
-        }
-    });
-    nb::class_<DiskAssembly>(m, "DiskAssembly")
-        .def(nb::new_([](unsigned depth, const nb::bytes& folder, std::size_t cache_bytes) {
-                 require_depth(depth);
-                 return new DiskAssembly(depth, path_of(folder), cache_bytes);
-             }),
-             "depth"_a, "folder"_a, "cache_bytes"_a)
-        .def("add", &bind_disk_assembly_add, "words"_a.noconvert())
-        .def("write", &bind_disk_assembly_write, "path"_a);
     nanobind::class_<PythonLeafWalk>(m, "LeafWalk")
         .def(nanobind::init<Vector<Word>, unsigned, const Corner&, const Corner&, bool>(), "words"_a.noconvert(),
              "depth"_a, "low"_a, "high"_a, "solid_only"_a)
         .def("next", &PythonLeafWalk::next, "limit"_a);
+    bind_derived(m);
+    bind_files(m);
 }
