@@ -42,13 +42,13 @@ _LOOK = 0.5
 """Seconds between two questions after the number of workers."""
 
 _MOST_PIECES = 16
-"""So many octrees are joined by this process alone."""
+"""This process joins up to so many octrees alone."""
 
 _JOINERS = 8
-"""With fewer workers this process joins all tiles: what they would join, it would join again."""
+"""With fewer workers, this process joins all tiles: joins by few workers take longer than they save."""
 
 _TILES_PER_WORKER = 4
-"""Tiles differ in work; so many even it out, and each has blocks that others have too."""
+"""Enough to even out their work. More tiles store more blocks twice, which the join removes again."""
 
 _LEAST_SIDE = 512
 

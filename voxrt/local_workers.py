@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 _FORK = sys.platform == "linux"
 _MOST_LOST = 3
-"""So often processes may be killed without a task done in between."""
+"""After so many kills without a finished task between them, this gives up."""
 
 _ENDING = (signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM))
 

@@ -371,7 +371,7 @@ NB_MODULE(_native, m) {
              nb::arg("depth"), nb::arg("meshes"), nb::arg("kinds"), nb::arg("mesh_of"), nb::arg("frames"),
              nb::arg("materials"), nb::arg("objects_of"), nb::arg("objects"), nb::arg("fill"), nb::arg("threads"),
              nb::arg("wanted"))
-        .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "From now on so many threads.")
+        .def("use_threads", &PythonBlockVoxelizer::use_threads, nb::arg("threads"), "Sets the number of threads.")
         .def("blocks", &PythonBlockVoxelizer::blocks, nb::arg("block_side"),
              "The corners (x, y) of the blocks with geometry, in Morton order: int32, shape (B, 2).")
         .def("objects_of", &PythonBlockVoxelizer::objects_of, nb::arg("x"), nb::arg("y"), nb::arg("block_side"),

@@ -85,7 +85,7 @@ public:
                    std::span<const uint8_t> wanted = {});
     ~BlockVoxelizer();
 
-    /// From now on so many threads; 0 takes as many as the machine has.
+    /// Sets the number of threads; 0 takes as many as the machine has.
     void use_threads(int threads);
 
     /// The blocks with geometry, in Morton order. `block_side`: a multiple of 64.
