@@ -6,6 +6,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace voxrt::sim {
@@ -64,6 +66,14 @@ inline Part smaller(Part a, Part b) { return _mm_min_pd(a, b); }
 inline uint32_t mask_of(PartTruth truth) {
     return static_cast<uint32_t>(_mm_movemask_pd(_mm_castsi128_pd(reinterpret_cast<__m128i>(truth))));
 }
+#elif defined(__wasm_simd128__)
+inline Part larger(Part a, Part b) {
+    return reinterpret_cast<Part>(wasm_f64x2_pmax(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
+}
+inline Part smaller(Part a, Part b) {
+    return reinterpret_cast<Part>(wasm_f64x2_pmin(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
+}
+inline uint32_t mask_of(PartTruth truth) { return wasm_i64x2_bitmask(reinterpret_cast<v128_t>(truth)); }
 #else
 inline Part larger(Part a, Part b) { return a > b ? a : b; }
 inline Part smaller(Part a, Part b) { return a < b ? a : b; }
