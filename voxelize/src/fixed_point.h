@@ -26,10 +26,14 @@ struct Vertex {
     bool operator==(const Vertex&) const = default;
 };
 
-/// floor(a / b), b > 0.
+/// floor(a / b), b > 0. Divisions of int128 are calls; most have numbers that fit 64 bits.
 template <typename T> constexpr T floor_div(T a, T b) {
+    if constexpr (sizeof(T) > sizeof(int64_t)) {
+        if (a == static_cast<int64_t>(a) && b == static_cast<int64_t>(b))
+            return floor_div(static_cast<int64_t>(a), static_cast<int64_t>(b));
+    }
     const T q = a / b;
-    return q - (a % b < 0 ? 1 : 0);
+    return q - (a - q * b < 0 ? 1 : 0);
 }
 
 /// Index of the voxel that holds a coordinate: floor(coordinate / kUnit).
