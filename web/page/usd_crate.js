@@ -1,0 +1,60 @@
+// Binary USD files: types of values that the parser of three.js' loader leaves out.
+
+const [BOOL, UCHAR, INT64, UINT64, MATRIX_3D, QUATD, QUATH] = [1, 2, 5, 6, 14, 16, 18];
+const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, TOKENS] = [19, 21, 22, 23, 25, 26, 27, 29, 30, 32];
+const half = (parser) => parser._readHalf();
+const double = ({ reader }) => reader.readFloat64();
+const integer = ({ reader }) => reader.readInt32();
+
+// Numbers per value, bytes per number, how to read one, the array for them.
+const TYPES = new Map([
+  [BOOL, [1, 1, ({ reader }) => reader.readUint8() !== 0, Array]],
+  [UCHAR, [1, 1, ({ reader }) => reader.readUint8(), Uint8Array]],
+  [INT64, [1, 8, ({ reader }) => reader.readInt64(), Float64Array]],
+  [UINT64, [1, 8, ({ reader }) => reader.readUint64(), Float64Array]],
+  [MATRIX_3D, [9, 8, double, Float64Array]],
+  [QUATD, [4, 8, double, Float64Array]],
+  [QUATH, [4, 2, half, Float32Array]],
+  [VEC_2D, [2, 8, double, Float64Array]],
+  [VEC_2H, [2, 2, half, Float32Array]],
+  [VEC_2I, [2, 4, integer, Int32Array]],
+  [VEC_3D, [3, 8, double, Float64Array]],
+  [VEC_3H, [3, 2, half, Float32Array]],
+  [VEC_3I, [3, 4, integer, Int32Array]],
+  [VEC_4D, [4, 8, double, Float64Array]],
+  [VEC_4H, [4, 2, half, Float32Array]],
+  [VEC_4I, [4, 4, integer, Int32Array]],
+]);
+
+// Methods for USDCParser. `kept`: its own ones.
+export const crateMethods = (kept) => ({
+  _readScalarValue(type) {
+    if (type === TOKENS) return tokens(this);
+    const found = TYPES.get(type);
+    if (!found || found[0] === 1) return kept._readScalarValue.call(this, type);
+    return Array.from({ length: found[0] }, () => found[2](this));
+  },
+  _readArrayValue(rep) {
+    const found = rep.isCompressed ? null : TYPES.get(rep.typeEnum);
+    if (!found) return kept._readArrayValue.call(this, rep);
+    const { reader, version } = this;
+    const [numbers, bytes, read, Kind] = found;
+    const size = version.major === 0 && version.minor < 7 ? reader.readUint32() : reader.readUint64();
+    const count = numbers * size;
+    if (!(count * bytes <= this.buffer.byteLength - reader.tell())) throw new Error(`an array of ${size} values does not fit into the file; it is damaged`);
+    const values = new Kind(count);
+    for (let i = 0; i < count; i++) values[i] = read(this);
+    return values;
+  },
+});
+
+// A list of names with its edits; those that it deletes are left out.
+function tokens({ reader, tokens: names }) {
+  const flags = reader.readUint8();
+  const found = [];
+  for (const bit of [0x02, 0x04, 0x20, 0x40]) {
+    if (!(flags & bit)) continue;
+    for (let left = reader.readUint64(); left > 0; left--) found.push(names[reader.readUint32()] ?? "");
+  }
+  return found;
+}

@@ -1,0 +1,177 @@
+// Meshes and solids of USD as meshes of three.js: the triangles and materials that voxrt build gives them, and their names.
+//
+// Each corner of each triangle is a vertex of its own. What triangles show is known when all images are decoded: until then
+// meshes have an empty geometry.
+
+import { dimensionsOf, isNewSolid, isSolid } from "./usd_solids.js";
+import { arrayOf, primvarOf, valueOf } from "./usd_stage.js";
+import { placesOf, surfaceOf } from "./usd_surface.js";
+import { BufferAttribute, BufferGeometry, Mesh, Object3D, SkinnedMesh } from "./three/three.core.js";
+
+export class UsdMeshes {
+  constructor(materials, warn) {
+    Object.assign(this, { materials, warn });
+    this.surfaces = new Map(); // by composer and path, or by the dimensions of solids
+    this.made = new Map(); // surface -> rows of faces -> what finish() needs
+  }
+
+  // Methods for USDComposer. `kept`: its own ones.
+  methods = (kept) => {
+    const meshes = this;
+    return {
+      _buildMesh(path) { return meshes.build(this, path, "Mesh"); },
+      _buildGeomPrimitive(path, _spec, kind) { return meshes.build(this, path, kind); },
+      _buildHierarchy(parent, path) {
+        const kind = this.specsByPath[path]?.fields.typeName ?? "";
+        if (isNewSolid(kind)) {
+          const mesh = meshes.build(this, path, kind);
+          mesh.name = "";
+          mesh.matrix.identity();
+          parent.add(mesh);
+        } else meshes.note(kind);
+        kept._buildHierarchy.call(this, parent, path);
+      },
+    };
+  };
+
+  note(kind) {
+    if (/^(\w*Curves|Points|NurbsPatch|TetMesh|Volume)$/.test(kind)) this.warn("unsupported-prim", `${kind} prims are not supported and were left out`);
+    else if (/^(\w+Light(_1)?|Camera|Skeleton|LightFilter|LightPortal)$/.test(kind)) this.warn("no-shape", `${kind} prims have no shape and were left out`);
+  }
+
+  build(composer, path, kind) {
+    const surface = this.surfaceOf(composer, path, kind);
+    let object = new Object3D();
+    if (surface) {
+      const { shadings, rows } = this.materials.ofFaces(composer, path, surface);
+      const made = this.madeOf(composer, path, surface, shadings, rows);
+      const skin = kind === "Mesh" && skinOf(composer, path);
+      object = skin ? new SkinnedMesh(made.geometry, shadings) : new Mesh(made.geometry, shadings);
+      if (skin) {
+        made.skin = skin;
+        composer.skinnedMeshes.push({ mesh: object, path, ...skin.binding });
+      }
+    }
+    object.name = path.slice(path.lastIndexOf("/") + 1);
+    composer.applyTransform(object, composer.specsByPath[path].fields, composer._getAttributes(path));
+    return object;
+  }
+
+  surfaceOf(composer, path, kind) {
+    if (!this.surfaces.has(composer)) this.surfaces.set(composer, new Map());
+    const key = isSolid(kind) ? `${kind} ${dimensionsOf(kind, path, (name) => valueOf(composer, path, name))}` : path;
+    const known = this.surfaces.get(isSolid(kind) ? this : composer) ?? this.surfaces.set(this, new Map()).get(this);
+    if (!known.has(key)) known.set(key, surfaceOf(composer, path, kind, this.warn));
+    return known.get(key);
+  }
+
+  // Solids of one kind and look share their geometry.
+  madeOf(composer, path, surface, shadings, rows) {
+    if (!this.made.has(surface)) this.made.set(surface, new Map());
+    const known = this.made.get(surface);
+    const key = shadings.map(({ id }) => id).join();
+    if (!known.has(key)) known.set(key, { geometry: new BufferGeometry(), composer, path, surface, shadings, rows });
+    return known.get(key);
+  }
+
+  // Give all geometries their triangles.
+  finish() {
+    for (const known of this.made.values()) for (const made of known.values()) this.fill(made);
+  }
+
+  fill({ geometry, composer, path, surface, shadings, rows, skin }) {
+    const counts = new Array(shadings.length).fill(0);
+    for (const row of rows) if (row >= 0) counts[row]++;
+    const shown = shadings.map((shading, row) => this.materials.show(shading, composer, path, surface, counts[row]));
+    const kept = [];
+    for (let triangle = 0; triangle < surface.faces.length; triangle++) if (shown[rows[surface.faces[triangle]]]) kept.push(triangle);
+    const gathered = (size, read, Kind = Float64Array) => {
+      const values = new Kind(3 * size * kept.length);
+      kept.forEach((triangle, i) => { for (let corner = 0; corner < 3; corner++) read(triangle, corner, values, size * (3 * i + corner)); });
+      return values;
+    };
+    const vertex = (size, from) => (triangle, corner, out, to) => {
+      const at = size * surface.triangles[3 * triangle + corner];
+      for (let part = 0; part < size; part++) out[to + part] = from[at + part];
+    };
+    geometry.setAttribute("position", new BufferAttribute(gathered(3, vertex(3, surface.positions)), 3));
+    const normals = surface.cornerCount ? this.normalsOf(composer, path, surface) : null;
+    if (normals) geometry.setAttribute("normal", new BufferAttribute(gathered(3, normals, Float32Array), 3));
+    if (skin) {
+      geometry.setAttribute("skinIndex", new BufferAttribute(gathered(4, vertex(4, skin.joints), Uint16Array), 4));
+      geometry.setAttribute("skinWeight", new BufferAttribute(gathered(4, vertex(4, skin.weights), Float32Array), 4));
+    }
+    kept.forEach((triangle, i) => {
+      const row = rows[surface.faces[triangle]];
+      const last = geometry.groups.at(-1);
+      if (last?.materialIndex === row) last.count += 3;
+      else geometry.addGroup(3 * i, 3, row);
+    });
+    geometry.userData.shown = new Map(shadings.map((shading, row) => {
+      const { uniform, look } = shown[row] ?? {};
+      return [shading, look ? { entry: look.entry, ...settersOf(look, gathered) } : uniform];
+    }));
+  }
+
+  normalsOf(composer, path, surface) {
+    const given = primvarOf(composer, path, "normals");
+    const places = (normals) => (normals?.size === 3 ? placesOf("normals", normals, surface, this.warn) : null);
+    let [normals, place] = [given, places(given)];
+    if (!place) {
+      normals = arrayOf(composer, path, "normals", "vertex");
+      place = places(normals);
+    }
+    return place && ((triangle, corner, out, to) => {
+      const at = place(triangle, corner);
+      for (let part = 0; part < 3; part++) out[to + part] = Number.isFinite(normals.values[at + part]) ? normals.values[at + part] : 0;
+    });
+  }
+
+  // Rules for sceneOf. Uniform materials are known by geometry, for shadings may fall back to one.
+  rules = {
+    nameOf: pathOf,
+    appearanceOf: (shading, geometry) => {
+      const found = geometry.userData.shown.get(shading);
+      this.current = found;
+      return found?.entry ? found : null;
+    },
+    materialOf: () => this.current,
+  };
+}
+
+function settersOf({ setUv, setColour }, gathered) {
+  const uv = setUv && gathered(2, setUv);
+  const colour = setColour && gathered(3, setColour, Float32Array);
+  return {
+    uvOf: uv && ((vertex, out) => { out[0] = uv[2 * vertex]; out[1] = uv[2 * vertex + 1]; }),
+    colourOf: colour && ((vertex, out) => { out.set(colour.subarray(3 * vertex, 3 * vertex + 3)); out[3] = 1; }),
+  };
+}
+
+// The path of a prim, as voxrt build names objects: copies of instancers have the instancer's path and their number.
+function pathOf(mesh) {
+  const parts = [];
+  for (let object = mesh; object.parent; object = object.parent) if (object.name && !object.parent.userData.copies) parts.push(object.name);
+  return `/${parts.reverse().join("/")}`;
+}
+
+// The joints and weights of each vertex, four at most, and what binds a mesh to its skeleton; null for none.
+function skinOf(composer, path) {
+  const [given, factors] = ["Indices", "Weights"].map((name) => valueOf(composer, path, `primvars:skel:joint${name}`));
+  if (!given?.length || !factors?.length) return null;
+  const fields = composer.specsByPath[`${path}.primvars:skel:jointIndices`]?.fields ?? {};
+  const points = (valueOf(composer, path, "points")?.length ?? 0) / 3;
+  const each = fields.elementSize ?? Math.max(1, Math.floor(given.length / points));
+  const [joints, weights] = [new Uint16Array(4 * points), new Float32Array(4 * points)];
+  const rigid = given.length === each;
+  const spread = (values) => (rigid ? Array.from({ length: each * points }, (_, i) => values[i % each]) : values);
+  composer._selectTopWeights(spread(given), spread(factors), each, points, joints, weights);
+  const { targetPaths } = composer.specsByPath[`${path}.skel:skeleton`]?.fields ?? {};
+  return {
+    joints, weights,
+    binding: {
+      skeletonPath: targetPaths?.[0] ?? null, localJoints: valueOf(composer, path, "skel:joints"),
+      geomBindTransform: valueOf(composer, path, "primvars:skel:geomBindTransform"),
+    },
+  };
+}

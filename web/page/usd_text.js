@@ -1,0 +1,61 @@
+// USD files of text: what the parser of three.js' loader leaves out of them, or takes for something else.
+
+// Methods for USDAParser. `kept`: its own ones.
+export const textMethods = (kept) => ({
+  _preprocess(text) {
+    return kept._preprocess.call(this, text).split("\n").flatMap(statements).join("\n");
+  },
+  parseText(text) {
+    this.parsed = kept.parseText.call(this, text);
+    return this.parsed;
+  },
+  parseData(text) {
+    const made = kept.parseData.call(this, text);
+    const [{ fields }, header] = [made.specsByPath["/"], this.parsed["#usda 1.0"] ?? {}];
+    for (const name of ["startTimeCode", "endTimeCode"]) if (header[name] !== undefined) fields[name] = Number(header[name]);
+    if (header.subLayers) fields.subLayers = [header.subLayers];
+    return made;
+  },
+  _extractPrimData(data, path, fields, specs, types) {
+    if (!data || typeof data !== "object") return;
+    const notes = data[Object.getOwnPropertySymbols(data)[0]] ?? {};
+    const plain = withoutPrefixes(data);
+    for (const symbol of Object.getOwnPropertySymbols(data)) plain[symbol] = withoutPrefixes(data[symbol]);
+    const has = (pattern) => Object.keys(data).find((key) => pattern.test(key));
+    for (const [name, pattern] of [["prepend references", /^(add |append )?references$/], ["payload", /^(prepend |add |append )payload$/]])
+      if (has(pattern)) plain[name] ??= data[has(pattern)];
+    fields.specifier = 0;
+    if (data.active === "false") fields.active = false;
+    if (has(/^(\w+ )?inherits$/)) fields.inheritPaths = [data[has(/^(\w+ )?inherits$/)]];
+    if (has(/^(\w+ )?specializes$/)) fields.specializes = [data[has(/^(\w+ )?specializes$/)]];
+    if (has(/^variantSet\s/)) fields.variantText = true;
+    const schemas = Object.keys(data).filter((key) => /^(?!delete )(\w+ )?apiSchemas$/.test(key)).flatMap((key) => String(data[key]).match(/[\w:]+/g) ?? []);
+    if (schemas.length) fields.apiSchemas = schemas;
+    kept._extractPrimData.call(this, plain, path, fields, specs, types);
+    for (const [key, note] of Object.entries(withoutPrefixes(notes))) {
+      const spec = specs[`${path}.${key.replace(/^uniform\s+/, "").split(/\s+/)[1]}`];
+      if (!spec) continue;
+      if (note.interpolation) spec.fields.interpolation = note.interpolation.replace(/"/g, "");
+      if (note.elementSize) spec.fields.elementSize = Number(note.elementSize);
+    }
+  },
+});
+
+// "custom rel a" is "rel a", "prepend token b.connect" is "token b.connect".
+const withoutPrefixes = (data) => Object.fromEntries(Object.entries(data).map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]));
+
+// The parser wants one statement a line, as USD itself writes them.
+function statements(line) {
+  const body = /^((?:def|over|class)\b[^{]*)\{\s*(\S.*)$/.exec(line);
+  if (body && !line.endsWith("(")) {
+    const inside = body[2].endsWith("}") ? [...body[2].slice(0, -1).split(";"), "}"] : body[2].split(";");
+    return [...statements(body[1].trim()), "{", ...inside.map((one) => one.trim()).filter(Boolean)];
+  }
+  if (/^[}\s]+$/.test(line)) return [...line.replace(/\s/g, "")];
+  if (!line.endsWith(")")) return [line];
+  const at = line.lastIndexOf("(");
+  const inside = line.slice(at + 1, -1);
+  const prim = /^(?:def|over|class)\b/.test(line);
+  if (at < 1 || !/^\s*(?:\w+\s+)?\w+\s*=/.test(inside) || !(prim || line.slice(0, at).includes("="))) return [line];
+  return [`${line.slice(0, at).trim()} (`, ...inside.split(";").map((one) => one.trim()).filter(Boolean), ")"];
+}
