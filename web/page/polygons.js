@@ -49,7 +49,7 @@ function flat(points, normal) {
 const side = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
 
 // Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves.
-function ears(points) {
+export function ears(points) {
   const left = points.map((_, i) => i);
   const triangles = [];
   while (left.length > 3) {

@@ -7,6 +7,7 @@ import { UsdImages } from "./usd_images.js";
 import { instancerMethods } from "./usd_instancer.js";
 import { UsdMaterials } from "./usd_materials.js";
 import { UsdMeshes } from "./usd_meshes.js";
+import { referenceMethods } from "./usd_references.js";
 import { stageMethods } from "./usd_stage.js";
 import { textMethods } from "./usd_text.js";
 import { sceneOf } from "./voxrt/scene.js";
@@ -22,7 +23,6 @@ const ELSEWHERE = ["references", "payload", "inheritPaths", "specializes", "subL
 // Specs of a file that say what is not read: kind, message, test of fields and path.
 const OTHERS = [
   ["collider", "colliders are not used here; voxrt build uses them", ({ apiSchemas }) => apiSchemas?.includes?.("PhysicsCollisionAPI")],
-  ["variant", "variants of text files are left out here; voxrt build reads them", ({ variantText }) => variantText],
   ["collection", "materials bound to collections are not used here; voxrt build uses them", (_, path) => path.includes(".material:binding:collection:")],
   ["animation", "poses of skeletons and blend shapes are not used here; voxrt build uses them", ({ typeName }) => typeName === "SkelAnimation"],
 ];
@@ -34,7 +34,7 @@ export async function readUsd(main, folder, voxrt) {
   const images = new UsdImages(folder, voxrt);
   const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warn), warn);
   const restored = [patch(USDAParser, textMethods), patch(USDCParser, crateMethods)];
-  for (const methods of [stageMethods, frameMethods, meshes.methods, instancerMethods, layerMethods]) restored.unshift(patch(USDComposer, methods, found));
+  for (const methods of [stageMethods, referenceMethods, frameMethods, meshes.methods, instancerMethods, layerMethods]) restored.unshift(patch(USDComposer, methods, found));
   let root;
   try {
     root = new USDLoader().parse(main.bytes.buffer, "");

@@ -2,6 +2,7 @@
 
 const [BOOL, UCHAR, INT64, UINT64, MATRIX_3D, QUATD, QUATH] = [1, 2, 5, 6, 14, 16, 18];
 const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, TOKENS] = [19, 21, 22, 23, 25, 26, 27, 29, 30, 32];
+const [REFERENCES, PAYLOAD, PAYLOADS] = [35, 47, 55];
 const half = (parser) => parser._readHalf();
 const double = ({ reader }) => reader.readFloat64();
 const integer = ({ reader }) => reader.readInt32();
@@ -28,8 +29,17 @@ const TYPES = new Map([
 
 // Methods for USDCParser. `kept`: its own ones.
 export const crateMethods = (kept) => ({
+  // Whole numbers that fit are bytes in the place of the value's address.
+  _readInlinedValue(rep) {
+    const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0];
+    if (numbers < 2 || numbers === 9 || bytes < 2 || rep.typeEnum === VEC_2H || rep.typeEnum === QUATD || rep.typeEnum === QUATH) return kept._readInlinedValue.call(this, rep);
+    return Array.from({ length: numbers }, (_, i) => (rep.lo << (24 - 8 * i)) >> 24);
+  },
   _readScalarValue(type) {
-    if (type === TOKENS) return tokens(this);
+    if (type === TOKENS) return listed(this, ({ reader, tokens }) => tokens[reader.readUint32()] ?? "");
+    if (type === REFERENCES) return [listed(this, (parser) => reference(parser, true)).join(", ")];
+    if (type === PAYLOADS) return listed(this, (parser) => reference(parser, false)).join(", ");
+    if (type === PAYLOAD) return reference(this, false);
     const found = TYPES.get(type);
     if (!found || found[0] === 1) return kept._readScalarValue.call(this, type);
     return Array.from({ length: found[0] }, () => found[2](this));
@@ -48,13 +58,22 @@ export const crateMethods = (kept) => ({
   },
 });
 
-// A list of names with its edits; those that it deletes are left out.
-function tokens({ reader, tokens: names }) {
+// A list with its edits; those that it deletes are left out.
+function listed(parser, read) {
+  const { reader } = parser;
   const flags = reader.readUint8();
   const found = [];
   for (const bit of [0x02, 0x04, 0x20, 0x40]) {
     if (!(flags & bit)) continue;
-    for (let left = reader.readUint64(); left > 0; left--) found.push(names[reader.readUint32()] ?? "");
+    for (let left = reader.readUint64(); left > 0; left--) found.push(read(parser));
   }
   return found;
+}
+
+// As text has it: "@file@<prim>".
+function reference({ reader, tokens, strings, paths, version }, hasNotes) {
+  const [file, prim] = [tokens[strings[reader.readUint32()]] ?? "", paths[reader.readUint32()] ?? ""];
+  if (hasNotes || version.minor >= 8) reader.seek(reader.tell() + 16); // the offset of its time
+  if (hasNotes && reader.readUint64()) throw new Error(`${file}${prim}: a reference with custom data is not read here; voxrt build reads it`);
+  return `${file ? `@${file}@` : ""}${prim ? `<${prim}>` : ""}`;
 }

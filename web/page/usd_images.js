@@ -20,11 +20,11 @@ export class UsdImages {
     this.images.set(path, null);
   }
 
-  // Decode all of them.
+  // Decode all of them; those that cannot be decoded are missing.
   async read() {
     for (const file of this.images.keys()) {
       const found = this.bytes.has(file) ? { name: file, bytes: this.bytes.get(file) } : file && this.folder.find(file);
-      if (found) this.images.set(file, await decodeImage(found.bytes, found.name));
+      if (found) this.images.set(file, await decodeImage(found.bytes, found.name).catch(() => null));
     }
   }
 

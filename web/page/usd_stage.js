@@ -47,6 +47,12 @@ export const stageMethods = (kept, found) => ({
     const { times, values } = fields?.timeSamples ?? {};
     return times?.length ? sampleOf(times, values, found.moment, fields.typeName ?? "") : fields?.default;
   },
+  // Those that are chosen; a set without a choice shows none.
+  _getVariantPaths(path) {
+    const { variantSetChildren, variantSelection } = this.specsByPath[path]?.fields ?? {};
+    const chosen = Array.from(variantSetChildren ?? [], (set) => [set, this.externalVariantSelections[set] ?? variantSelection?.[set]]);
+    return chosen.filter(([, name]) => name).map(([set, name]) => `${path}/{${set}=${name}}`);
+  },
   _buildAnimations: () => [],
 });
 
@@ -69,14 +75,14 @@ function isShown(composer, path, found) {
   const spec = composer.specsByPath[path];
   const { typeName, specifier, active } = spec.fields;
   const prototype = () => [...upwards(path)].some((above) => composer.specsByPath[above]?.fields.typeName === "PointInstancer");
-  if (active === false || (specifier >= OVER && !path.includes("{") && !prototype())) return false;
+  if (active === false || (specifier >= OVER && !prototype())) return false;
   if (!typeName) return true;
   if (valueOf(composer, path, "visibility") === "invisible") {
     found.warn("invisible", "invisible prims and their descendants were left out");
     return false;
   }
   const purpose = valueOf(composer, path, "purpose");
-  if (purpose !== "guide" && purpose !== "proxy") return true;
+  if (purpose === null || purpose === "default" || purpose === "render") return true;
   found.warn("purpose", `prims of purpose ${purpose} and their descendants were left out`);
   return false;
 }

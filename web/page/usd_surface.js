@@ -1,12 +1,12 @@
 // The surface of a mesh of USD as triangles, each with its face and its corners, and values at these corners.
 
-import { cutConcave } from "./polygons.js";
+import { cutConcave, ears } from "./polygons.js";
 import { dimensionsOf, solidOf } from "./usd_solids.js";
 import { singles, valueOf, fieldsOf } from "./usd_stage.js";
 import { ShapeUtils, Vector2 } from "./three/three.core.js";
 
 const FARTHEST = 1e70;
-const MOST_CORNERS = 20_000; // of a concave polygon
+const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 
 // {positions, triangles, faces, faceCount, corners, cornerCount}: three numbers per vertex; three vertices, a face and three
 // corners per triangle, where corners count those of all faces; cornerCount is 0 for solids. null for no faces.
@@ -73,6 +73,7 @@ function trianglesOf(path, positions, corners, start, count) {
   if (count === 3) return [[0, 1, 2]];
   const points = Array.from({ length: count }, (_, i) => [0, 1, 2].map((part) => positions[3 * corners[start + i] + part]));
   const cut = cutConcave(points, (flat) => {
+    if (count <= FEW_CORNERS) return ears(flat);
     if (count > MOST_CORNERS) throw new Error(`${path}: a concave polygon of ${count} corners is too large here; voxrt build takes it`);
     return ShapeUtils.triangulateShape(flat.map(([x, y]) => new Vector2(x, y)), []);
   });

@@ -1,12 +1,16 @@
 // USD files of text: what the parser of three.js' loader leaves out of them, or takes for something else.
 
+const SPECIFIER = Symbol("specifier"); // 0 for def, 1 for over, 2 for class
+const SET = /^variantSet\s+"([^"]+)"/;
+const VARIANT = 10; // a type of specs
+
 // Methods for USDAParser. `kept`: its own ones.
 export const textMethods = (kept) => ({
   _preprocess(text) {
     return kept._preprocess.call(this, text).split("\n").flatMap(statements).join("\n");
   },
   parseText(text) {
-    this.parsed = kept.parseText.call(this, text);
+    this.parsed = asDefinitions(kept.parseText.call(this, text));
     return this.parsed;
   },
   parseData(text) {
@@ -18,20 +22,23 @@ export const textMethods = (kept) => ({
   },
   _extractPrimData(data, path, fields, specs, types) {
     if (!data || typeof data !== "object") return;
-    const notes = data[Object.getOwnPropertySymbols(data)[0]] ?? {};
+    const notes = data[Object.getOwnPropertySymbols(data).find((symbol) => symbol !== SPECIFIER)] ?? {};
     const plain = withoutPrefixes(data);
-    for (const symbol of Object.getOwnPropertySymbols(data)) plain[symbol] = withoutPrefixes(data[symbol]);
+    for (const symbol of Object.getOwnPropertySymbols(data)) if (symbol !== SPECIFIER) plain[symbol] = withoutPrefixes(data[symbol]);
     const has = (pattern) => Object.keys(data).find((key) => pattern.test(key));
     for (const [name, pattern] of [["prepend references", /^(add |append )?references$/], ["payload", /^(prepend |add |append )payload$/]])
       if (has(pattern)) plain[name] ??= data[has(pattern)];
-    fields.specifier = 0;
+    fields.specifier = data[SPECIFIER] ?? 0;
     if (data.active === "false") fields.active = false;
     if (has(/^(\w+ )?inherits$/)) fields.inheritPaths = [data[has(/^(\w+ )?inherits$/)]];
     if (has(/^(\w+ )?specializes$/)) fields.specializes = [data[has(/^(\w+ )?specializes$/)]];
-    if (has(/^variantSet\s/)) fields.variantText = true;
     const schemas = Object.keys(data).filter((key) => /^(?!delete )(\w+ )?apiSchemas$/.test(key)).flatMap((key) => String(data[key]).match(/[\w:]+/g) ?? []);
     if (schemas.length) fields.apiSchemas = schemas;
     kept._extractPrimData.call(this, plain, path, fields, specs, types);
+    const sets = Object.keys(data).map((key) => [key, SET.exec(key)?.[1]]).filter(([, name]) => name);
+    if (sets.length) fields.variantSetChildren = sets.map(([, name]) => name);
+    for (const [key, set] of sets)
+      for (const [name, variant] of Object.entries(data[key])) this.variantSpec(variant, `${path}/{${set}=${name.replace(/"/g, "")}}`, specs, types);
     for (const [key, note] of Object.entries(withoutPrefixes(notes))) {
       const spec = specs[`${path}.${key.replace(/^uniform\s+/, "").split(/\s+/)[1]}`];
       if (!spec) continue;
@@ -39,10 +46,35 @@ export const textMethods = (kept) => ({
       if (note.elementSize) spec.fields.elementSize = Number(note.elementSize);
     }
   },
+  // A variant, or a prim in one.
+  variantSpec(data, path, specs, types, typeName = "") {
+    if (!data || typeof data !== "object") return;
+    const fields = { typeName };
+    specs[path] = { specType: typeName || !path.endsWith("}") ? types.Prim : VARIANT, fields };
+    this._extractPrimData(data, path, fields, specs, types);
+    for (const key of Object.keys(data)) {
+      const [, kind, name] = /^def\s+(?:(\w+)\s+)?"([^"]+)"$/.exec(key) ?? [];
+      if (name) this.variantSpec(data[key], `${path}/${name}`, specs, types, kind);
+    }
+  },
 });
 
+// The parser knows prims that begin with "def" alone.
+function asDefinitions(data) {
+  const made = {};
+  for (const symbol of Object.getOwnPropertySymbols(data)) made[symbol] = data[symbol];
+  for (const [key, value] of Object.entries(data)) {
+    const [, word] = /^(def|over|class)\b/.exec(key) ?? [];
+    const part = value && typeof value === "object" && (word || SET.test(key) || /^"/.test(key)) ? asDefinitions(value) : value;
+    if (word && part === value) continue;
+    if (word) part[SPECIFIER] = ["def", "over", "class"].indexOf(word);
+    made[word ? key.replace(word, "def") : key] = part;
+  }
+  return made;
+}
+
 // "custom rel a" is "rel a", "prepend token b.connect" is "token b.connect".
-const withoutPrefixes = (data) => Object.fromEntries(Object.entries(data).map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]));
+const withoutPrefixes = (data) => Object.fromEntries(Object.entries(data).filter(([, value]) => value !== "" && value !== "None").map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]));
 
 // The parser wants one statement a line, as USD itself writes them.
 function statements(line) {
@@ -52,6 +84,8 @@ function statements(line) {
     return [...statements(body[1].trim()), "{", ...inside.map((one) => one.trim()).filter(Boolean)];
   }
   if (/^[}\s]+$/.test(line)) return [...line.replace(/\s/g, "")];
+  if (/,\s*\]/.test(line)) return statements(line.replace(/,\s*\]/g, "]"));
+  if (line.endsWith("(") && line.includes(":") && !line.includes("=")) return [`${line.slice(0, -1)} = (`]; // an attribute without a value
   if (!line.endsWith(")")) return [line];
   const at = line.lastIndexOf("(");
   const inside = line.slice(at + 1, -1);
