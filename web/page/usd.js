@@ -30,7 +30,7 @@ const OTHERS = [
 export async function readUsd(main, folder, voxrt) {
   const warnings = new Map();
   const warn = (kind, message, count = 1) => warnings.set(message, { kind, message, count: (warnings.get(message)?.count ?? 0) + count });
-  const found = { warn, fields: null, moment: null, prims: 0, layers: 0, charge };
+  const found = { warn, fields: null, moment: null, prims: 0, layers: 0, open: new Set(), charge };
   const images = new UsdImages(folder, voxrt);
   const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warn), warn);
   const restored = [patch(USDAParser, textMethods), patch(USDCParser, crateMethods)];

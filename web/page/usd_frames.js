@@ -33,7 +33,7 @@ function operation(name, data, found) {
   if (kind === "translate") return new Matrix4().makeTranslation(x, y, z);
   if (kind === "scale") return new Matrix4().makeScale(x, y, z);
   if (kind === "transform" && value.length === 16) return new Matrix4().fromArray(value);
-  if (kind === "orient" && value.length === 4) return turn(new Quaternion().fromArray(value).normalize());
+  if (kind === "orient" && value.length === 4) return turnBy(value);
   const turns = /^rotate([XYZ]{1,3})$/.exec(kind)?.[1];
   if (turns?.length === 1) return turnAbout(turns, typeof value === "number" ? value : x);
   if (turns?.length === 3) return [...turns].reduce((made, axis) => made.premultiply(turnAbout(axis, { X: x, Y: y, Z: z }[axis])), new Matrix4());
@@ -48,6 +48,13 @@ function operation(name, data, found) {
 }
 
 const turnAbout = (axis, degrees) => turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), degrees * Math.PI / 180).normalize());
+
+// By the angle that the real part gives and the axis of the others, whatever the length of the quaternion.
+function turnBy([x, y, z, w]) {
+  const axis = new Vector3(x, y, z);
+  if (axis.length() < 1e-6) return new Matrix4();
+  return turn(new Quaternion().setFromAxisAngle(axis.normalize(), 2 * Math.acos(Math.min(Math.max(w, -1), 1))).normalize());
+}
 
 // As OpenUSD computes it, so that quarter turns round alike.
 function turn({ x, y, z, w }) {

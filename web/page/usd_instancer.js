@@ -1,30 +1,31 @@
 // Point instancers of USD: copies of the prototypes below them, which the loader of three.js shows once instead.
 
-import { targetsOf } from "./usd_stage.js";
+import { fieldsOf, isShown, targetsOf } from "./usd_stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
 
 // Methods for USDComposer. `kept`: its own ones.
 export const instancerMethods = (kept, found) => ({
   _buildHierarchy(parent, path) {
-    const build = (object, below) => kept._buildHierarchy.call(this, object, below);
-    if (this.specsByPath[path]?.fields?.typeName === "PointInstancer") placeCopies(this, parent, path, build, found);
-    else build(parent, path);
+    if (this.specsByPath[path]?.fields?.typeName === "PointInstancer") placeCopies(this, parent, path, found);
+    else kept._buildHierarchy.call(this, parent, path);
   },
 });
 
-// Put the copies of the instancer at `path` into `object`, which stands in its place. `build(object, path)` builds what is
-// below a path.
-function placeCopies(composer, object, path, build, found) {
+// Put the copies of the instancer at `path` into `object`, which stands in its place.
+function placeCopies(composer, object, path, found) {
   const refuse = (problem) => { throw new Error(`${path}: ${problem}`); };
-  const below = new Object3D();
-  build(below, path);
   const given = composer._getAttributes(path);
   const { protoIndices = [], positions = [], scales = [] } = given;
-  const names = targetsOf(composer.specsByPath[`${path}.prototypes`]?.fields.targetPaths, path);
+  const names = targetsOf(fieldsOf(composer, path, "prototypes")?.targetPaths, path);
   const wrong = protoIndices.findIndex((index) => !names[index]);
   if (wrong >= 0) refuse(`protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`);
-  if (names.some((name) => !name.startsWith(`${path}/`))) return void found.warn("instancer", "point instancers whose prototypes are not below them are left out here; voxrt build reads them");
-  const prototypes = names.map((name) => name.slice(path.length + 1).split("/").reduce((parent, part) => parent?.children.find((child) => child.name === part), below));
+  const absent = names.find((name) => !composer.specsByPath[name]);
+  if (absent) refuse(`prototype ${absent} does not exist; repair its prototypes`);
+  if (found.open.has(path)) refuse("the point instancer copies itself; repair its prototypes");
+  found.open.add(path);
+  const used = new Set(protoIndices);
+  const prototypes = names.map((name, index) => (used.has(index) ? built(composer, name, found) : null));
+  found.open.delete(path);
   const count = protoIndices.length;
   const turns = turnsOf(given);
   const fits = (values, size) => values.length === 0 || values.length === size * count;
@@ -46,6 +47,16 @@ function placeCopies(composer, object, path, build, found) {
     copy.add(prototypes[protoIndices[i]].clone());
     object.add(copy);
   }
+}
+
+// The object of one prim, wherever it is; null where it is not shown.
+function built(composer, path, found) {
+  if (!isShown(composer, path, found, true)) return null;
+  const parent = new Object3D();
+  const alone = `${path} alone`; // a parent that has this child only
+  composer.childrenByPath.set(alone, [{ name: path.slice(path.lastIndexOf("/") + 1), path }]);
+  composer._buildHierarchy(parent, alone);
+  return parent.children[0] ?? null;
 }
 
 // The copies of instancers below a prototype are copied again, and count.

@@ -151,7 +151,8 @@ function settersOf({ setUv, setColour }, gathered) {
 // The path of a prim, as voxrt build names objects: copies of instancers have the instancer's path and their number.
 function pathOf(mesh) {
   const parts = [];
-  for (let object = mesh; object.parent; object = object.parent) if (object.name && !object.parent.userData.copies) parts.push(object.name);
+  for (let object = mesh; object?.parent; object = object.userData.copies ? object.parent.parent : object.parent)
+    if (object.name && !object.parent.userData.copies) parts.push(object.name);
   return `/${parts.reverse().join("/")}`;
 }
 

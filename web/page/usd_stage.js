@@ -41,11 +41,21 @@ export const stageMethods = (kept, found) => ({
       const sorted = places.size ? children.toSorted((a, b) => (places.get(a.name) ?? Infinity) - (places.get(b.name) ?? Infinity) || 0) : children;
       this.childrenByPath.set(parent, sorted.filter(({ path }) => isShown(this, path, found)));
     }
+    // What chosen variants add comes first: they are weaker.
+    for (const path of Object.keys(this.specsByPath)) {
+      const variants = this._getVariantPaths(path);
+      if (!variants.length) continue;
+      const added = variants.toReversed().flatMap((variant) => this.childrenByPath.get(variant) ?? []);
+      this.childrenByPath.set(path, [...added, ...(this.childrenByPath.get(path) ?? [])]);
+    }
   },
   _resolveAttributeValue(path) {
     const fields = this.specsByPath[String(path).replace(/[<>]/g, "")]?.fields;
-    const { times, values } = fields?.timeSamples ?? {};
-    return times?.length ? sampleOf(times, values, found.moment, fields.typeName ?? "") : fields?.default;
+    if (!fields) return undefined;
+    const { typeName = "", timeSamples } = fields;
+    if (timeSamples?.times?.length) return singles(sampleOf(timeSamples.times, timeSamples.values, found.moment, typeName), typeName);
+    fields.default = singles(fields.default, typeName);
+    return fields.default;
   },
   // Those that are chosen; a set without a choice shows none.
   _getVariantPaths(path) {
@@ -71,11 +81,14 @@ function sampleOf(times, values, moment, type) {
 
 const OVER = 1;
 
-function isShown(composer, path, found) {
-  const spec = composer.specsByPath[path];
-  const { typeName, specifier, active } = spec.fields;
-  const prototype = () => [...upwards(path)].some((above) => composer.specsByPath[above]?.fields.typeName === "PointInstancer");
-  if (active === false || (specifier >= OVER && !prototype())) return false;
+// Whether a prim and those below it are shown, as far as the prim decides it. Prototypes, and what is below a prim that is
+// not defined, need not be defined themselves.
+export function isShown(composer, path, found, isPrototype = false) {
+  const fields = composer.specsByPath[path]?.fields;
+  if (!fields) return false;
+  const { typeName, specifier, active } = fields;
+  const above = composer.specsByPath[path.slice(0, path.lastIndexOf("/"))]?.fields ?? {};
+  if (active === false || (specifier >= OVER && !isPrototype && above.typeName !== "PointInstancer" && !(above.specifier >= OVER))) return false;
   if (!typeName) return true;
   if (valueOf(composer, path, "visibility") === "invisible") {
     found.warn("invisible", "invisible prims and their descendants were left out");
@@ -120,7 +133,7 @@ export function arrayOf(composer, prim, name, usual) {
   if (given === null || typeof given === "string") return null;
   const { typeName = "", interpolation = usual } = fieldsOf(composer, prim, name);
   const size = Number(/(?<!\d)([234])[fdhi]?(?:\[\])?$/.exec(typeName)?.[1] ?? 1);
-  const all = singles([given].flat(), typeName);
+  const all = ArrayBuffer.isView(given) ? given : Float64Array.from([given].flat());
   const indices = valueOf(composer, prim, `${name}:indices`);
   if (!indices?.length) return all.length >= size ? { values: all, size, interpolation } : null;
   const values = new Float64Array(size * indices.length);
@@ -128,8 +141,11 @@ export function arrayOf(composer, prim, name, usual) {
   return { values, size, interpolation };
 }
 
+const SINGLE = /^(float|quatf)|\df(\[\])?$/;
+
 // Files of text have more digits than the values that they stand for.
-export function singles(values, typeName) {
-  const list = values.length === 1 && ArrayBuffer.isView(values[0]) ? values[0] : values;
-  return ArrayBuffer.isView(list) ? list : typeName.includes("double") || /\dd/.test(typeName) ? Float64Array.from(list) : Float32Array.from(list);
+function singles(value, typeName) {
+  if (!SINGLE.test(typeName)) return value;
+  if (typeof value === "number") return Math.fround(value);
+  return Array.isArray(value) ? Float32Array.from(value) : value;
 }

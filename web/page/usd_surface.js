@@ -2,7 +2,7 @@
 
 import { cutConcave, ears } from "./polygons.js";
 import { dimensionsOf, solidOf } from "./usd_solids.js";
-import { singles, valueOf, fieldsOf } from "./usd_stage.js";
+import { valueOf } from "./usd_stage.js";
 import { ShapeUtils, Vector2 } from "./three/three.core.js";
 
 const FARTHEST = 1e70;
@@ -17,7 +17,7 @@ export function surfaceOf(composer, path, kind, warn) {
 }
 
 function meshSurface(composer, path, warn) {
-  const positions = singles([valueOf(composer, path, "points") ?? []].flat(), fieldsOf(composer, path, "points")?.typeName ?? "");
+  const positions = valueOf(composer, path, "points") ?? [];
   const [counts, corners, holes] = ["faceVertexCounts", "faceVertexIndices", "holeIndices"].map((name) => integers(composer, path, name));
   if (!counts.length || positions.length < 3) {
     warn("empty-mesh", "meshes without faces were left out");
