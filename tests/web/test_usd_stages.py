@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-import os
+import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from assets import asset
 from fakes.site import node, site
 from PIL import Image
 
 import voxrt
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 SCRIPT = Path(__file__).with_name("build_and_render.mjs")
-SHARED = Path(os.environ.get("VOXRT_USD_ASSETS", Path(__file__).resolve().parents[3] / "shared" / "assets" / "usd"))
 DEPTH = 5
 
 CUBE = """
@@ -188,7 +184,12 @@ def Mesh "b"
         + shown("d", CORNERS, "faceVarying", at(6))
         + shown("e", FACES, "uniform", at(0, 2))
         + shown("f", POINTS, "faceVarying", at(2, 2))
-        + shown("g", "(1, 0, 0), (0, 0, 1)", "uniform", at(4, 2) + "int[] primvars:displayColor:indices = [0, 1, 0, 1, 1, 0]")
+        + shown(
+            "g",
+            "(1, 0, 0), (0, 0, 1)",
+            "uniform",
+            at(4, 2) + "int[] primvars:displayColor:indices = [0, 1, 0, 1, 1, 0]",
+        )
         + f'def Xform "h"\n{{\n    color3f[] primvars:displayColor = [(0.7, 0, 0.7)]\n    def Mesh "i"\n    {{{CUBE}{at(6, 2)}\n    }}\n}}\n'
     ),
     "many meshes": stage(
@@ -261,10 +262,16 @@ def Mesh "concave"
             f'def {kind} "s{i}"\n{{\n    {given}{at(4 * (i % 4), 4 * (i // 4))}\n}}\n'
             for i, (kind, given) in enumerate(
                 [
-                    ("Cube", "double size = 1.5"), ("Cube", ""), ("Sphere", "double radius = 1.2"), ("Sphere", ""),
-                    ("Cylinder", 'uniform token axis = "X"'), ("Cylinder", "double height = 3\n    double radius = 0.5"),
-                    ("Cone", 'uniform token axis = "Y"'), ("Capsule", "double height = 2"),
-                    ("Plane", 'uniform token axis = "Y"\n    double width = 3'), ("Capsule", 'uniform token axis = "X"'),
+                    ("Cube", "double size = 1.5"),
+                    ("Cube", ""),
+                    ("Sphere", "double radius = 1.2"),
+                    ("Sphere", ""),
+                    ("Cylinder", 'uniform token axis = "X"'),
+                    ("Cylinder", "double height = 3\n    double radius = 0.5"),
+                    ("Cone", 'uniform token axis = "Y"'),
+                    ("Capsule", "double height = 2"),
+                    ("Plane", 'uniform token axis = "Y"\n    double width = 3'),
+                    ("Capsule", 'uniform token axis = "X"'),
                 ]
             )
         )
@@ -427,6 +434,66 @@ def Mesh "without" {BINDS}
 """,
         looks=f'def Scope "looks"\n{{\n{TEXTURED}\n}}\n',
     ),
+    "skeletons": stage(
+        f"""
+def SkelRoot "man" {BINDS}
+{{{at(1)}
+    rel material:binding = </looks/clay>
+    def Skeleton "bones" (
+        prepend apiSchemas = ["SkelBindingAPI"]
+    )
+    {{{at(0, 0.5)}
+        uniform token[] joints = ["hip", "hip/knee"]
+        uniform matrix4d[] bindTransforms = [( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) ), ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0.5, 0, 1) )]
+        uniform matrix4d[] restTransforms = [( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) ), ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0.5, 0, 1) )]
+        rel skel:animationSource = </man/bones/bend>
+        def SkelAnimation "bend"
+        {{
+            uniform token[] joints = ["hip/knee"]
+            float3[] translations = [(0.3, 0.5, 0)]
+            quatf[] rotations = [(0.9238795, 0, 0, 0.3826834)]
+            half3[] scales = [(1, 1.5, 1)]
+            uniform token[] blendShapes = ["wide"]
+            float[] blendShapeWeights = [0.5]
+        }}
+    }}
+    def Xform "group"
+    {{{at(0, 0, 2)}
+        def Mesh "skin" (
+            prepend apiSchemas = ["SkelBindingAPI"]
+        )
+        {{{CUBE}
+            rel skel:skeleton = </man/bones>
+            int[] primvars:skel:jointIndices = [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1] (
+                elementSize = 2
+                interpolation = "vertex"
+            )
+            float[] primvars:skel:jointWeights = [1, 0, 1, 0, 0.2, 0.8, 0.2, 0.8, 1, 0, 1, 0, 0, 1, 0, 1] (
+                elementSize = 2
+                interpolation = "vertex"
+            )
+            matrix4d primvars:skel:geomBindTransform = ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0.1, 0, 0, 1) )
+        }}
+        def Mesh "blended" (
+            prepend apiSchemas = ["SkelBindingAPI"]
+        )
+        {{{CUBE}{at(3)}
+            rel skel:skeleton = </man/bones>
+            uniform token[] skel:blendShapes = ["wide"]
+            rel skel:blendShapeTargets = </man/group/blended/wide>
+            def BlendShape "wide"
+            {{
+                uniform vector3f[] offsets = [(1, 0, 0), (0.6, 0.5, 0)]
+                uniform int[] pointIndices = [7, 3]
+            }}
+        }}
+        def Mesh "rest"
+        {{{CUBE}{at(6)}
+        }}
+    }}
+}}
+"""
+    ),
     "prototypes elsewhere": stage(f"""
 over "models"
 {{
@@ -456,7 +523,10 @@ def PointInstancer "many"
 
 
 def jobs(paths: list[Path]) -> list[dict]:
-    given = [{"files": [str(path), *map(str, path.parent.glob("*.png"))], "depth": DEPTH, "fill": "auto", "frames": []} for path in paths]
+    given = [
+        {"files": [str(path), *map(str, path.parent.glob("*.png"))], "depth": DEPTH, "fill": "auto", "frames": []}
+        for path in paths
+    ]
     return node(SCRIPT, {"site": str(site()), "jobs": given})
 
 
@@ -498,3 +568,113 @@ def test_stages_have_the_words_of_voxrt_build(written: Path, pages: dict[str, di
         found = pages[f"{name}.{kind}"]
         assert_same(native, found)
         assert {one["message"] for one in found["warnings"]} == {one.message for one in native.warnings}
+
+
+def comb(corners: int) -> str:
+    """A concave polygon with very many corners."""
+    points = [(i, 1 if i % 2 else 5, 0) for i in range(corners - 2)] + [(corners, 0, 0), (0, 0, 0)]
+    return f"""
+def Mesh "comb"
+{{
+    int[] faceVertexCounts = [{corners}]
+    int[] faceVertexIndices = [{", ".join(map(str, reversed(range(corners))))}]
+    point3f[] points = [{", ".join(map(str, points))}]
+}}
+"""
+
+
+def doubled(levels: int) -> str:
+    """Prims that hold two references to the one before."""
+    text = f'class Xform "m0"\n{{\n    def Mesh "a"\n    {{{CUBE}\n    }}\n}}\n'
+    for level in range(1, levels):
+        pair = "".join(
+            f'    def Xform "{name}" (\n        references = </m{level - 1}>\n    )\n    {{\n    }}\n' for name in "ab"
+        )
+        text += f'def Xform "m{level}"\n{{\n{pair}}}\n'
+    return text
+
+
+def packed(path: Path, levels: int) -> Path:
+    """A package of layers that each hold two references to the next, which ends in a cube."""
+    pair = '    def Xform "{0}" (\n        references = @{1}.usda@\n    )\n    {{\n    }}\n'
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as package:
+        for level in range(levels):
+            inside = pair.format("a", level + 1) + pair.format("b", level + 1)
+            body = f'def Xform "root"\n{{\n{inside}}}\n' if level < levels - 1 else f'def Mesh "root"\n{{{CUBE}\n}}\n'
+            package.writestr(f"{level}.usda", stage(body, 'defaultPrim = "root"', ""))
+    return path
+
+
+REFUSED = {
+    "subset": (stage(f'def Mesh "a"\n{{{CUBE}{subset("one", "6", "clay")}\n}}'), "/a/one: a face subset refers to faces beyond the mesh's 6"),
+    "corners": (stage(f'def Mesh "a"\n{{{CUBE.replace("[4, ", "[5, ")}\n}}'), "/a: faceVertexCounts ask for 25 corners and faceVertexIndices has 24"),
+    "negative": (stage(f'def Mesh "a"\n{{{CUBE.replace("[4, 4", "[9, -1")}\n}}'), "/a: faceVertexCounts ask for 24 corners"),
+    "points": (stage(f'def Mesh "a"\n{{{CUBE.replace("3, 7, 5]", "3, 7, 8]")}\n}}'), "/a: faceVertexIndices has 8 and points has 8"),
+    "finite": (stage(f'def Mesh "a"\n{{{CUBE.replace("(0, 0, 0)", "(inf, 0, 0)")}\n}}'), "not a finite number"),
+    "length": (stage('def Sphere "a"\n{\n    double radius = -1\n}\n'), "/a: radius -1 is not a length"),
+    "unit": (stage(f'def Mesh "a"\n{{{CUBE}\n}}', "metersPerUnit = 0"), "metersPerUnit 0 is not a positive number"),
+    "comb": (stage(comb(30_000)), "a concave polygon of 30000 corners is too large here"),
+    "doubled": (stage(doubled(30)), "are too many here"),
+    "cycle": (stage('def Xform "a" (\n    references = </b>\n)\n{\n}\ndef Xform "b" (\n    references = </a>\n)\n{\n}\n'), "refers to itself"),
+    "inside": (stage('def Xform "a"\n{\n    def Xform "b" (\n        references = </a>\n    )\n    {\n    }\n}\n'), "/a/b: refers to itself"),
+    "nothing": (stage(""), "has no triangles"),
+}  # fmt: skip
+
+
+def test_contradictions_and_what_would_not_end_are_refused(tmp_path: Path) -> None:
+    for name, (text, _) in REFUSED.items():
+        (tmp_path / f"{name}.usda").write_text(text)
+    paths = [tmp_path / f"{name}.usda" for name in REFUSED]
+    found = jobs([*paths, packed(tmp_path / "layers.usdz", 25), packed(tmp_path / "few.usdz", 3)])
+    said = [*(problem for _, problem in REFUSED.values()), "layers put together are too many here"]
+    for one, problem in zip(found, said, strict=False):
+        assert problem in one["problem"]
+        assert "\n" not in one["problem"]
+    assert len(found[-1]["objects"]) == 4
+
+
+def test_what_is_not_read_is_said(tmp_path: Path) -> None:
+    body = f"""
+def Mesh "a" (
+    prepend apiSchemas = ["PhysicsCollisionAPI"]
+    prepend references = @other.usda@
+)
+{{{CUBE}
+    rel material:binding:collection:all = [</a.collection:all>, </looks/clay>]
+}}
+def Xform "b"
+{{{CUBE.replace("int", "custom int").replace("point3f", "custom point3f")}
+    uniform token[] xformOpOrder = ["!resetXformStack!"]
+}}
+def BasisCurves "c"
+{{
+}}
+"""
+    (tmp_path / "said.usda").write_text(stage(body))
+    (found,) = jobs([tmp_path / "said.usda"])
+    assert {one["kind"] for one in found["warnings"]} == {"collider", "collection", "default-material", "reference", "transform", "unsupported-prim"}  # fmt: skip
+
+
+ASSETS = [
+    "OpenUSD/usd/usdPhysics/examples/usdPhysicsSpheresWithMaterial.usda",
+    "OpenUSD/usdImaging/usdImagingGL/testenv/testUsdImagingGLGeomSubsets/testUsdImagingGLGeomSubsets.usda",
+    "kaolin/tests/samples/io/pizza.usdz",
+    "maya-usd/CubeModel.usda",
+    "newton/examples/assets/crazyflie.usd",
+    "newton/examples/assets/humanoid.usda",
+    "newton/tests/assets/negative_scale_mesh_pair.usda",
+    "tinyusdz/blendshape.usdc",
+    "tinyusdz/texturedcube.usdc",
+    "usd-wg-assets/full_assets/Teapot/geo/UtahTeapot.usd",
+    "usd-wg-assets/full_assets/Vehicles/USD_Mini_Car_Kit/assets/vehicles/formula/geo/formulaGeo.usda",
+    "usd-wg-assets/test_assets/RoughnessTest/RoughnessTest.usdz",
+    "usd-wg-assets/test_assets/foundation/stage_composition/active.usda",
+    "usd-wg-assets/test_assets/schemaTests/usdGeom/primitives/all_primitives.usda",
+]
+
+
+@pytest.mark.parametrize("name", ASSETS)
+def test_assets_have_the_words_of_voxrt_build(name: str) -> None:
+    path = asset(f"usd/{name}")
+    (found,) = jobs([path])
+    assert_same(voxrt.build(path, depth=DEPTH, geometry="render"), found)

@@ -24,7 +24,6 @@ const ELSEWHERE = ["references", "payload", "inheritPaths", "specializes", "subL
 const OTHERS = [
   ["collider", "colliders are not used here; voxrt build uses them", ({ apiSchemas }) => apiSchemas?.includes?.("PhysicsCollisionAPI")],
   ["collection", "materials bound to collections are not used here; voxrt build uses them", (_, path) => path.includes(".material:binding:collection:")],
-  ["animation", "poses of skeletons and blend shapes are not used here; voxrt build uses them", ({ typeName }) => typeName === "SkelAnimation"],
 ];
 
 export async function readUsd(main, folder, voxrt) {

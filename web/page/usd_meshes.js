@@ -4,9 +4,10 @@
 // meshes have an empty geometry.
 
 import { dimensionsOf, isNewSolid, isSolid } from "./usd_solids.js";
+import { posedPoints } from "./usd_skin.js";
 import { arrayOf, primvarOf, valueOf } from "./usd_stage.js";
 import { placesOf, surfaceOf } from "./usd_surface.js";
-import { BufferAttribute, BufferGeometry, Mesh, Object3D, SkinnedMesh } from "./three/three.core.js";
+import { BufferAttribute, BufferGeometry, Mesh, Object3D } from "./three/three.core.js";
 
 export class UsdMeshes {
   constructor(materials, warn) {
@@ -45,23 +46,22 @@ export class UsdMeshes {
     if (surface) {
       const { shadings, rows } = this.materials.ofFaces(composer, path, surface);
       const made = this.madeOf(composer, path, surface, shadings, rows);
-      const skin = kind === "Mesh" && skinOf(composer, path);
-      object = skin ? new SkinnedMesh(made.geometry, shadings) : new Mesh(made.geometry, shadings);
-      if (skin) {
-        made.skin = skin;
-        composer.skinnedMeshes.push({ mesh: object, path, ...skin.binding });
-      }
+      object = new Mesh(made.geometry, shadings);
     }
     object.name = path.slice(path.lastIndexOf("/") + 1);
     composer.applyTransform(object, composer.specsByPath[path].fields, composer._getAttributes(path));
-    return object;
+    return surface?.posed?.frame ? inFrame(object, surface.posed.frame) : object;
   }
 
   surfaceOf(composer, path, kind) {
     if (!this.surfaces.has(composer)) this.surfaces.set(composer, new Map());
     const key = isSolid(kind) ? `${kind} ${dimensionsOf(kind, path, (name) => valueOf(composer, path, name))}` : path;
     const known = this.surfaces.get(isSolid(kind) ? this : composer) ?? this.surfaces.set(this, new Map()).get(this);
-    if (!known.has(key)) known.set(key, surfaceOf(composer, path, kind, this.warn));
+    if (!known.has(key)) {
+      const posed = kind === "Mesh" ? posedPoints(composer, path, { warn: this.warn }) : null;
+      const surface = surfaceOf(composer, path, kind, this.warn, posed?.positions);
+      known.set(key, surface && { ...surface, posed });
+    }
     return known.get(key);
   }
 
@@ -79,7 +79,7 @@ export class UsdMeshes {
     for (const known of this.made.values()) for (const made of known.values()) this.fill(made);
   }
 
-  fill({ geometry, composer, path, surface, shadings, rows, skin }) {
+  fill({ geometry, composer, path, surface, shadings, rows }) {
     const counts = new Array(shadings.length).fill(0);
     for (const row of rows) if (row >= 0) counts[row]++;
     const shown = shadings.map((shading, row) => this.materials.show(shading, composer, path, surface, counts[row]));
@@ -90,17 +90,13 @@ export class UsdMeshes {
       kept.forEach((triangle, i) => { for (let corner = 0; corner < 3; corner++) read(triangle, corner, values, size * (3 * i + corner)); });
       return values;
     };
-    const vertex = (size, from) => (triangle, corner, out, to) => {
-      const at = size * surface.triangles[3 * triangle + corner];
-      for (let part = 0; part < size; part++) out[to + part] = from[at + part];
+    const place = (triangle, corner, out, to) => {
+      const at = 3 * surface.triangles[3 * triangle + corner];
+      for (let part = 0; part < 3; part++) out[to + part] = surface.positions[at + part];
     };
-    geometry.setAttribute("position", new BufferAttribute(gathered(3, vertex(3, surface.positions)), 3));
-    const normals = surface.cornerCount ? this.normalsOf(composer, path, surface) : null;
+    geometry.setAttribute("position", new BufferAttribute(gathered(3, place), 3));
+    const normals = surface.cornerCount && !surface.posed ? this.normalsOf(composer, path, surface) : null;
     if (normals) geometry.setAttribute("normal", new BufferAttribute(gathered(3, normals, Float32Array), 3));
-    if (skin) {
-      geometry.setAttribute("skinIndex", new BufferAttribute(gathered(4, vertex(4, skin.joints), Uint16Array), 4));
-      geometry.setAttribute("skinWeight", new BufferAttribute(gathered(4, vertex(4, skin.weights), Float32Array), 4));
-    }
     kept.forEach((triangle, i) => {
       const row = rows[surface.faces[triangle]];
       const last = geometry.groups.at(-1);
@@ -139,6 +135,18 @@ export class UsdMeshes {
   };
 }
 
+// A mesh whose points are in another frame than those below it: the frame of the prim itself holds both.
+function inFrame(mesh, frame) {
+  const prim = new Object3D();
+  prim.matrixAutoUpdate = false;
+  prim.matrix.copy(mesh.matrix);
+  prim.name = mesh.name;
+  mesh.name = "";
+  mesh.matrix.copy(mesh.matrix).invert().multiply(frame);
+  prim.add(mesh);
+  return prim;
+}
+
 function settersOf({ setUv, setColour }, gathered) {
   const uv = setUv && gathered(2, setUv);
   const colour = setColour && gathered(3, setColour, Float32Array);
@@ -154,25 +162,4 @@ function pathOf(mesh) {
   for (let object = mesh; object?.parent; object = object.userData.copies ? object.parent.parent : object.parent)
     if (object.name && !object.parent.userData.copies) parts.push(object.name);
   return `/${parts.reverse().join("/")}`;
-}
-
-// The joints and weights of each vertex, four at most, and what binds a mesh to its skeleton; null for none.
-function skinOf(composer, path) {
-  const [given, factors] = ["Indices", "Weights"].map((name) => valueOf(composer, path, `primvars:skel:joint${name}`));
-  if (!given?.length || !factors?.length) return null;
-  const fields = composer.specsByPath[`${path}.primvars:skel:jointIndices`]?.fields ?? {};
-  const points = (valueOf(composer, path, "points")?.length ?? 0) / 3;
-  const each = fields.elementSize ?? Math.max(1, Math.floor(given.length / points));
-  const [joints, weights] = [new Uint16Array(4 * points), new Float32Array(4 * points)];
-  const rigid = given.length === each;
-  const spread = (values) => (rigid ? Array.from({ length: each * points }, (_, i) => values[i % each]) : values);
-  composer._selectTopWeights(spread(given), spread(factors), each, points, joints, weights);
-  const { targetPaths } = composer.specsByPath[`${path}.skel:skeleton`]?.fields ?? {};
-  return {
-    joints, weights,
-    binding: {
-      skeletonPath: targetPaths?.[0] ?? null, localJoints: valueOf(composer, path, "skel:joints"),
-      geomBindTransform: valueOf(composer, path, "primvars:skel:geomBindTransform"),
-    },
-  };
 }

@@ -56,7 +56,7 @@ class References {
 
   // What `to` does not say itself it takes from `from`, with all that is below it.
   copy(from, to, source, place) {
-    this.found.charge(to, 0.1);
+    this.found.charge(to, 0.25);
     const theirs = this.specs[from];
     const fields = { ...theirs.fields };
     for (const name of ["targetPaths", "connectionPaths"])

@@ -63,6 +63,7 @@ export const stageMethods = (kept, found) => ({
     const chosen = Array.from(variantSetChildren ?? [], (set) => [set, this.externalVariantSelections[set] ?? variantSelection?.[set]]);
     return chosen.filter(([, name]) => name).map(([set, name]) => `${path}/{${set}=${name}}`);
   },
+  _buildSkeleton: () => null,
   _buildAnimations: () => [],
 });
 

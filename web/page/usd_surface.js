@@ -9,15 +9,15 @@ const FARTHEST = 1e70;
 const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 
 // {positions, triangles, faces, faceCount, corners, cornerCount}: three numbers per vertex; three vertices, a face and three
-// corners per triangle, where corners count those of all faces; cornerCount is 0 for solids. null for no faces.
-export function surfaceOf(composer, path, kind, warn) {
-  if (kind === "Mesh") return meshSurface(composer, path, warn);
+// corners per triangle, where corners count those of all faces; cornerCount is 0 for solids. null for no faces. `posed`: points instead of the mesh's own.
+export function surfaceOf(composer, path, kind, warn, posed) {
+  if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
   const { positions, triangles } = solidOf(kind, dimensionsOf(kind, path, (name) => valueOf(composer, path, name)));
   return { positions, triangles, faces: new Array(triangles.length / 3).fill(0), faceCount: 1, corners: triangles, cornerCount: 0 };
 }
 
-function meshSurface(composer, path, warn) {
-  const positions = valueOf(composer, path, "points") ?? [];
+function meshSurface(composer, path, warn, posed) {
+  const positions = posed ?? valueOf(composer, path, "points") ?? [];
   const [counts, corners, holes] = ["faceVertexCounts", "faceVertexIndices", "holeIndices"].map((name) => integers(composer, path, name));
   if (!counts.length || positions.length < 3) {
     warn("empty-mesh", "meshes without faces were left out");
