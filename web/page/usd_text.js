@@ -79,9 +79,9 @@ const withoutPrefixes = (data) => Object.fromEntries(Object.entries(data).filter
 // The parser wants one statement a line, as USD itself writes them.
 function statements(line) {
   const body = /^((?:def|over|class)\b[^{]*)\{\s*(\S.*)$/.exec(line);
-  if (body && !line.endsWith("(")) {
-    const inside = body[2].endsWith("}") ? [...body[2].slice(0, -1).split(";"), "}"] : body[2].split(";");
-    return [...statements(body[1].trim()), "{", ...inside.map((one) => one.trim()).filter(Boolean)];
+  if (body) {
+    const inside = body[2].endsWith("}") ? [...body[2].slice(0, -1).split(";"), "}"] : [body[2]];
+    return [...statements(body[1].trim()), "{", ...inside.map((one) => one.trim()).filter(Boolean).flatMap(statements)];
   }
   if (/^\{\s*\S/.test(line)) return ["{", ...statements(line.slice(1).trim())];
   if (/^[}\s]+$/.test(line)) return [...line.replace(/\s/g, "")];
