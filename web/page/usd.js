@@ -7,7 +7,7 @@ import { UsdImages } from "./usd_images.js";
 import { instancerMethods } from "./usd_instancer.js";
 import { UsdMaterials } from "./usd_materials.js";
 import { UsdMeshes } from "./usd_meshes.js";
-import { referenceMethods } from "./usd_references.js";
+import { ELSEWHERE, referenceMethods } from "./usd_references.js";
 import { stageMethods } from "./usd_stage.js";
 import { textMethods } from "./usd_text.js";
 import { sceneOf } from "./voxrt/scene.js";
@@ -17,8 +17,6 @@ import { USDCParser } from "./three/addons/loaders/usd/USDCParser.js";
 import { USDComposer } from "./three/addons/loaders/usd/USDComposer.js";
 
 const MOST_PRIMS = 200_000; // of all layers and copies together
-const MOST_LAYERS = 1000; // put together, those that repeat too
-const ELSEWHERE = ["references", "payload", "inheritPaths", "specializes", "subLayers"];
 
 // Specs of a file that say what is not read: kind, message, test of fields and path.
 const OTHERS = [
@@ -29,7 +27,7 @@ const OTHERS = [
 export async function readUsd(main, folder, voxrt) {
   const warnings = new Map();
   const warn = (kind, message, count = 1) => warnings.set(message, { kind, message, count: (warnings.get(message)?.count ?? 0) + count });
-  const found = { warn, fields: null, moment: null, prims: 0, layers: 0, open: new Set(), charge };
+  const found = { warn, fields: null, moment: null, prims: 0, open: new Set(), charge, layer: (file) => layerOf(folder.find(file)) };
   const images = new UsdImages(folder, voxrt);
   const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warn), warn);
   const restored = [patch(USDAParser, textMethods), patch(USDCParser, crateMethods)];
@@ -63,27 +61,30 @@ function charge(place, count) {
   if (this.prims > MOST_PRIMS) throw new Error(`${place}: more than ${MOST_PRIMS.toLocaleString("en")} prims and copies are too many here; voxrt build takes more`);
 }
 
+// A layer that was dropped together with the scene; null for none.
+function layerOf(file) {
+  if (!file) return null;
+  const isCrate = new TextDecoder("latin1").decode(file.bytes.subarray(0, 8)) === "PXR-USDC";
+  return (isCrate ? new USDCParser().parseData(file.bytes.slice().buffer) : new USDAParser().parseData(new TextDecoder().decode(file.bytes))).specsByPath;
+}
+
 // The outermost methods of a composer: they count, and see what it leaves out.
 const layerMethods = (kept, found) => ({
   compose(parsed, ...rest) {
     const { specsByPath } = parsed;
     const { fields } = specsByPath["/"] ?? { fields: {} };
-    if (++found.layers > MOST_LAYERS) throw new Error(`more than ${MOST_LAYERS} layers put together are too many here`);
-    if (!found.fields) {
-      found.fields = fields;
-      found.moment = fields.startTimeCode !== undefined && fields.endTimeCode !== undefined ? fields.startTimeCode : null;
-    }
+    found.fields = fields;
+    found.moment = fields.startTimeCode !== undefined && fields.endTimeCode !== undefined ? fields.startTimeCode : null;
     for (const [path, spec] of Object.entries(specsByPath))
       for (const [kind, message, is] of OTHERS) if (spec.fields && is(spec.fields, path)) found.warn(kind, message);
     if (Object.values(specsByPath).some((spec) => spec.fields?.timeSamples?.times?.length > 1)) found.warn("animation", "animated layers are shown at the stage's start");
     return kept.compose.call(this, parsed, ...rest);
   },
+  _resolveReference: () => null, // usd_references.js has followed them
   _buildHierarchy(parent, path) {
     found.charge(path, 1);
     const fields = this.specsByPath[path]?.fields ?? {};
-    const refers = ELSEWHERE.some((name) => name in fields);
-    if (refers && !this._getReferences({ fields }).some((one) => this.assets[this._resolveFilePath(/@([^@]+)@/.exec(one)?.[1] ?? "")]))
-      found.warn("reference", "references to other files and to other prims are left out here; voxrt build reads them");
+    if (ELSEWHERE.some((name) => name in fields)) found.warn("reference", "references to files that are not here, and to prims that do not exist, were left out");
     kept._buildHierarchy.call(this, parent, path);
   },
 });

@@ -2,7 +2,7 @@
 
 const [BOOL, UCHAR, INT64, UINT64, MATRIX_3D, QUATD, QUATH] = [1, 2, 5, 6, 14, 16, 18];
 const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, TOKENS] = [19, 21, 22, 23, 25, 26, 27, 29, 30, 32];
-const [REFERENCES, PAYLOAD, PAYLOADS] = [35, 47, 55];
+const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 const half = (parser) => parser._readHalf();
 const double = ({ reader }) => reader.readFloat64();
 const integer = ({ reader }) => reader.readInt32();
@@ -39,6 +39,7 @@ export const crateMethods = (kept) => ({
     if (type === TOKENS) return listed(this, ({ reader, tokens }) => tokens[reader.readUint32()] ?? "");
     if (type === REFERENCES) return [listed(this, (parser) => reference(parser, true)).join(", ")];
     if (type === PAYLOADS) return listed(this, (parser) => reference(parser, false)).join(", ");
+    if (type === STRINGS) return Array.from({ length: countOf(this) }, () => this.tokens[this.strings[this.reader.readUint32()]] ?? "");
     if (type === PAYLOAD) return reference(this, false);
     const found = TYPES.get(type);
     if (!found || found[0] === 1) return kept._readScalarValue.call(this, type);
@@ -58,6 +59,13 @@ export const crateMethods = (kept) => ({
   },
 });
 
+// A count of values of four bytes or more.
+function countOf({ reader, buffer }) {
+  const count = reader.readUint64();
+  if (!(4 * count <= buffer.byteLength - reader.tell())) throw new Error(`a list of ${count} values does not fit into the file; it is damaged`);
+  return count;
+}
+
 // A list with its edits; those that it deletes are left out.
 function listed(parser, read) {
   const { reader } = parser;
@@ -65,7 +73,7 @@ function listed(parser, read) {
   const found = [];
   for (const bit of [0x02, 0x04, 0x20, 0x40]) {
     if (!(flags & bit)) continue;
-    for (let left = reader.readUint64(); left > 0; left--) found.push(read(parser));
+    for (let left = countOf(parser); left > 0; left--) found.push(read(parser));
   }
   return found;
 }

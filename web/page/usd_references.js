@@ -1,34 +1,72 @@
-// References to prims of the same file, and prims that inherit from others: their specs are put in place of the reference.
+// References of USD prims to prims of the same file, of other files of a package and of files dropped together, prims that
+// inherit from others, and sublayers: their specs are put in place of the reference, below what the prim itself says.
 
 import { targetsOf } from "./usd_stage.js";
 
-const FIELDS = ["references", "payload", "inheritPaths", "specializes"];
+const ARCS = ["references", "payload", "inheritPaths", "specializes"];
+export const ELSEWHERE = [...ARCS, "subLayers"];
 
-// Methods for USDComposer. `kept`: its own ones.
+// Methods for USDComposer. `kept`: its own ones. found.layer(file): the specs of a file; null for none.
 export const referenceMethods = (kept, found) => ({
   _buildIndexes() {
-    new References(this.specsByPath, found).follow();
+    const layerOf = (file) => this.assets[file]?.specsByPath ?? found.layer(file);
+    new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge.bind(found)).follow();
     kept._buildIndexes.call(this);
   },
 });
 
-class References {
-  constructor(specs, found) {
-    Object.assign(this, { specs, found });
-    this.below = new Map(); // path -> those of its properties and children
+class Layer {
+  // layers: those that were read, by file. charge(place, count) refuses what is too much.
+  constructor(specs, folder, layerOf, layers, charge) {
+    Object.assign(this, { specs, folder, layerOf, layers, charge });
+    this.below = null; // path -> those of its properties and children
     this.settled = new Map(); // path -> whether its references are followed; false while they are
   }
 
   follow() {
-    const refers = Object.keys(this.specs).filter((path) => path !== "/" && targetsWithin(this.specs[path].fields, path).length);
-    if (!refers.length) return;
+    const { fields } = this.specs["/"] ?? { fields: {} };
+    const refers = Object.keys(this.specs).filter((path) => path !== "/" && arcsOf(this.specs[path].fields, path).length);
+    if (!refers.length && !fields.subLayers) return this;
+    this.below = new Map();
     for (const path in this.specs) this.note(path);
     for (const path of refers) this.settle(path);
+    for (const file of filesOf(fields.subLayers)) {
+      const layer = this.layer(file);
+      if (!layer) continue;
+      fields.subLayers = [fields.subLayers].flat().map((one) => String(one).replaceAll(file, "")).filter((one) => /[^@\s,[\]]/.test(one));
+      for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path);
+    }
+    if (fields.subLayers?.length === 0) delete fields.subLayers;
+    return this;
+  }
+
+  // Another file, with its references followed; null for none.
+  layer(file) {
+    const path = this.resolved(file);
+    if (!this.layers.has(path)) {
+      this.layers.set(path, null);
+      const specs = this.layerOf(path);
+      const made = specs && new Layer(specs, path.slice(0, Math.max(path.lastIndexOf("/"), 0)), this.layerOf, this.layers, this.charge).follow();
+      if (made && !made.below) {
+        made.below = new Map();
+        for (const one in specs) made.note(one);
+      }
+      this.layers.set(path, made);
+    }
+    return this.layers.get(path);
+  }
+
+  resolved(file) {
+    const parts = [];
+    for (const part of `${this.folder}/${file}`.split("/")) {
+      if (part === "..") parts.pop();
+      else if (part && part !== ".") parts.push(part);
+    }
+    return parts.join("/");
   }
 
   note(path) {
-    const at = Math.max(path.lastIndexOf("/"), path.lastIndexOf("."));
-    const above = path.slice(0, at);
+    const above = path.slice(0, Math.max(path.lastIndexOf("/"), path.lastIndexOf("."), 0));
     if (!this.below.has(above)) this.below.set(above, []);
     this.below.get(above).push(path);
   }
@@ -38,14 +76,16 @@ class References {
     if (this.settled.has(path)) return;
     this.settled.set(path, false);
     const { fields } = this.specs[path];
-    for (const target of targetsWithin(fields, path)) {
-      if (!this.specs[target]) continue;
-      if (`${path}/`.startsWith(`${target}/`)) throw new Error(`${path}: refers to itself; repair its references`);
-      this.settleAll(target);
-      for (const name of FIELDS) if (fields[name]) fields[name] = [fields[name]].flat().map((one) => without(one, target)).filter(Boolean);
-      this.copy(target, path, target, path);
+    for (const { file, prim, text } of arcsOf(fields, path)) {
+      const layer = file ? this.layer(file) : this;
+      const target = prim || `/${layer?.specs["/"]?.fields.defaultPrim ?? ""}`;
+      if (!layer?.specs[target] || target === "/") continue;
+      if (layer === this && `${path}/`.startsWith(`${target}/`)) throw new Error(`${path}: refers to itself; repair its references`);
+      if (layer === this) this.settleAll(target);
+      for (const name of ARCS) if (fields[name]) fields[name] = [fields[name]].flat().map((one) => without(one, text)).filter(Boolean);
+      this.copy(layer, target, path, target, path);
     }
-    for (const name of FIELDS) if (fields[name]?.length === 0) delete fields[name];
+    for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
     this.settled.set(path, true);
   }
 
@@ -54,32 +94,40 @@ class References {
     for (const part of this.below.get(path) ?? []) if (!part.slice(path.length).startsWith(".")) this.settleAll(part);
   }
 
-  // What `to` does not say itself it takes from `from`, with all that is below it.
-  copy(from, to, source, place) {
-    this.found.charge(to, 0.25);
-    const theirs = this.specs[from];
+  // What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
+  copy(layer, from, to, source, place) {
+    this.charge(to, 0.25);
+    const theirs = layer.specs[from];
     const fields = { ...theirs.fields };
-    for (const name of ["targetPaths", "connectionPaths"])
-      if (fields[name]) fields[name] = targetsOf(fields[name], from).map((path) => (new RegExp(`^${source}(?=$|[/.])`).test(path) ? place + path.slice(source.length) : path));
+    const moved = (path) => (path === source || path.startsWith(`${source}/`) || path.startsWith(`${source}.`) ? place + path.slice(source.length) : path);
+    for (const name of ["targetPaths", "connectionPaths"]) if (fields[name]) fields[name] = targetsOf(fields[name], from).map(moved);
+    if (layer !== this && fields.typeName === "asset" && typeof fields.default === "string") fields.default = layer.resolved(fields.default.replace(/^@+|@+$/g, ""));
     const own = this.specs[to];
-    if (!own) this.note(to);
     if (own) {
-      for (const name of FIELDS) delete fields[name];
+      for (const name of ARCS) delete fields[name];
       const children = new Set([...(fields.primChildren ?? []), ...(own.fields.primChildren ?? [])]);
       const specifier = own.fields.specifier === 1 ? fields.specifier : own.fields.specifier;
       Object.assign(own.fields, { ...fields, ...own.fields, ...(children.size && { primChildren: [...children] }) });
       if (specifier !== undefined) own.fields.specifier = specifier;
       own.fields.typeName ||= fields.typeName;
-    } else this.specs[to] = { specType: theirs.specType, fields };
-    for (const part of [...(this.below.get(from) ?? [])]) this.copy(part, to + part.slice(from.length), source, place);
+    } else {
+      this.note(to);
+      this.specs[to] = { specType: theirs.specType, fields };
+    }
+    for (const part of [...(layer.below.get(from) ?? [])]) this.copy(layer, part, to + part.slice(from.length), source, place);
   }
 }
 
-// The prims of the same file to which fields refer: "<path>" that follows no "@file@".
-function targetsWithin(fields, path) {
-  return FIELDS.flatMap((name) => [fields?.[name] ?? []].flat().flatMap((one) =>
-    (typeof one !== "string" ? [] : one.startsWith("/") ? [one] : Array.from(one.replace(/@[^@]*@(<[^>]*>)?/g, "").matchAll(/<([^>]*)>/g), (match) => match[1]))))
-    .flatMap((target) => targetsOf(target, path));
+// What a prim refers to: {file, prim, text}; either of the first two may be empty.
+function arcsOf(fields, path) {
+  return ARCS.flatMap((name) => [fields?.[name] ?? []].flat().flatMap((one) => {
+    if (typeof one !== "string") return [];
+    if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
+    return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({ file, prim: there ?? (here ? targetsOf(here, path)[0] ?? "" : ""), text }));
+  }));
 }
 
-const without = (text, target) => (typeof text !== "string" || text === target ? "" : text.replace(`<${target}>`, "").replace(/^[\s,[\]]*$/, ""));
+const filesOf = (list) => [list ?? []].flat().flatMap((one) => (String(one).includes("@") ? Array.from(String(one).matchAll(/@([^@]+)@/g), (match) => match[1]) : [String(one)]));
+
+// A field without one of its references; empty where none is left.
+const without = (one, text) => (typeof one !== "string" || one === text ? "" : one.replace(text, "").replace(/^[\s,[\]]*$/, ""));
