@@ -35,6 +35,7 @@ class Layer {
       if (!layer) continue;
       fields.subLayers = [fields.subLayers].flat().map((one) => String(one).replaceAll(file, "")).filter((one) => /[^@\s,[\]]/.test(one));
       for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path);
+      fields.primChildren = [...new Set([...(layer.specs["/"].fields.primChildren ?? []), ...(fields.primChildren ?? [])])];
     }
     if (fields.subLayers?.length === 0) delete fields.subLayers;
     return this;
@@ -105,9 +106,11 @@ class Layer {
     const own = this.specs[to];
     if (own) {
       for (const name of ARCS) delete fields[name];
-      const children = new Set([...(fields.primChildren ?? []), ...(own.fields.primChildren ?? [])]);
       const specifier = own.fields.specifier === 1 ? fields.specifier : own.fields.specifier;
-      Object.assign(own.fields, { ...fields, ...own.fields, ...(children.size && { primChildren: [...children] }) });
+      for (const name of ["primChildren", "variantSetChildren", "apiSchemas"])
+        if (fields[name] && own.fields[name]) own.fields[name] = [...new Set([...fields[name], ...own.fields[name]])];
+      if (fields.variantSelection) own.fields.variantSelection = { ...fields.variantSelection, ...own.fields.variantSelection };
+      Object.assign(own.fields, { ...fields, ...own.fields });
       if (specifier !== undefined) own.fields.specifier = specifier;
       own.fields.typeName ||= fields.typeName;
     } else {

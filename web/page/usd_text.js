@@ -83,7 +83,7 @@ function statements(line) {
     const inside = body[2].endsWith("}") ? [...body[2].slice(0, -1).split(";"), "}"] : [body[2]];
     return [...statements(body[1].trim()), "{", ...inside.map((one) => one.trim()).filter(Boolean).flatMap(statements)];
   }
-  if (/^\{\s*\S/.test(line)) return ["{", ...statements(line.slice(1).trim())];
+  if (/^[{)]\s*\S/.test(line)) return [line[0], ...statements(line.slice(1).trim())];
   if (/^[}\s]+$/.test(line)) return [...line.replace(/\s/g, "")];
   if (/,\s*\]/.test(line)) return statements(line.replace(/,\s*\]/g, "]"));
   if (line.endsWith("(") && line.includes(":") && !line.includes("=")) return [`${line.slice(0, -1)} = (`]; // an attribute without a value
