@@ -151,8 +151,8 @@ def comb(corners: int) -> str:
 """
 
 
-def refers(name: str, target: str, inside: str = "") -> str:
-    return f'def Xform "{name}" (\n    references = {target}\n)\n{{\n{inside}}}\n'
+def refers(name: str, target: str, inside: str = "", kind: str = "Xform") -> str:
+    return f'def {kind} "{name}" (\n    references = {target}\n)\n{{\n{inside}}}\n'
 
 
 def doubled(levels: int) -> str:
@@ -168,8 +168,8 @@ def packed(path: Path, levels: int) -> Path:
     """A package of layers that each hold two references to the next; the last has a cube."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as package:
         for level in range(levels):
-            pair = "".join(refers(name, f"@{level + 1}.usda@") for name in "ab")
-            body = f'def Xform "root"\n{{\n{pair}}}\n' if level < levels - 1 else mesh("root")
+            pair = "".join(refers(name, f"@{level + 1}.usda@", kind="") for name in "ab")
+            body = f'def "root"\n{{\n{pair}}}\n' if level < levels - 1 else mesh("root")
             package.writestr(f"{level}.usda", f'#usda 1.0\n(\n    defaultPrim = "root"\n)\n{body}')
     return path
 

@@ -10,7 +10,10 @@ export const ELSEWHERE = [...ARCS, "subLayers"];
 export const referenceMethods = (kept, found) => ({
   _buildIndexes() {
     const layerOf = (file) => this.assets[file]?.specsByPath ?? found.layer(file);
-    new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge.bind(found)).follow();
+    const layer = new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge.bind(found));
+    layer.isRoot = true;
+    layer.follow();
+    if (layer.below) layer.choose("");
     kept._buildIndexes.call(this);
   },
 });
@@ -21,12 +24,14 @@ class Layer {
     Object.assign(this, { specs, folder, layerOf, layers, charge });
     this.below = null; // path -> those of its properties and children
     this.settled = new Map(); // path -> whether its references are followed; false while they are
+    this.isRoot = false; // the layer that chooses variants: it may choose others than those that it refers to
   }
 
   follow() {
     const { fields } = this.specs["/"] ?? { fields: {} };
     const refers = Object.keys(this.specs).filter((path) => path !== "/" && arcsOf(this.specs[path].fields, path).length);
-    if (!refers.length && !fields.subLayers) return this;
+    const varies = this.isRoot && Object.values(this.specs).some((spec) => spec.fields?.variantSetChildren);
+    if (!refers.length && !fields.subLayers && !varies) return this;
     this.below = new Map();
     for (const path in this.specs) this.note(path);
     for (const path of refers) this.settle(path);
@@ -77,7 +82,9 @@ class Layer {
     if (this.settled.has(path)) return;
     this.settled.set(path, false);
     const { fields } = this.specs[path];
-    for (const { file, prim, text } of arcsOf(fields, path)) {
+    const arcs = arcsOf(fields, path);
+    if (this.isRoot && arcs.length) this.takeVariants(path); // they are stronger
+    for (const { file, prim, text } of arcs) {
       const layer = file ? this.layer(file) : this;
       const target = prim || `/${layer?.specs["/"]?.fields.defaultPrim ?? ""}`;
       if (!layer?.specs[target] || target === "/") continue;
@@ -88,6 +95,25 @@ class Layer {
     }
     for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
     this.settled.set(path, true);
+  }
+
+  // Choose the variants of all prims below a path.
+  choose(path) {
+    if (this.specs[path]) this.takeVariants(path);
+    for (const part of this.below.get(path) ?? []) if (/^\/?[^/.{]+$/.test(part.slice(path.length))) this.choose(part);
+  }
+
+  // The chosen variants of a prim say what it does not say itself. They may bring more sets of variants.
+  takeVariants(path) {
+    const { fields } = this.specs[path];
+    const taken = new Set();
+    for (let set; (set = fields.variantSetChildren?.find((one) => !taken.has(one))); taken.add(set)) {
+      const variant = `${path}/{${set}=${fields.variantSelection?.[set]}}`;
+      if (!this.specs[variant]) continue;
+      this.settleAll(variant);
+      this.copy(this, variant, path, variant, path);
+    }
+    delete fields.variantSetChildren;
   }
 
   settleAll(path) {

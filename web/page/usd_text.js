@@ -54,7 +54,9 @@ export const textMethods = (kept) => ({
     this._extractPrimData(data, path, fields, specs, types);
     for (const key of Object.keys(data)) {
       const [, kind, name] = /^def\s+(?:(\w+)\s+)?"([^"]+)"$/.exec(key) ?? [];
-      if (name) this.variantSpec(data[key], `${path}/${name}`, specs, types, kind);
+      if (!name) continue;
+      (fields.primChildren ??= []).push(name);
+      this.variantSpec(data[key], `${path}/${name}`, specs, types, kind);
     }
   },
 });
