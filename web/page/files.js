@@ -39,6 +39,14 @@ export async function readFiles(files, voxrt) {
   }
 }
 
+function decoded(name) {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name; // a plain name with "%"
+  }
+}
+
 // The files beside a scene, for the loaders of three.js: names that are not among them are refused.
 class Folder {
   constructor(main, files) {
@@ -49,7 +57,7 @@ class Folder {
   }
 
   find(name) {
-    const plain = decodeURIComponent(name).replaceAll("\\", "/").replace(/^.*\//, "");
+    const plain = decoded(name).replaceAll("\\", "/").replace(/^.*\//, "");
     return this.files.get(plain.toLowerCase());
   }
 

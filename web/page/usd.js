@@ -41,7 +41,7 @@ export async function readUsd(main, folder, voxrt) {
   const frame = sceneFrame(found.fields, warn);
   await images.read();
   meshes.finish();
-  for (const part of ["position", "scale"]) root[part].setScalar(part === "scale" ? 1 : 0);
+  root.scale.setScalar(1);
   root.rotation.set(0, 0, 0);
   const scene = sceneOf(root, voxrt, meshes.rules);
   for (const object of scene.objects) object.transform = framed(frame, object.transform);

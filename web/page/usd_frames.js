@@ -34,9 +34,9 @@ function operation(name, data, found) {
   if (kind === "scale") return new Matrix4().makeScale(x, y, z);
   if (kind === "transform" && value.length === 16) return new Matrix4().fromArray(value);
   if (kind === "orient" && value.length === 4) return turnBy(value);
-  const turns = /^rotate([XYZ]{1,3})$/.exec(kind)?.[1];
-  if (turns?.length === 1) return turnAbout(turns, typeof value === "number" ? value : x);
-  if (turns?.length === 3) return [...turns].reduce((made, axis) => made.premultiply(turnAbout(axis, { X: x, Y: y, Z: z }[axis])), new Matrix4());
+  const [, turns = ""] = /^rotate([XYZ]{1,3})$/.exec(kind) ?? [];
+  if (turns.length === 1) return turnAbout(turns, x);
+  if (turns.length === 3) return [...turns].reduce((made, axis) => made.premultiply(turnAbout(axis, { X: x, Y: y, Z: z }[axis])), new Matrix4());
   const lone = /^(translate|scale)([XYZ])$/.exec(kind);
   if (lone) {
     const rest = lone[1] === "scale" ? 1 : 0;

@@ -59,7 +59,7 @@ export class UsdMaterials {
   own(composer, path) {
     const material = boundMaterial(composer, path);
     if (material) return this.shading(composer, material);
-    const opacity = equalOf(primvarOf(composer, path, "displayOpacity"))?.[0] ?? 1;
+    const [opacity = 1] = equalOf(primvarOf(composer, path, "displayOpacity")) ?? [];
     const given = primvarOf(composer, path, "displayColor");
     const colour = equalOf(given);
     if (colour?.length >= 3) {

@@ -13,6 +13,7 @@ export class UsdMeshes {
   constructor(materials, warn) {
     Object.assign(this, { materials, warn });
     this.surfaces = new Map(); // by composer and path, or by the dimensions of solids
+    this.uniform = new Map(); // shading -> material
     this.made = new Map(); // surface -> rows of faces -> what finish() needs
   }
 
@@ -103,10 +104,12 @@ export class UsdMeshes {
       if (last?.materialIndex === row) last.count += 3;
       else geometry.addGroup(3 * i, 3, row);
     });
-    geometry.userData.shown = new Map(shadings.map((shading, row) => {
+    geometry.userData.looks = new Map();
+    for (const [row, shading] of shadings.entries()) {
       const { uniform, look } = shown[row] ?? {};
-      return [shading, look ? { entry: look.entry, ...settersOf(look, gathered) } : uniform];
-    }));
+      if (look) geometry.userData.looks.set(shading, { entry: look.entry, ...settersOf(look, gathered) });
+      if (uniform) this.uniform.set(shading, uniform);
+    }
   }
 
   normalsOf(composer, path, surface) {
@@ -123,15 +126,11 @@ export class UsdMeshes {
     });
   }
 
-  // Rules for sceneOf. Uniform materials are known by geometry, for shadings may fall back to one.
+  // Rules for sceneOf.
   rules = {
     nameOf: pathOf,
-    appearanceOf: (shading, geometry) => {
-      const found = geometry.userData.shown.get(shading);
-      this.current = found;
-      return found?.entry ? found : null;
-    },
-    materialOf: () => this.current,
+    appearanceOf: (shading, geometry) => geometry.userData.looks.get(shading) ?? null,
+    materialOf: (shading) => this.uniform.get(shading),
   };
 }
 

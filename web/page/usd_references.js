@@ -107,8 +107,9 @@ class Layer {
   takeVariants(path) {
     const { fields } = this.specs[path];
     const taken = new Set();
+    const chosen = (set) => (fields.variantSelection ?? {})[set];
     for (let set; (set = fields.variantSetChildren?.find((one) => !taken.has(one))); taken.add(set)) {
-      const variant = `${path}/{${set}=${fields.variantSelection?.[set]}}`;
+      const variant = `${path}/{${set}=${chosen(set)}}`;
       if (!this.specs[variant]) continue;
       this.settleAll(variant);
       this.copy(this, variant, path, variant, path);
@@ -149,7 +150,7 @@ class Layer {
 
 // What a prim refers to: {file, prim, text}; either of the first two may be empty.
 function arcsOf(fields, path) {
-  return ARCS.flatMap((name) => [fields?.[name] ?? []].flat().flatMap((one) => {
+  return ARCS.flatMap((name) => [(fields ?? {})[name] ?? []].flat().flatMap((one) => {
     if (typeof one !== "string") return [];
     if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
     return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({ file, prim: there ?? (here ? targetsOf(here, path)[0] ?? "" : ""), text }));

@@ -29,7 +29,7 @@ export function readShading(composer, material, warn) {
     ...plain,
     colour: colour?.value ?? (bare && isPreview ? FALLBACK_DIFFUSE : null),
     opacity: opacity?.value ? opacity.value[0] : 1,
-    cutoff: threshold?.value?.[0] || BLEND_CUTOFF,
+    cutoff: (threshold?.value && threshold.value[0]) || BLEND_CUTOFF,
     image: colour?.image ?? null, alpha: opacity?.image ?? null, primvar: colour?.primvar ?? null,
   };
 }
@@ -96,7 +96,7 @@ function coordinatesOf(composer, node, warn) {
   const made = { primvar: "st", turn: 0, scale: [1, 1], offset: [0, 0] };
   let source = input(composer, node, "st")?.node;
   if (source && idOf(composer, source) === "UsdTransform2d") {
-    made.turn = numbers(constant(composer, source, "rotation"), 1)?.[0] ?? 0;
+    [made.turn] = numbers(constant(composer, source, "rotation"), 1) ?? [0];
     made.scale = numbers(constant(composer, source, "scale"), 2) ?? made.scale;
     made.offset = numbers(constant(composer, source, "translation"), 2) ?? made.offset;
     source = input(composer, source, "in")?.node;

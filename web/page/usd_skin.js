@@ -49,7 +49,7 @@ function influencesOf(composer, path, count) {
   const above = [...upwards(path)].find((at) => fieldsOf(composer, at, "primvars:skel:jointIndices"));
   const { elementSize = 1, interpolation = "constant" } = fieldsOf(composer, above, "primvars:skel:jointIndices");
   const rigid = interpolation === "constant";
-  const matrix = matrices(composer, valueAbove(composer, path, "primvars:skel:geomBindTransform"), 1)?.[0] ?? new Matrix4();
+  const [matrix] = matrices(composer, valueAbove(composer, path, "primvars:skel:geomBindTransform"), 1) ?? [new Matrix4()];
   return {
     each: elementSize, rigid, joints, weights, matrix,
     wrong: joints.length !== weights.length || joints.length !== elementSize * (rigid ? 1 : count),
@@ -65,7 +65,7 @@ function posedJoints(composer, skeleton, animation) {
   if (!bind || !names.length) return null;
   const [placed, made] = [new Map(), new Map()];
   for (const [i, name] of names.entries()) {
-    const matrix = local.get(name) ?? rest?.[i];
+    const matrix = local.get(name) ?? (rest && rest[i]);
     if (!matrix) return null;
     const parent = [...upwards(`/${name}`)].slice(1).map((above) => placed.get(above.slice(1))).find(Boolean);
     placed.set(name, parent ? new Matrix4().multiplyMatrices(parent, matrix) : matrix);

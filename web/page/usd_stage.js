@@ -1,29 +1,14 @@
 // What a stage of USD says of its prims: values at its first moment, inherited bindings and primvars, which prims it shows.
-// A prim is known by its path in a composer, which is a layer with the variants that are chosen.
+// A prim is known by its path in a composer.
 
 // A prim and those above it, the nearest first.
 export function* upwards(path) {
   for (let at = path; at.length > 1; at = at.slice(0, Math.max(at.lastIndexOf("/"), 0))) yield at;
 }
 
-// The paths of a property: the prim's own, then those of chosen variants.
-function* places(composer, prim, name) {
-  yield `${prim}.${name}`;
-  for (const above of upwards(prim)) for (const variant of composer._getVariantPaths(above)) yield `${variant}${prim.slice(above.length)}.${name}`;
-}
+export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.${name}`]?.fields ?? null;
 
-export function fieldsOf(composer, prim, name) {
-  for (const path of places(composer, prim, name)) if (composer.specsByPath[path]) return composer.specsByPath[path].fields;
-  return null;
-}
-
-export function valueOf(composer, prim, name) {
-  for (const path of places(composer, prim, name)) {
-    const value = composer._resolveAttributeValue(path);
-    if (value !== undefined && value !== null) return value;
-  }
-  return null;
-}
+export const valueOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
 // What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]".
 export function targetsOf(paths, prim) {
@@ -41,13 +26,6 @@ export const stageMethods = (kept, found) => ({
       const sorted = places.size ? children.toSorted((a, b) => (places.get(a.name) ?? Infinity) - (places.get(b.name) ?? Infinity) || 0) : children;
       this.childrenByPath.set(parent, sorted.filter(({ path }) => isShown(this, path, found)));
     }
-    // What chosen variants add comes first: they are weaker.
-    for (const path of Object.keys(this.specsByPath)) {
-      const variants = this._getVariantPaths(path);
-      if (!variants.length) continue;
-      const added = variants.toReversed().flatMap((variant) => this.childrenByPath.get(variant) ?? []);
-      this.childrenByPath.set(path, [...added, ...(this.childrenByPath.get(path) ?? [])]);
-    }
   },
   _resolveAttributeValue(path) {
     const fields = this.specsByPath[String(path).replace(/[<>]/g, "")]?.fields;
@@ -57,12 +35,7 @@ export const stageMethods = (kept, found) => ({
     fields.default = singles(fields.default, typeName);
     return fields.default;
   },
-  // Those that are chosen; a set without a choice shows none.
-  _getVariantPaths(path) {
-    const { variantSetChildren, variantSelection } = this.specsByPath[path]?.fields ?? {};
-    const chosen = Array.from(variantSetChildren ?? [], (set) => [set, this.externalVariantSelections[set] ?? variantSelection?.[set]]);
-    return chosen.filter(([, name]) => name).map(([set, name]) => `${path}/{${set}=${name}}`);
-  },
+  _getVariantPaths: () => [], // usd_references.js has chosen them
   _buildSkeleton: () => null,
   _buildAnimations: () => [],
 });
@@ -133,7 +106,7 @@ export function arrayOf(composer, prim, name, usual) {
   const given = valueOf(composer, prim, name);
   if (given === null || typeof given === "string") return null;
   const { typeName = "", interpolation = usual } = fieldsOf(composer, prim, name);
-  const size = Number(/(?<!\d)([234])[fdhi]?(?:\[\])?$/.exec(typeName)?.[1] ?? 1);
+  const [, size = 1] = Array.from(/(?<!\d)([234])[fdhi]?(?:\[\])?$/.exec(typeName) ?? [], Number);
   const all = ArrayBuffer.isView(given) ? given : Float64Array.from([given].flat());
   const indices = valueOf(composer, prim, `${name}:indices`);
   if (!indices?.length) return all.length >= size ? { values: all, size, interpolation } : null;

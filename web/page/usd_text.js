@@ -35,8 +35,8 @@ export const textMethods = (kept) => ({
     const schemas = Object.keys(data).filter((key) => /^(?!delete )(\w+ )?apiSchemas$/.test(key)).flatMap((key) => String(data[key]).match(/[\w:]+/g) ?? []);
     if (schemas.length) fields.apiSchemas = schemas;
     kept._extractPrimData.call(this, plain, path, fields, specs, types);
-    const sets = Object.keys(data).map((key) => [key, SET.exec(key)?.[1]]).filter(([, name]) => name);
-    if (sets.length) fields.variantSetChildren = sets.map(([, name]) => name);
+    const sets = Object.keys(data).filter((key) => SET.test(key)).map((key) => [key, SET.exec(key).at(1)]);
+    if (sets.length) fields.variantSetChildren = sets.map(([, set]) => set);
     for (const [key, set] of sets)
       for (const [name, variant] of Object.entries(data[key])) this.variantSpec(variant, `${path}/{${set}=${name.replace(/"/g, "")}}`, specs, types);
     for (const [key, note] of Object.entries(withoutPrefixes(notes))) {
@@ -76,7 +76,10 @@ function asDefinitions(data) {
 }
 
 // "custom rel a" is "rel a", "prepend token b.connect" is "token b.connect".
-const withoutPrefixes = (data) => Object.fromEntries(Object.entries(data).filter(([, value]) => value !== "" && value !== "None").map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]));
+function withoutPrefixes(data) {
+  const given = Object.entries(data).filter(([, value]) => value !== "" && value !== "None");
+  return Object.fromEntries(given.map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]));
+}
 
 // The parser wants one statement a line, as USD itself writes them.
 function statements(line) {
