@@ -204,6 +204,25 @@ def test_contradictions_and_what_would_not_end_are_refused(tmp_path: Path) -> No
     assert len(found[-1]["objects"]) == 4
 
 
+def test_layers_are_dropped_together(tmp_path: Path) -> None:
+    header = 'defaultPrim = "part"\n    metersPerUnit = 1'
+    texts = {
+        "a_part.usda": stage(f'def Xform "part"\n{{\n{mesh("cube", bound("clay"))}}}\n', header),
+        "b_sub.usda": stage(mesh("below", moved(0, 2))),
+        "scene.usda": stage(
+            refers("one", "@./a_part.usda@", moved(2, 0)) + refers("two", "@a_part.usda@</part/cube>"),
+            "metersPerUnit = 1\n    subLayers = [@b_sub.usda@]",
+        ),
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    files = [str(tmp_path / name) for name in texts]
+    job = {"files": files, "depth": DEPTH, "fill": "auto", "frames": []}
+    (found,) = node(SCRIPT, {"site": str(site()), "jobs": [job]})
+    assert found["name"] == "scene"
+    assert_same(voxrt.build(files[-1], depth=DEPTH, geometry="render"), found)
+
+
 def test_what_is_not_read_is_said(tmp_path: Path) -> None:
     collection = "    rel material:binding:collection:all = [</a.collection:all>, </looks/clay>]\n"
     body = (

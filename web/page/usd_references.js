@@ -39,7 +39,7 @@ class Layer {
       const layer = this.layer(file);
       if (!layer) continue;
       fields.subLayers = [fields.subLayers].flat().map((one) => String(one).replaceAll(file, "")).filter((one) => /[^@\s,[\]]/.test(one));
-      for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path);
+      for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path, true);
       fields.primChildren = [...new Set([...(layer.specs["/"].fields.primChildren ?? []), ...(fields.primChildren ?? [])])];
     }
     if (fields.subLayers?.length === 0) delete fields.subLayers;
@@ -91,7 +91,7 @@ class Layer {
       if (layer === this && `${path}/`.startsWith(`${target}/`)) throw new Error(`${path}: refers to itself; repair its references`);
       if (layer === this) this.settleAll(target);
       for (const name of ARCS) if (fields[name]) fields[name] = [fields[name]].flat().map((one) => without(one, text)).filter(Boolean);
-      this.copy(layer, target, path, target, path);
+      this.copy(layer, target, path, target, path, layer === this);
     }
     for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
     this.settled.set(path, true);
@@ -112,7 +112,7 @@ class Layer {
       const variant = `${path}/{${set}=${chosen(set)}}`;
       if (!this.specs[variant]) continue;
       this.settleAll(variant);
-      this.copy(this, variant, path, variant, path);
+      this.copy(this, variant, path, variant, path, true);
     }
     delete fields.variantSetChildren;
   }
@@ -123,12 +123,17 @@ class Layer {
   }
 
   // What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
-  copy(layer, from, to, source, place) {
+  // What points elsewhere stays if `keeps`; else it points to what is not there.
+  copy(layer, from, to, source, place, keeps) {
     this.charge(to, 0.25);
     const theirs = layer.specs[from];
     const fields = { ...theirs.fields };
-    const moved = (path) => (path === source || path.startsWith(`${source}/`) || path.startsWith(`${source}.`) ? place + path.slice(source.length) : path);
-    for (const name of ["targetPaths", "connectionPaths"]) if (fields[name]) fields[name] = targetsOf(fields[name], from).map(moved);
+    const isInside = (path) => path === source || path.startsWith(`${source}/`) || path.startsWith(`${source}.`);
+    for (const name of ["targetPaths", "connectionPaths"]) {
+      if (!fields[name]) continue;
+      const targets = targetsOf(fields[name], from).filter((path) => keeps || isInside(path));
+      fields[name] = targets.map((path) => (isInside(path) ? place + path.slice(source.length) : path));
+    }
     if (layer !== this && fields.typeName === "asset" && typeof fields.default === "string") fields.default = layer.resolved(fields.default.replace(/^@+|@+$/g, ""));
     const own = this.specs[to];
     if (own) {
@@ -144,7 +149,7 @@ class Layer {
       this.note(to);
       this.specs[to] = { specType: theirs.specType, fields };
     }
-    for (const part of [...(layer.below.get(from) ?? [])]) this.copy(layer, part, to + part.slice(from.length), source, place);
+    for (const part of [...(layer.below.get(from) ?? [])]) this.copy(layer, part, to + part.slice(from.length), source, place, keeps);
   }
 }
 
