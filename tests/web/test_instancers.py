@@ -123,7 +123,7 @@ def test_copies_have_the_words_of_voxrt_build(tmp_path: Path, name: str, kind: s
 
 def nested(levels: int, copies: int) -> str:
     """Instancers of instancers of a roof."""
-    text = f'def Mesh "p0" {{{ROOF}}}'
+    text = f'def Mesh "p0"\n{{{ROOF}}}'
     for level in range(levels):
         path = "".join(f"/many{above}/p{above}" for above in range(levels - 1, level, -1))
         text = f"""
@@ -134,7 +134,7 @@ def PointInstancer "many{level}"
     rel prototypes = </root{path}/many{level}/p{level}>
     int[] protoIndices = [{", ".join(["0"] * copies)}]
     point3f[] positions = [{", ".join(f"({3 * one}, 0, 0)" for one in range(copies))}]
-    {text}
+{text}
 }}
 }}"""
     return "#usda 1.0\n" + text.replace(f"p{levels}", "root")

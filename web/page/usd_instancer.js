@@ -1,4 +1,4 @@
-// Point instancers of USD: copies of the prototypes below them, which the loader of three.js shows once instead.
+// Point instancers of USD: copies of their prototypes, which three.js' loader shows in their own place alone.
 
 import { fieldsOf, isShown, targetsOf } from "./usd_stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";

@@ -11,7 +11,8 @@ const DEFAULT_COLOUR = [200, 200, 200];
 export class UsdMaterials {
   constructor(images, voxrt, warn) {
     Object.assign(this, { images, voxrt, warn });
-    this.read = new Map(); // composer -> path -> shading
+    this.read = new Map(); // path -> shading
+    this.entries = new Map(); // shading -> its entries of surfaces
     this.known = new Map(); // equal shadings are one
     this.order = new Map(); // keys of uniform materials by their first use
   }
@@ -40,14 +41,12 @@ export class UsdMaterials {
   }
 
   shading(composer, material) {
-    if (!this.read.has(composer)) this.read.set(composer, new Map());
-    const read = this.read.get(composer);
-    if (!read.has(material)) {
+    if (!this.read.has(material)) {
       const made = readShading(composer, material, this.warn);
       for (const source of [made.image, made.alpha]) if (source) this.images.add(composer, source);
-      read.set(material, this.one(made));
+      this.read.set(material, this.one(made));
     }
-    return read.get(material);
+    return this.read.get(material);
   }
 
   one(shading) {
@@ -130,7 +129,6 @@ export class UsdMaterials {
   // The same object for the same look, and for no other one.
   entry(shading, entry) {
     const kind = entry.texture ? "textured" : "coloured";
-    this.entries ??= new Map();
     if (!this.entries.has(shading)) this.entries.set(shading, {});
     return (this.entries.get(shading)[kind] ??= entry);
   }

@@ -12,7 +12,7 @@ import { BufferAttribute, BufferGeometry, Mesh, Object3D } from "./three/three.c
 export class UsdMeshes {
   constructor(materials, warn) {
     Object.assign(this, { materials, warn });
-    this.surfaces = new Map(); // by composer and path, or by the dimensions of solids
+    this.surfaces = new Map(); // by path, or by the dimensions of solids
     this.uniform = new Map(); // shading -> material
     this.made = new Map(); // surface -> rows of faces -> what finish() needs
   }
@@ -55,15 +55,13 @@ export class UsdMeshes {
   }
 
   surfaceOf(composer, path, kind) {
-    if (!this.surfaces.has(composer)) this.surfaces.set(composer, new Map());
     const key = isSolid(kind) ? `${kind} ${dimensionsOf(kind, path, (name) => valueOf(composer, path, name))}` : path;
-    const known = this.surfaces.get(isSolid(kind) ? this : composer) ?? this.surfaces.set(this, new Map()).get(this);
-    if (!known.has(key)) {
-      const posed = kind === "Mesh" ? posedPoints(composer, path, { warn: this.warn }) : null;
+    if (!this.surfaces.has(key)) {
+      const posed = kind === "Mesh" ? posedPoints(composer, path, this.warn) : null;
       const surface = surfaceOf(composer, path, kind, this.warn, posed?.positions);
-      known.set(key, surface && { ...surface, posed });
+      this.surfaces.set(key, surface && { ...surface, posed });
     }
-    return known.get(key);
+    return this.surfaces.get(key);
   }
 
   // Solids of one kind and look share their geometry.

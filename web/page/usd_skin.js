@@ -6,24 +6,24 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
 
 // The points of a mesh: {positions, frame}, where frame places them in the mesh's parent, or null for the mesh's own
 // frame. null for meshes at rest.
-export function posedPoints(composer, path, found) {
+export function posedPoints(composer, path, warn) {
   const points = valueOf(composer, path, "points");
   const skeleton = targetAbove(composer, path, "skel:skeleton");
   const isBelowRoot = [...upwards(path)].some((above) => composer.specsByPath[above]?.fields.typeName === "SkelRoot");
   if (!points?.length || !isBelowRoot || composer.specsByPath[skeleton]?.fields.typeName !== "Skeleton") return null;
   const animation = targetAbove(composer, skeleton, "skel:animationSource");
   const blended = Float32Array.from(points);
-  const moved = blend(composer, path, animation, blended, found);
+  const moved = blend(composer, path, animation, blended, warn);
   const influences = influencesOf(composer, path, points.length / 3);
   if (!influences) return moved ? { positions: blended, frame: null } : null;
   const joints = influences.wrong ? null : posedJoints(composer, skeleton, animation);
   const own = valueAbove(composer, path, "skel:joints");
   const order = joints && own ? Array.from(own, (name) => joints.get(name)) : joints && [...joints.values()];
   if (!order || !influences.fits(order)) {
-    found.warn("skinning", "meshes whose skeleton has no pose are shown at rest");
+    warn("skinning", "meshes whose skeleton has no pose are shown at rest");
     return moved ? { positions: blended, frame: null } : null;
   }
-  if (valueAbove(composer, path, "primvars:skel:skinningMethod") === "dualQuaternion") found.warn("skinning", "dual quaternion skinning was replaced by linear blending");
+  if (valueAbove(composer, path, "primvars:skel:skinningMethod") === "dualQuaternion") warn("skinning", "dual quaternion skinning was replaced by linear blending");
   return { positions: skinned(blended, order, influences), frame: between(composer, path, skeleton) };
 }
 
@@ -110,7 +110,7 @@ function skinned(points, order, { each, rigid, joints, weights, matrix }) {
 }
 
 // Adds the blend shapes to points; returns whether an animation gives them weights.
-function blend(composer, path, animation, points, found) {
+function blend(composer, path, animation, points, warn) {
   const weights = animation && valueOf(composer, animation, "blendShapeWeights");
   const targets = targetsOf(fieldsOf(composer, path, "skel:blendShapeTargets")?.targetPaths, path);
   if (!weights?.length || !targets.length) return false;
@@ -121,7 +121,7 @@ function blend(composer, path, animation, points, found) {
     const offsets = valueOf(composer, target, "offsets") ?? [];
     const places = valueOf(composer, target, "pointIndices");
     if ([...(composer.attributesByPrimPath.get(target)?.keys() ?? [])].some((name) => name.startsWith("inbetweens:")))
-      found.warn("skinning", "shapes in between of blend shapes are not used here; voxrt build uses them");
+      warn("skinning", "shapes in between of blend shapes are not used here; voxrt build uses them");
     if (!factor) continue;
     for (let at = 0; 3 * at < offsets.length; at++) {
       const to = 3 * (places?.length ? places[at] : at);
