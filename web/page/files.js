@@ -13,9 +13,16 @@ export class FileError extends Error {
 const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 const stem = (name) => name.slice(0, name.lastIndexOf("."));
 
+// The first scene that no other one names: layers of USD refer to each other.
+function sceneAmong(files) {
+  const scenes = files.filter(({ name }) => FORMATS.includes(extension(name)));
+  const texts = scenes.map(({ name, bytes }) => (scenes.length > 1 && extension(name).startsWith("usd") ? new TextDecoder("latin1").decode(bytes) : ""));
+  return scenes.find(({ name }) => !texts.some((text, i) => scenes[i].name !== name && text.includes(name))) ?? scenes[0];
+}
+
 // Read files ({name, bytes}), one of which is a scene. Returns {name, file, scene} or {name, file, memory}.
 export async function readFiles(files, voxrt) {
-  const main = files.find(({ name }) => FORMATS.includes(extension(name)));
+  const main = sceneAmong(files);
   if (!main) throw new FileError(`${files[0]?.name ?? "nothing"}: is no scene; drop ${FORMATS.map((format) => `.${format}`).join(", ")}`);
   const known = { name: stem(main.name), file: main.name };
   const kind = extension(main.name);
@@ -39,6 +46,14 @@ export async function readFiles(files, voxrt) {
   }
 }
 
+function decoded(name) {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name; // a plain name with "%"
+  }
+}
+
 // The files beside a scene, for the loaders of three.js: names that are not among them are refused.
 class Folder {
   constructor(main, files) {
@@ -49,7 +64,7 @@ class Folder {
   }
 
   find(name) {
-    const plain = decodeURIComponent(name).replaceAll("\\", "/").replace(/^.*\//, "");
+    const plain = decoded(name).replaceAll("\\", "/").replace(/^.*\//, "");
     return this.files.get(plain.toLowerCase());
   }
 

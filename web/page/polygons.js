@@ -24,8 +24,9 @@ export function withoutConcave(text) {
   }).join("\n");
 }
 
-// Triangles of a concave polygon, as indices; null for a convex one, or one without area.
-export function cutConcave(corners) {
+// Triangles of a concave polygon, as indices; null for a convex one, or one without area. cut(points): the triangles of one
+// with more than four corners, which lies in the plane, counter-clockwise.
+export function cutConcave(corners, cut = ears) {
   const count = corners.length;
   const points = corners.map((corner) => subtract(corner, corners[0])); // near the origin, products keep their digits
   const next = (i) => points[(i + 1) % count];
@@ -34,7 +35,7 @@ export function cutConcave(corners) {
   const back = points.map((point, i) => dot(cross(subtract(point, points[(i + count - 1) % count]), subtract(next(i), point)), normal) < least);
   if (!back.some(Boolean)) return null;
   if (count === 4) return back[1] || back[3] ? [[1, 2, 3], [1, 3, 0]] : null;
-  return ears(flat(points, normal));
+  return cut(flat(points, normal));
 }
 
 // Without the axis along which the normal is longest, counter-clockwise.
@@ -48,7 +49,7 @@ function flat(points, normal) {
 const side = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
 
 // Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves.
-function ears(points) {
+export function ears(points) {
   const left = points.map((_, i) => i);
   const triangles = [];
   while (left.length > 3) {

@@ -1,66 +1,90 @@
-// USD files by three.js, with their textures, and what of them it does not honour.
+// USD files: three.js' loader parses them and puts them together; the files beside this one read of that what voxrt build
+// reads. What it does not honour is said in warnings.
 
-import { decodeImage } from "./images.js";
-import { isInstancer, placeCopies } from "./usd_instancer.js";
+import { crateMethods } from "./usd_crate.js";
+import { framed, frameMethods, sceneFrame } from "./usd_frames.js";
+import { UsdImages } from "./usd_images.js";
+import { instancerMethods } from "./usd_instancer.js";
+import { UsdMaterials } from "./usd_materials.js";
+import { UsdMeshes } from "./usd_meshes.js";
+import { ELSEWHERE, referenceMethods } from "./usd_references.js";
+import { stageMethods } from "./usd_stage.js";
+import { textMethods } from "./usd_text.js";
 import { sceneOf } from "./voxrt/scene.js";
-import { ImageLoader } from "./three/three.core.js";
 import { USDLoader } from "./three/addons/loaders/USDLoader.js";
+import { USDAParser } from "./three/addons/loaders/usd/USDAParser.js";
+import { USDCParser } from "./three/addons/loaders/usd/USDCParser.js";
 import { USDComposer } from "./three/addons/loaders/usd/USDComposer.js";
 
-const MISSING = "textures that are missing or of an unsupported format were replaced by the default colour";
+const MOST_PRIMS = 200_000; // of all layers and copies together
+
+// Specs of a file that say what is not read: kind, message, test of fields and path.
 const OTHERS = [
-  ["collider", "colliders are not used here; voxrt build uses them", ({ apiSchemas }) => /Physics\w*Collision/.test(JSON.stringify(apiSchemas ?? ""))],
-  ["inactive", "parts that are not active are not left out here; voxrt build leaves them out", ({ active }) => active === false],
-  ["opacity", "opacity is not used here; voxrt build uses it", (fields, path) => /\.inputs:opacity(Threshold)?$/.test(path) && (fields.connectionPaths || fields.default < 1)],
+  ["collider", "colliders are not used here; voxrt build uses them", ({ apiSchemas }) => apiSchemas?.includes?.("PhysicsCollisionAPI")],
+  ["collection", "materials bound to collections are not used here; voxrt build uses them", (_, path) => path.includes(".material:binding:collection:")],
 ];
 
 export async function readUsd(main, folder, voxrt) {
-  const found = watch(folder);
+  const warnings = new Map();
+  const warn = (kind, message, count = 1) => warnings.set(message, { kind, message, count: (warnings.get(message)?.count ?? 0) + count });
+  const found = { warn, fields: null, moment: null, prims: 0, open: new Set(), charge, layer: (file) => layerOf(folder.find(file)) };
+  const images = new UsdImages(folder, voxrt);
+  const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warn), warn);
+  const restored = [patch(USDAParser, textMethods), patch(USDCParser, crateMethods)];
+  for (const methods of [stageMethods, referenceMethods, frameMethods, meshes.methods, instancerMethods, layerMethods]) restored.unshift(patch(USDComposer, methods, found));
+  let root;
   try {
-    const root = await new Promise((resolve, reject) => new USDLoader().parse(main.bytes.buffer, "", resolve, reject));
-    const scene = sceneOf(root, voxrt);
-    const warnings = OTHERS.map(([kind, message, is]) => ({ kind, message, count: Object.entries(found.specs).filter(([path, { fields }]) => fields && is(fields, path)).length }));
-    scene.warnings = scene.warnings.filter(({ kind }) => kind !== "texture");
-    warnings.push(
-      { kind: "missing-texture", message: MISSING, count: found.missing },
-      { kind: "invisible", message: "masked copies of point instancers were left out", count: found.masked },
-      { kind: "instancer", message: "point instancers whose prototypes are not below them are left out here; voxrt build reads them", count: found.elsewhere },
-      { kind: "instancer", message: "masks of point instancers that cannot be read here were not used; voxrt build uses them", count: found.unread },
-    );
-    scene.warnings.push(...warnings.filter(({ count }) => count));
-    return scene;
+    root = new USDLoader().parse(main.bytes.buffer, "");
   } finally {
-    found.close();
+    for (const restore of restored) restore();
   }
+  const frame = sceneFrame(found.fields, warn);
+  await images.read();
+  meshes.finish();
+  root.scale.setScalar(1);
+  root.rotation.set(0, 0, 0);
+  const scene = sceneOf(root, voxrt, meshes.rules);
+  for (const object of scene.objects) object.transform = framed(frame, object.transform);
+  scene.warnings = [...scene.warnings, ...warnings.values()].filter(({ count }) => count);
+  return scene;
 }
 
-// The loader decodes images by elements of a page, which workers have not; here images.js does. And it keeps what it
-// parsed to itself.
-function watch(folder) {
-  const [{ load }, { compose, _buildHierarchy }] = [ImageLoader.prototype, USDComposer.prototype];
-  const close = () => { Object.assign(ImageLoader.prototype, { load }); Object.assign(USDComposer.prototype, { compose, _buildHierarchy }); };
-  const found = { specs: {}, missing: 0, masked: 0, unread: 0, elsewhere: 0, copied: 0, close };
-  USDComposer.prototype.compose = function (parsed, ...rest) {
-    found.specs = parsed.specsByPath;
-    return compose.call(this, parsed, ...rest);
-  };
-  USDComposer.prototype._buildHierarchy = function (parent, path) {
-    const build = (object, below) => _buildHierarchy.call(this, object, below);
-    if (isInstancer(this, path)) placeCopies(this, parent, path, build, found);
-    else build(parent, path);
-  };
-  ImageLoader.prototype.load = (url, onLoad) => {
-    imageAt(url, folder).then(({ width, height, pixels }) => onLoad({ width, height, data: pixels }), () => {
-      found.missing++;
-      onLoad(undefined);
-    });
-  };
-  return found;
+// Replace methods of a class; returns what puts the old ones back.
+function patch({ prototype }, methodsOf, found) {
+  const kept = Object.fromEntries(Object.getOwnPropertyNames(prototype).map((name) => [name, prototype[name]]));
+  Object.assign(prototype, methodsOf(kept, found));
+  return () => Object.assign(prototype, kept);
 }
 
-async function imageAt(url, folder) {
-  if (url.startsWith("blob:")) return decodeImage(new Uint8Array(await (await fetch(url)).arrayBuffer()), "texture");
-  const file = folder.find(url);
-  if (!file) throw new Error(`no ${url}`);
-  return decodeImage(file.bytes, file.name);
+function charge(place, count) {
+  this.prims += count;
+  if (this.prims > MOST_PRIMS) throw new Error(`${place}: more than ${MOST_PRIMS.toLocaleString("en")} prims and copies are too many here; voxrt build takes more`);
 }
+
+// A layer that was dropped together with the scene; null for none.
+function layerOf(file) {
+  if (!file) return null;
+  const isCrate = new TextDecoder("latin1").decode(file.bytes.subarray(0, 8)) === "PXR-USDC";
+  return (isCrate ? new USDCParser().parseData(file.bytes.slice().buffer) : new USDAParser().parseData(new TextDecoder().decode(file.bytes))).specsByPath;
+}
+
+// The outermost methods of a composer: they count, and see what it leaves out.
+const layerMethods = (kept, found) => ({
+  compose(parsed, ...rest) {
+    const { specsByPath } = parsed;
+    const { fields } = specsByPath["/"] ?? { fields: {} };
+    found.fields = fields;
+    found.moment = fields.startTimeCode !== undefined && fields.endTimeCode !== undefined ? fields.startTimeCode : null;
+    for (const [path, spec] of Object.entries(specsByPath))
+      for (const [kind, message, is] of OTHERS) if (spec.fields && is(spec.fields, path)) found.warn(kind, message);
+    if (Object.values(specsByPath).some((spec) => spec.fields?.timeSamples?.times?.length > 1)) found.warn("animation", "animated layers are shown at the stage's start");
+    return kept.compose.call(this, parsed, ...rest);
+  },
+  _resolveReference: () => null, // usd_references.js has followed them
+  _buildHierarchy(parent, path) {
+    found.charge(path, 1);
+    const fields = this.specsByPath[path]?.fields ?? {};
+    if (ELSEWHERE.some((name) => name in fields)) found.warn("reference", "references to files that are not here, and to prims that do not exist, were left out");
+    kept._buildHierarchy.call(this, parent, path);
+  },
+});

@@ -1,38 +1,45 @@
-// Point instancers of USD: copies of the prototypes below them, which the loader of three.js shows once instead.
+// Point instancers of USD: copies of their prototypes, which three.js' loader shows in their own place alone.
 
+import { fieldsOf, isShown, targetsOf } from "./usd_stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
 
-const MOST_OBJECTS = 200_000; // of all copies together
+// Methods for USDComposer. `kept`: its own ones.
+export const instancerMethods = (kept, found) => ({
+  _buildHierarchy(parent, path) {
+    if (this.specsByPath[path]?.fields?.typeName === "PointInstancer") placeCopies(this, parent, path, found);
+    else kept._buildHierarchy.call(this, parent, path);
+  },
+});
 
-export const isInstancer = (composer, path) => composer.specsByPath[path]?.fields?.typeName === "PointInstancer";
-
-// Put the copies of the instancer at `path` into `object`, which stands in its place. `build(object, path)` builds what is
-// below a path. found.elsewhere counts instancers with prototypes that are not below them; they show nothing.
-export function placeCopies(composer, object, path, build, found) {
+// Put the copies of the instancer at `path` into `object`, which stands in its place.
+function placeCopies(composer, object, path, found) {
   const refuse = (problem) => { throw new Error(`${path}: ${problem}`); };
-  const below = new Object3D();
-  build(below, path);
   const given = composer._getAttributes(path);
   const { protoIndices = [], positions = [], scales = [] } = given;
-  const names = targetsOf(composer, path);
+  const names = targetsOf(fieldsOf(composer, path, "prototypes")?.targetPaths, path);
   const wrong = protoIndices.findIndex((index) => !names[index]);
   if (wrong >= 0) refuse(`protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`);
-  if (names.some((name) => !name.startsWith(`${path}/`))) return void found.elsewhere++;
-  const prototypes = names.map((name) => name.slice(path.length + 1).split("/").reduce((parent, part) => parent?.children.find((child) => child.name === part), below));
+  const absent = names.find((name) => !composer.specsByPath[name]);
+  if (absent) refuse(`prototype ${absent} does not exist; repair its prototypes`);
+  if (found.open.has(path)) refuse("the point instancer copies itself; repair its prototypes");
+  found.open.add(path);
+  const used = new Set(protoIndices);
+  const prototypes = names.map((name, index) => (used.has(index) ? built(composer, name, found) : null));
+  found.open.delete(path);
   const count = protoIndices.length;
   const turns = turnsOf(given);
   const fits = (values, size) => values.length === 0 || values.length === size * count;
   if (positions.length !== 3 * count || !fits(turns, 4) || !fits(scales, 3))
     refuse(`protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`);
   const hidden = hiddenOf(composer, path, given, count, refuse, found);
-  found.masked += hidden.size;
+  found.warn("invisible", "masked copies of point instancers were left out", hidden.size);
   const sizes = prototypes.map(objectsOf);
-  for (const index of protoIndices) found.copied += 1 + sizes[index];
-  if (found.copied > MOST_OBJECTS) refuse(`copies with more than ${MOST_OBJECTS.toLocaleString("en")} objects are too many here; voxrt build takes more`);
+  found.charge(path, Array.from(protoIndices).reduce((sum, index) => sum + 1 + sizes[index], 0));
   for (let i = 0; i < count; i++) {
     if (hidden.has(i) || !prototypes[protoIndices[i]]) continue;
     const copy = new Object3D();
     copy.name = `${object.name}[${i}]`;
+    copy.userData.copies = true;
     copy.matrixAutoUpdate = false;
     const scale = scales.length ? new Vector3().fromArray(scales, 3 * i) : new Vector3(1, 1, 1);
     const turn = turns.length ? new Quaternion().fromArray(turns, 4 * i) : new Quaternion();
@@ -40,6 +47,16 @@ export function placeCopies(composer, object, path, build, found) {
     copy.add(prototypes[protoIndices[i]].clone());
     object.add(copy);
   }
+}
+
+// The object of one prim, wherever it is; null where it is not shown.
+function built(composer, path, found) {
+  if (!isShown(composer, path, found, true)) return null;
+  const parent = new Object3D();
+  const alone = `${path} alone`; // a parent that has this child only
+  composer.childrenByPath.set(alone, [{ name: path.slice(path.lastIndexOf("/") + 1), path }]);
+  composer._buildHierarchy(parent, alone);
+  return parent.children[0] ?? null;
 }
 
 // The copies of instancers below a prototype are copied again, and count.
@@ -50,12 +67,6 @@ function objectsOf(prototype) {
 }
 
 const single = (values) => (values instanceof Float32Array ? values : Float32Array.from(values));
-
-// Text has them as one list: "[/a/b, /a/c]".
-function targetsOf(composer, path) {
-  const { targetPaths = [] } = composer.specsByPath[`${path}.prototypes`]?.fields ?? {};
-  return [targetPaths].flat().join().replace(/[[\]<>\s]/g, "").split(",").filter(Boolean).map((target) => (target.startsWith("/") ? target : `${path}/${target}`));
-}
 
 // Four numbers per copy: x, y, z, w, of any length, as USD takes them. Files of text have more digits than the values that they stand for.
 function turnsOf({ orientationsf = [], orientations = [] }) {
@@ -74,8 +85,8 @@ function half(value) {
 function hiddenOf(composer, path, { ids = [], invisibleIds = [] }, count, refuse, found) {
   const has = (name) => composer.specsByPath[`${path}.${name}`];
   if (composer.specsByPath[path].fields.inactiveIds !== undefined) refuse("copies that are not active are not read here; voxrt build reads them");
-  // The loader leaves arrays of 64 bits in binary files empty.
-  found.unread += has("invisibleIds") && !invisibleIds.length;
+  // The loader leaves long arrays of 64 bits in binary files empty.
+  if (has("invisibleIds") && !invisibleIds.length) found.warn("instancer", "masks of point instancers that cannot be read here were not used; voxrt build uses them");
   if (invisibleIds.length && has("ids") && ids.length !== count) refuse(`ids has ${ids.length} entries and there are ${count} copies; export the instancer again`);
   const masked = new Set(Array.from(invisibleIds, Number));
   return new Set(Array.from({ length: count }, (_, i) => i).filter((i) => masked.has(Number(ids.length ? ids[i] : i))));

@@ -1,0 +1,168 @@
+// References of USD prims to prims of the same file, of other files of a package and of files dropped together, prims that
+// inherit from others, and sublayers: their specs are put in place of the reference, below what the prim itself says.
+
+import { targetsOf } from "./usd_stage.js";
+
+const ARCS = ["references", "payload", "inheritPaths", "specializes"];
+export const ELSEWHERE = [...ARCS, "subLayers"];
+
+// Methods for USDComposer. `kept`: its own ones. found.layer(file): the specs of a file; null for none.
+export const referenceMethods = (kept, found) => ({
+  _buildIndexes() {
+    const layerOf = (file) => this.assets[file]?.specsByPath ?? found.layer(file);
+    const layer = new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge.bind(found));
+    layer.isRoot = true;
+    layer.follow();
+    if (layer.below) layer.choose("");
+    kept._buildIndexes.call(this);
+  },
+});
+
+class Layer {
+  // layers: those that were read, by file. charge(place, count) refuses what is too much.
+  constructor(specs, folder, layerOf, layers, charge) {
+    Object.assign(this, { specs, folder, layerOf, layers, charge });
+    this.below = null; // path -> those of its properties and children
+    this.settled = new Map(); // path -> whether its references are followed; false while they are
+    this.isRoot = false; // the layer that chooses variants: it may choose others than those that it refers to
+  }
+
+  follow() {
+    const { fields } = this.specs["/"] ?? { fields: {} };
+    const refers = Object.keys(this.specs).filter((path) => path !== "/" && arcsOf(this.specs[path].fields, path).length);
+    const varies = this.isRoot && Object.values(this.specs).some((spec) => spec.fields?.variantSetChildren);
+    if (!refers.length && !fields.subLayers && !varies) return this;
+    this.below = new Map();
+    for (const path in this.specs) this.note(path);
+    for (const path of refers) this.settle(path);
+    for (const file of filesOf(fields.subLayers)) {
+      const layer = this.layer(file);
+      if (!layer) continue;
+      fields.subLayers = [fields.subLayers].flat().map((one) => String(one).replaceAll(file, "")).filter((one) => /[^@\s,[\]]/.test(one));
+      for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path, true);
+      fields.primChildren = [...new Set([...(layer.specs["/"].fields.primChildren ?? []), ...(fields.primChildren ?? [])])];
+    }
+    if (fields.subLayers?.length === 0) delete fields.subLayers;
+    return this;
+  }
+
+  // Another file, with its references followed; null for none.
+  layer(file) {
+    const path = this.resolved(file);
+    if (!this.layers.has(path)) {
+      this.layers.set(path, null);
+      const specs = this.layerOf(path);
+      const made = specs && new Layer(specs, path.slice(0, Math.max(path.lastIndexOf("/"), 0)), this.layerOf, this.layers, this.charge).follow();
+      if (made && !made.below) {
+        made.below = new Map();
+        for (const one in specs) made.note(one);
+      }
+      this.layers.set(path, made);
+    }
+    return this.layers.get(path);
+  }
+
+  resolved(file) {
+    const parts = [];
+    for (const part of `${this.folder}/${file}`.split("/")) {
+      if (part === "..") parts.pop();
+      else if (part && part !== ".") parts.push(part);
+    }
+    return parts.join("/");
+  }
+
+  note(path) {
+    const above = path.slice(0, Math.max(path.lastIndexOf("/"), path.lastIndexOf("."), 0));
+    if (!this.below.has(above)) this.below.set(above, []);
+    this.below.get(above).push(path);
+  }
+
+  settle(path) {
+    if (this.settled.get(path) === false) throw new Error(`${path}: refers to itself; repair its references`);
+    if (this.settled.has(path)) return;
+    this.settled.set(path, false);
+    const { fields } = this.specs[path];
+    const arcs = arcsOf(fields, path);
+    if (this.isRoot && arcs.length) this.takeVariants(path); // they are stronger
+    for (const { file, prim, text } of arcs) {
+      const layer = file ? this.layer(file) : this;
+      const target = prim || `/${layer?.specs["/"]?.fields.defaultPrim ?? ""}`;
+      if (!layer?.specs[target] || target === "/") continue;
+      if (layer === this && `${path}/`.startsWith(`${target}/`)) throw new Error(`${path}: refers to itself; repair its references`);
+      if (layer === this) this.settleAll(target);
+      for (const name of ARCS) if (fields[name]) fields[name] = [fields[name]].flat().map((one) => without(one, text)).filter(Boolean);
+      this.copy(layer, target, path, target, path, layer === this);
+    }
+    for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
+    this.settled.set(path, true);
+  }
+
+  // Choose the variants of all prims below a path.
+  choose(path) {
+    if (this.specs[path]) this.takeVariants(path);
+    for (const part of this.below.get(path) ?? []) if (/^\/?[^/.{]+$/.test(part.slice(path.length))) this.choose(part);
+  }
+
+  // The chosen variants of a prim say what it does not say itself. They may bring more sets of variants.
+  takeVariants(path) {
+    const { fields } = this.specs[path];
+    const taken = new Set();
+    const chosen = (set) => (fields.variantSelection ?? {})[set];
+    for (let set; (set = fields.variantSetChildren?.find((one) => !taken.has(one))); taken.add(set)) {
+      const variant = `${path}/{${set}=${chosen(set)}}`;
+      if (!this.specs[variant]) continue;
+      this.settleAll(variant);
+      this.copy(this, variant, path, variant, path, true);
+    }
+    delete fields.variantSetChildren;
+  }
+
+  settleAll(path) {
+    if (this.specs[path]?.fields) this.settle(path);
+    for (const part of this.below.get(path) ?? []) if (!part.slice(path.length).startsWith(".")) this.settleAll(part);
+  }
+
+  // What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
+  // What points elsewhere stays if `keeps`; else it points to what is not there.
+  copy(layer, from, to, source, place, keeps) {
+    this.charge(to, 0.25);
+    const theirs = layer.specs[from];
+    const fields = { ...theirs.fields };
+    const isInside = (path) => path === source || path.startsWith(`${source}/`) || path.startsWith(`${source}.`);
+    for (const name of ["targetPaths", "connectionPaths"]) {
+      if (!fields[name]) continue;
+      const targets = targetsOf(fields[name], from).filter((path) => keeps || isInside(path));
+      fields[name] = targets.map((path) => (isInside(path) ? place + path.slice(source.length) : path));
+    }
+    if (layer !== this && fields.typeName === "asset" && typeof fields.default === "string") fields.default = layer.resolved(fields.default.replace(/^@+|@+$/g, ""));
+    const own = this.specs[to];
+    if (own) {
+      for (const name of ARCS) delete fields[name];
+      const specifier = own.fields.specifier === 1 ? fields.specifier : own.fields.specifier;
+      for (const name of ["primChildren", "variantSetChildren", "apiSchemas"])
+        if (fields[name] && own.fields[name]) own.fields[name] = [...new Set([...fields[name], ...own.fields[name]])];
+      if (fields.variantSelection) own.fields.variantSelection = { ...fields.variantSelection, ...own.fields.variantSelection };
+      Object.assign(own.fields, { ...fields, ...own.fields });
+      if (specifier !== undefined) own.fields.specifier = specifier;
+      own.fields.typeName ||= fields.typeName;
+    } else {
+      this.note(to);
+      this.specs[to] = { specType: theirs.specType, fields };
+    }
+    for (const part of [...(layer.below.get(from) ?? [])]) this.copy(layer, part, to + part.slice(from.length), source, place, keeps);
+  }
+}
+
+// What a prim refers to: {file, prim, text}; either of the first two may be empty.
+function arcsOf(fields, path) {
+  return ARCS.flatMap((name) => [(fields ?? {})[name] ?? []].flat().flatMap((one) => {
+    if (typeof one !== "string") return [];
+    if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
+    return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({ file, prim: there ?? (here ? targetsOf(here, path)[0] ?? "" : ""), text }));
+  }));
+}
+
+const filesOf = (list) => [list ?? []].flat().flatMap((one) => (String(one).includes("@") ? Array.from(String(one).matchAll(/@([^@]+)@/g), (match) => match[1]) : [String(one)]));
+
+// A field without one of its references; empty where none is left.
+const without = (one, text) => (typeof one !== "string" || one === text ? "" : one.replace(text, "").replace(/^[\s,[\]]*$/, ""));
