@@ -1,4 +1,4 @@
-"""Lint of every configuration, board and wrapper: ``verilator --lint-only -Wall`` without a warning: ``python rtl/lint.py``.
+"""Lint of every configuration, board and wrapper: ``python rtl/lint.py``. No warning of ``verilator --lint-only -Wall``.
 
 Needs the Python package verilator. Waivers stand in the files lint.vlt, each below its reason.
 """
