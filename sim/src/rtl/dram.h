@@ -30,7 +30,7 @@ public:
         unsigned rresp = 0;
     };
 
-    // The first word is at a multiple of 4; before it, to the start of its line, are zeros. The words stay the caller's.
+    // The first word is at a multiple of 4; before it, in its line, are zeros. The words stay the caller's.
     void map(std::span<const uint32_t> words, uint32_t address = base + 28) {
         words_ = words;
         address_ = address;
