@@ -122,6 +122,16 @@ def test_what_is_read_back_comes_from_the_memory(monkeypatch, core):
     assert device.read_memory(44, 3).tolist() == [104, 7, 106]
 
 
+def test_level_of_detail_of_an_earlier_program_is_off(monkeypatch, core):
+    install(monkeypatch, core)
+    core.write(REGISTERS["lod"][0], 1 << 31 | 1 << 10)
+    device = open_pynq("voxrt.bit")
+    assert device.registers()["lod"] == 0
+    scene = boxes(2)
+    SceneMemory(device).load(scene, ignore)
+    assert (device.frame(view_of(scene)).colour == expected(scene, view_of(scene))).all()
+
+
 def test_it_takes_most_of_what_is_free_and_leaves_room_for_a_frame(monkeypatch, core):
     free = 24 << 20
     vdma = install(monkeypatch, core, contiguous=free)
