@@ -15,6 +15,7 @@ import numpy as np
 
 from .device import Counters, Frame, Identity
 from .errors import DeviceError, FrameDropped, TooSlow
+from .external_memory import ExternalMemory
 from .register_writes import (
     PROBLEMS,
     camera_writes,
@@ -97,7 +98,8 @@ class Video(Protocol):
 class RegisterDevice:
     """The driver of the registers in ``rtl/registers.rdl``; :class:`~.device.Device` documents the methods.
 
-    Opening writes ``root``, ``depth`` and word 0 of the memory: until a scene is selected, the world is empty.
+    Opening writes ``root``, ``depth`` and word 0 of the memory: until a scene is selected, the world is empty. Where
+    the memory is external, it also writes ``memory_base``, and a frame after a write begins with empty caches.
 
     Parameters
     ----------
@@ -106,7 +108,7 @@ class RegisterDevice:
     registers
         The register block.
     memory
-        The scene memory.
+        The scene memory; an :class:`~.external_memory.ExternalMemory` where it is external.
     video
         The receiver of the frames.
     pause
@@ -117,7 +119,8 @@ class RegisterDevice:
     Raises
     ------
     DeviceError
-        The identity register is not the ray tracer's, or its version is not supported.
+        The identity register is not the ray tracer's, its version is not supported, or `memory` is not what its memory
+        is.
     """
 
     def __init__(
@@ -135,6 +138,8 @@ class RegisterDevice:
         self._video = video
         self._pause = pause
         self._stopped = threading.Event()
+        self._external = memory if isinstance(memory, ExternalMemory) else None
+        self._caches_stale = False
         if self._read("identity") != _IDENTITY:
             raise DeviceError(f"{name}: the ray tracer does not answer; load the bitstream of voxrt")
         version = self._fields("version")
@@ -146,6 +151,11 @@ class RegisterDevice:
                 "faces; load the bitstream of this release"
             )
         configuration = self._fields("configuration")
+        if bool(configuration["cached"]) != (self._external is not None):
+            place = "in external memory" if configuration["cached"] else "on the chip"
+            raise DeviceError(
+                f"{name}: the ray tracer has its octree {place}, and the block design does not; use rtl/vivado"
+            )
         words = min(1 + (8 << configuration["block_bits"]), len(memory))
         self.identity = Identity(
             name=f"{name}, {configuration['lanes']} lane{'' if configuration['lanes'] == 1 else 's'}",
@@ -160,6 +170,10 @@ class RegisterDevice:
         )
         # The registers and the memory may still hold the scene of an earlier program: nothing of it may be traced.
         self.hold()
+        if self._external is not None:
+            self._write("memory_base", self._external.base)
+        if self._fields("features")["lod"]:
+            self._write("lod", 0)
         self.write_memory(0, np.array([EMPTY_LEAF], dtype=np.uint32))
         self.select_scene(0, 1)
 
@@ -177,6 +191,7 @@ class RegisterDevice:
         if self._stopped.is_set():
             raise DeviceError("the device was stopped")
         self._memory[address : address + len(words)] = words
+        self._caches_stale = self._external is not None
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
@@ -203,6 +218,9 @@ class RegisterDevice:
         red, green, blue = view.background
         self._registers.write(MATERIALS, red << 16 | green << 8 | blue)
         self._write("status", self._bits("status", "frame_done", *PROBLEMS))  # writing 1 clears
+        if self._caches_stale:
+            self._write("control", self._bits("control", "hold", "flush"))
+            self._caches_stale = False
         self._video.expect(view.size)
         self._write("control", self._bits("control", "start"))
         self._wait("frame_done", 1, "the frame does not end", seconds, drop)
@@ -227,6 +245,8 @@ class RegisterDevice:
         """Let no further frame start."""
         self.hold()
         self._video.close()
+        if self._external is not None:
+            self._external.close()
 
     def _wait(
         self, field: str, value: int, problem: str, seconds: float = math.inf, drop: FrameDrop | None = None

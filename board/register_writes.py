@@ -19,7 +19,11 @@ _PROBLEMS = {
     "bad_pointer": "a bad pointer",
     "step_limit": "an octree deeper than its depth",
 }
-PROBLEMS = tuple(_PROBLEMS)
+_BUS_PROBLEMS = {
+    "bus_error": "that the bus to its octree refused a read",
+    "bus_timeout": "that the bus to its octree did not answer",
+}
+PROBLEMS = (*_PROBLEMS, *_BUS_PROBLEMS)
 """Fields of `status` that report a wrong frame."""
 
 Writes = list[tuple[int, list[int]]]
@@ -50,7 +54,16 @@ def decode_fields(name: str, value: int) -> dict[str, int]:
 
 
 def tell_problems(status: Mapping[str, int]) -> str:
-    """Say what `status` reports of a frame; empty if it was right."""
+    """Say what `status` reports of a frame; empty if it was right.
+
+    Examples
+    --------
+    >>> tell_problems(decode_fields("status", 1 << 12))
+    'the ray tracer reports that the bus to its octree did not answer; open it again, and check the block design'
+    """
+    found = [problem for field, problem in _BUS_PROBLEMS.items() if status[field]]
+    if found:
+        return f"the ray tracer reports {' and '.join(found)}; open it again, and check the block design"
     found = [problem for field, problem in _PROBLEMS.items() if status[field]]
     if not found:
         return ""

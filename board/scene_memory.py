@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from .device import Device
     from .scene import Scene
 
-_BURST = 4096  # words per step
+_BURST = 4096  # words per step, at least
+_STEPS = 256  # to write a scene, at most: a frame may come between two
 
 
 class Progress(Protocol):
@@ -157,13 +158,14 @@ class SceneMemory:
 
     def _transfer(self, scene: Scene, base: int, progress: Progress) -> Iterator[None]:
         words = relocate(scene.words, base)
-        for start in range(0, len(words), _BURST):
+        burst = max(_BURST, -(-len(words) // _STEPS))
+        for start in range(0, len(words), burst):
             progress("write", start, len(words))
-            self._device.write_memory(base + start, words[start : start + _BURST])
+            self._device.write_memory(base + start, words[start : start + burst])
             yield
-        for start in range(0, len(words), _BURST):
+        for start in range(0, len(words), burst):
             progress("verify", start, len(words))
-            expected = words[start : start + _BURST]
+            expected = words[start : start + burst]
             found = self._device.read_memory(base + start, len(expected))
             differing = np.flatnonzero(found != expected)
             if len(differing):

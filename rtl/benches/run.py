@@ -40,6 +40,7 @@ class Build(NamedTuple):
     coverage: tuple[Path, ...] = ()  # Modules to bind.
     narrow: bool = False  # Multipliers of 18 x 18 bits.
     repeats: bool = False  # Another form of a core that other builds drive with the same benches, for a minute.
+    wrapper: tuple[Path, ...] = ()  # The file of the top, if it is none of the core's.
 
 
 BUILDS = {
@@ -131,6 +132,20 @@ BUILDS = {
         },
         ("bench_cached_core",),
     ),
+    "zynq_cached": Build(
+        "voxrt_zynq_cached",
+        {
+            "Lanes": 2,
+            "MaxDepth": 6,
+            "PositionBits": 13,
+            "BlockBits": 8,
+            "L1SetBits": 1,
+            "L2SetBits": 1,
+        },
+        ("bench_cached_core",),
+        repeats=True,
+        wrapper=(RTL / "vivado" / "voxrt_zynq_cached.v",),
+    ),
     "strip_buffer": Build("voxrt_strip_buffer", {"Lanes": 16, "Width": 24}, ("bench_strip_buffer",)),
     "traversal": Build(
         CORE,
@@ -149,7 +164,7 @@ def run(name: str) -> None:
     share_runtime(folder)
     runner = get_runner("verilator")
     runner.build(
-        sources=[*sources, *build.coverage],
+        sources=[*sources, *build.coverage, *build.wrapper],
         hdl_toplevel=build.top,
         parameters=build.parameters,
         defines={"VOXRT_NARROW_MULTIPLIERS": 1} if build.narrow else {},

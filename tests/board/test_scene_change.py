@@ -23,6 +23,7 @@ SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
 HOLD = 1 << REGISTERS["control"][1]["hold"][0]
 START = 1 << REGISTERS["control"][1]["start"][0]
+FLUSH = 1 << REGISTERS["control"][1]["flush"][0]
 
 
 class Recorder:
@@ -84,12 +85,12 @@ def ignore(_stage, _done, _total):
     pass
 
 
-@pytest.fixture(params=["simulated core", "PYNQ"])
+@pytest.fixture(params=["simulated core", "PYNQ", "PYNQ, external memory"])
 def open_device(request, monkeypatch):
     """A function that opens the same hardware, again at every call."""
     pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
-    core = Core()
-    if request.param == "PYNQ":
+    core = Core("cached1" if request.param == "PYNQ, external memory" else "tiny")
+    if request.param != "simulated core":
         install(monkeypatch, core)
         return lambda: open_pynq("voxrt.bit")
 
@@ -215,7 +216,8 @@ def test_scenes_that_do_not_fit_together(open_device):
         view = view_of(scene)
         recorder.writes.clear()
         assert (device.frame(view).colour == expected(scene, view)).all()
-        assert [value for name, value in recorder.writes if name == "control"] == [START]
+        flushes = [HOLD | FLUSH] if device._fields("configuration")["cached"] else []
+        assert [value for name, value in recorder.writes if name == "control"] == [*flushes, START]
         assert device.registers()["root"] == 0
 
 

@@ -58,6 +58,16 @@ def test_two_scenes_that_fit_are_never_overwritten(sizes, blocks):
         present = new
 
 
+def test_the_steps_of_a_scene_of_millions_of_words_are_longer():
+    """Between two steps there may be a frame."""
+    device = FakeDevice(capacity=1 << 23)
+    memory = SceneMemory(device)
+    memory.load(scene(), ignore)
+    new = wide_scene("new", 400_000)
+    assert len(list(memory.load_in_steps(new, ignore))) == 2 * 256
+    assert (device.memory[device.root :][: len(new.words)] == relocate(new.words, device.root)).all()
+
+
 def test_frames_between_the_steps_of_a_large_scene():
     device = FakeDevice(capacity=40000)
     memory = SceneMemory(device)

@@ -4,6 +4,9 @@ Names and addresses are those of rtl/vivado/build.tcl. Registers, scene memory a
 VDMA is a model of the write channel of PG020. It checks the programming sequence of that document, and that lines and
 addresses are whole words of a 64-bit bus. It reports a frame by its status bit. Every access advances the clock of the
 core.
+
+A buffer of `allocate` is what the processor's caches hold of it, beside what is in the memory: `flush` and `invalidate`
+copy one to the other. VDMA and core see the memory alone.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import numpy as np
 
 BASE = {"core": 0x43C00000, "memory": 0x42000000, "vdma": 0x43000000}
 CLOCKS_PER_ACCESS = 2000
+PAGE = 4096
 FRAME_DONE, LINE_TOO_EARLY = 1 << 12, 1 << 8
 
 
@@ -69,7 +73,7 @@ class Vdma:
         """Advance the core; write a complete frame to memory, and wait for the next."""
         if self.core.hangs or not self.core.run(CLOCKS_PER_ACCESS) or not self.waits:
             return
-        buffer = self.memory[self.buffers[0]].reshape(-1)
+        buffer = self.memory[self.buffers[0]].dram
         for row, line in enumerate(self.core.frame()):
             buffer[row * self.stride : row * self.stride + self.row_bytes] = line.reshape(-1)
         self.status |= FRAME_DONE | self.core.vdma_errors
@@ -86,7 +90,7 @@ class Core:
         self.hangs = False  # its clock stops
         self.vdma_errors = 0
         self.identity = None  # that of other hardware
-        for name in ("expect", "run", "frame", "read_memory", "write_memory", "memory_words"):
+        for name in ("expect", "run", "frame", "read_memory", "write_memory", "memory_words", "cached", "map_external"):
             setattr(self, name, getattr(self._core, name))
 
     def read(self, offset):
@@ -142,11 +146,13 @@ class Mmio:
 
 
 class Board:
-    """The parts that an overlay finds, and the memory that the VDMA can write."""
+    """The parts that an overlay finds, and the contiguous memory that the VDMA can write and a cached core can read."""
 
-    def __init__(self, core, memory_bytes):
+    def __init__(self, core, memory_bytes, contiguous, first_address):
         self.core, self.vdma = core, Vdma(core)
         self.memory_bytes = memory_bytes
+        self.free = contiguous  # bytes
+        self.next_address = first_address
 
     def overlay(self, bitfile_name):
         if not bitfile_name.endswith(".bit"):
@@ -154,27 +160,50 @@ class Board:
         entry = {name: {"phys_addr": base, "addr_range": 0x10000} for name, base in BASE.items()}
         entry["memory"]["addr_range"] = self.memory_bytes
         memories = {"memory": entry.pop("memory")}
+        if self.core.cached:
+            memories.clear()
         return types.SimpleNamespace(ip_dict=entry, mem_dict=memories)
 
     def allocate(self, shape, dtype="u4"):
+        size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+        if size > self.free:
+            raise RuntimeError("Failed to allocate Memory!")
+        self.free -= size
         buffer = np.full(shape, 0xA5, dtype=dtype).view(PynqBuffer)
-        buffer.physical_address = 0x10000000 + 0x1000 * len(self.vdma.memory)
-        buffer.memory = self.vdma.memory
-        buffer.memory[buffer.physical_address] = buffer
+        buffer.dram = np.full(size, 0x5A, dtype=np.uint8)
+        buffer.physical_address = self.next_address
+        self.next_address += -(-size // PAGE) * PAGE
+        buffer.board = self
+        self.vdma.memory[buffer.physical_address] = buffer
+        if self.core.cached and buffer.dtype == np.uint32 and self.next_address < 1 << 32:
+            self.core.map_external(buffer.physical_address, buffer.dram.view(np.uint32))
         return buffer
 
 
 class PynqBuffer(np.ndarray):
+    def __array_finalize__(self, whole):
+        """A part of a buffer has its part of the memory."""
+        if isinstance(whole, PynqBuffer) and hasattr(whole, "dram"):
+            start = self.__array_interface__["data"][0] - whole.__array_interface__["data"][0]
+            self.dram = whole.dram[start : start + self.nbytes]
+
+    def flush(self):
+        self.dram[:] = self.reshape(-1).view(np.uint8)
+
     def invalidate(self):
-        """Do nothing: there is no cache."""
+        self.reshape(-1).view(np.uint8)[:] = self.dram
 
     def freebuffer(self):
-        del self.memory[self.physical_address]
+        del self.board.vdma.memory[self.physical_address]
+        self.board.free += self.nbytes
 
 
-def install(monkeypatch, core, memory_bytes=0x10000):
-    """Make `import pynq` find a fake with this core in its overlay; return its VDMA."""
-    board = Board(core, memory_bytes)
+def install(monkeypatch, core, memory_bytes=0x10000, contiguous=1 << 24, first_address=0x10000000):
+    """Make `import pynq` find a fake with this core in its overlay; return its VDMA.
+
+    `memory_bytes` are those of a memory on the chip; `allocate` can give `contiguous` bytes from `first_address` on.
+    """
+    board = Board(core, memory_bytes, contiguous, first_address)
     module = types.SimpleNamespace(Overlay=board.overlay, MMIO=partial(Mmio, board), allocate=board.allocate)
     monkeypatch.setitem(sys.modules, "pynq", module)
     return board.vdma

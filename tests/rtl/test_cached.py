@@ -121,6 +121,25 @@ def test_the_memory_is_mapped_and_has_no_port(config):
         design.read_back(1)
 
 
+@pytest.mark.skipif("cached1" not in rtl.CORES, reason="this build has no core cached1")
+def test_the_whole_core_has_its_memory_at_an_address():
+    core = rtl.Core("cached1")
+    words = np.zeros(16, np.uint32)
+    assert core.cached
+    core.map_external(0x2000_001C, words)
+    for address, wrong in ((2, words), (0xFFFF_FFE0, words)):
+        with pytest.raises(ValueError, match="words from byte"):
+            core.map_external(address, wrong)
+    with pytest.raises(ValueError, match="no memory port"):
+        core.read_memory(0, 1)
+    with pytest.raises(ValueError, match="no memory port"):
+        core.write_memory(0, words)
+    on_chip = rtl.Core("tiny")
+    assert not on_chip.cached
+    with pytest.raises(ValueError, match="not external"):
+        on_chip.map_external(0, words)
+
+
 def test_what_is_no_external_memory_is_refused():
     for wrong in ({"latency": -1}, {"interval": 0}, {"jitter": 1_000_001}, {"seed": 1 << 32}):
         with pytest.raises(ValueError, match=next(iter(wrong))):

@@ -141,7 +141,9 @@ def test_every_width_of_the_stream():
 
 def test_an_unknown_configuration():
     rtl_device()
-    with pytest.raises(NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are lit, tiny"):
+    with pytest.raises(
+        NoSuchConfigurationError, match="no ray tracer configuration 'huge'; there are cached1, lit, tiny"
+    ):
         open_rtl("huge")
 
 

@@ -1,5 +1,6 @@
-// A voxrt_core with a board around it: a master on its AXI4-Lite registers, a controller on its memory port,
-// and a sink for its AXI4-Stream video. Time passes by clocks, and only in these calls.
+// A voxrt_core with a board around it: a master on its AXI4-Lite registers, a controller on its memory port or an
+// external memory on its AXI4 read ports, and a sink for its AXI4-Stream video. Time passes by clocks, and only in
+// these calls.
 #pragma once
 
 #include "design.h"
@@ -16,7 +17,11 @@ public:
     virtual uint32_t read(uint32_t address) = 0;
     virtual void write(uint32_t address, uint32_t value) = 0;
 
-    // Word addresses, a word a clock; all words are in the memory, which the caller checks.
+    // Of a cached core alone: the words of its external memory from byte `address` on, a multiple of 4. They stay the
+    // caller's, who may change them at any time between calls. There is nothing elsewhere: such reads answer DECERR.
+    virtual void map_external(uint32_t address, std::span<const uint32_t> words) = 0;
+
+    // Of a core that is not cached. Word addresses, a word a clock; all are in the memory, which the caller checks.
     virtual void read_memory(std::size_t address, std::span<uint32_t> words) = 0;
     virtual void write_memory(std::size_t address, std::span<const uint32_t> words) = 0;
 

@@ -4,12 +4,18 @@
 //   Core(config)              one instance, out of reset; one call at a time (RuntimeError). Its clock ticks in these
 //                             calls alone
 //     .memory_words           how many words its octree memory holds
+//     .cached                 whether that is an external memory, behind caches
 //     .read(address)          a register, by AXI4-Lite; byte address, a multiple of 4 below 2048
 //     .write(address, value)  the same
 //     .read_memory(address, count)
-//                             uint32 (count,): words from word `address` on, by the memory port, one a clock
+//                             uint32 (count,): words from word `address` on, by the memory port, one a clock; not of
+//                             a cached core
 //     .write_memory(address, words)
 //                             the same
+//     .map_external(address, words)
+//                             of a cached core: its external memory has these words, uint32 (N,), from byte `address`
+//                             on, a multiple of 4, and answers DECERR elsewhere. They are not copied: what is written
+//                             to the array later is read by the core
 //     .expect(width, height, *, stall_seed=0)
 //                             take the video stream until a frame is complete. Without this the stream waits. With a
 //                             seed, the consumer stalls in a pattern that depends on it
@@ -70,6 +76,8 @@ public:
 
     std::size_t memory_words() const { return core_->limits().memory_words(); }
 
+    bool cached() const { return core_->limits().form == MemoryForm::cached; }
+
     uint32_t read(long address) {
         check_register(address);
         OneCall call(busy_);
@@ -99,6 +107,17 @@ public:
         OneCall call(busy_);
         nb::gil_scoped_release released;
         core_->write_memory(address, {words.data(), words.size()});
+    }
+
+    void map_external(uint32_t address, const Words& words) {
+        if (!cached())
+            throw std::invalid_argument("the memory of this core is not external");
+        if (address % 4 != 0 || words.size() > (0x1'0000'0000 - address) / 4)
+            throw std::invalid_argument(std::to_string(words.size()) + " words from byte " + std::to_string(address) +
+                                        " on are not whole words of 32-bit addresses");
+        OneCall call(busy_);
+        external_ = words;
+        core_->map_external(address, {words.data(), words.size()});
     }
 
     void expect(long width, long height, uint32_t stall_seed) {
@@ -142,11 +161,14 @@ private:
     }
 
     void check_words(std::size_t address, std::size_t count) const {
+        if (cached())
+            throw std::invalid_argument("a core with an external memory has no memory port");
         if (address > memory_words() || count > memory_words() - address)
             throw std::invalid_argument(std::to_string(count) + " words from word " + std::to_string(address) +
                                         " on are not in a memory of " + std::to_string(memory_words()));
     }
 
+    Words external_; // Kept as long as it is mapped.
     std::unique_ptr<Core> core_;
     std::size_t width_ = 0, height_ = 0;
     bool busy_ = false;
@@ -162,10 +184,12 @@ void bind_core(nb::module_& m) {
     nb::class_<CheckedCore>(m, "Core")
         .def(nb::init<const std::string&>(), "config"_a)
         .def_prop_ro("memory_words", &CheckedCore::memory_words)
+        .def_prop_ro("cached", &CheckedCore::cached)
         .def("read", &CheckedCore::read, "address"_a)
         .def("write", &CheckedCore::write, "address"_a, "value"_a)
         .def("read_memory", &CheckedCore::read_memory, "address"_a, "count"_a)
         .def("write_memory", &CheckedCore::write_memory, "address"_a, "words"_a)
+        .def("map_external", &CheckedCore::map_external, "address"_a, "words"_a)
         .def("expect", &CheckedCore::expect, "width"_a, "height"_a, nb::kw_only(), "stall_seed"_a = 0)
         .def("run", &CheckedCore::run, "clocks"_a)
         .def("frame", &CheckedCore::frame);

@@ -30,8 +30,11 @@ public:
         unsigned rresp = 0;
     };
 
-    // Word 0 is at base + 28; before it are zeros. The words stay the caller's.
-    void map(std::span<const uint32_t> words) { words_ = words; }
+    // The first word is at a multiple of 4; before it, in its line, are zeros. The words stay the caller's.
+    void map(std::span<const uint32_t> words, uint32_t address = base + 28) {
+        words_ = words;
+        address_ = address;
+    }
 
     void set_timing(const DramTiming& timing) {
         timing_ = timing;
@@ -48,7 +51,7 @@ public:
         response.rvalid = !lines.empty() && lines.front().ready <= now_;
         if (response.rvalid) {
             const uint32_t byte = lines.front().address + 8 * beats_[port];
-            response.rresp = byte - base < 28 + 4 * words_.size() ? 0 : 3;
+            response.rresp = byte - (address_ & ~31u) < (address_ & 31) + 4 * words_.size() ? 0 : 3;
             response.rdata = uint64_t{word(byte + 4)} << 32 | word(byte);
         }
         return response;
@@ -81,13 +84,14 @@ private:
     };
 
     uint32_t word(uint32_t byte) const {
-        const uint32_t number = (byte - base - 28) / 4;
+        const uint32_t number = (byte - address_) / 4;
         return number < words_.size() ? words_[number] : 0;
     }
 
     uint32_t next_random() { return random_ = random_ * 1664525 + 1013904223, random_ >> 8; }
 
     std::span<const uint32_t> words_;
+    uint32_t address_ = base + 28;
     DramTiming timing_;
     StallPattern stalls_[ports]{StallPattern(0), StallPattern(0)};
     Response responses_[ports];

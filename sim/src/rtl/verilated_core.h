@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core.h"
+#include "dram.h"
 #include "stall_pattern.h"
 
 #include <verilated.h>
@@ -92,6 +93,8 @@ public:
         check(response, address);
     }
 
+    void map_external(uint32_t address, std::span<const uint32_t> words) override { dram_.map(words, address); }
+
     void read_memory(std::size_t address, std::span<uint32_t> words) override {
         enter();
         const std::size_t latency = limits_.form == MemoryForm::copies ? 3 : 6; // voxrt_pkg::access_clocks
@@ -146,9 +149,17 @@ private:
     // What `sample` sees stood on the pins when the clock rose.
     template <class Sample> void clock(Sample sample) {
         model_->m_axis_tready = sink_.open() && !stalls_.next();
+        const bool cached = limits_.form == MemoryForm::cached;
+        if (cached)
+            drive_bus();
         model_->clk_i = 0;
         model_->eval();
         sample();
+        if (cached) {
+            dram_.accept(0, model_->m_axi0_arvalid, model_->m_axi0_araddr, model_->m_axi0_rready);
+            dram_.accept(1, model_->m_axi1_arvalid, model_->m_axi1_araddr, model_->m_axi1_rready);
+            dram_.tick();
+        }
         if (model_->m_axis_tvalid && model_->m_axis_tready)
             sink_.accept(model_->m_axis_tdata, model_->m_axis_tkeep, model_->m_axis_tuser, model_->m_axis_tlast);
         model_->clk_i = 1;
@@ -157,6 +168,20 @@ private:
 
     void clock() {
         clock([] {});
+    }
+
+    // Without rlast, which the core does not read.
+    void drive_bus() {
+        const Dram::Response& first = dram_.drive(0);
+        model_->m_axi0_arready = first.arready;
+        model_->m_axi0_rvalid = first.rvalid;
+        model_->m_axi0_rdata = first.rdata;
+        model_->m_axi0_rresp = static_cast<uint8_t>(first.rresp);
+        const Dram::Response& second = dram_.drive(1);
+        model_->m_axi1_arready = second.arready;
+        model_->m_axi1_rvalid = second.rvalid;
+        model_->m_axi1_rdata = second.rdata;
+        model_->m_axi1_rresp = static_cast<uint8_t>(second.rresp);
     }
 
     template <class Condition> void clock_until(Condition condition, uint32_t address) {
@@ -177,6 +202,7 @@ private:
     std::unique_ptr<Model> model_;
     FrameSink sink_;
     StallPattern stalls_{0};
+    Dram dram_;
 };
 
 } // namespace voxrt::rtl
