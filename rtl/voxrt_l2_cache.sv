@@ -167,6 +167,9 @@ module voxrt_l2_cache
   logic [Pipes-1:0] hit, misses, missed;
   line_t            line3[Pipes];
 
+  // Use: bit 0 is the half used last, bits 1 and 2 the way used last of each half. All orders are legal: no reset.
+  logic [2:0] used_q[2**SetBits];
+
   always_comb begin
     decided = '0;
     for (int unsigned p = 0; p < Pipes; p++) begin
@@ -197,8 +200,6 @@ module voxrt_l2_cache
     end
   end
 
-  // Use: bit 0 is the half used last, bits 1 and 2 the way used last of each half. All orders are legal: no reset.
-  logic [2:0] used_q[2**SetBits];
   logic       second_first_q, counts_second;
   logic [SetBits-1:0] used_set;
   logic [1:0] used_way;

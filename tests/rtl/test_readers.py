@@ -16,8 +16,8 @@ import pytest
 
 from voxrt.rtl.configurations import RTL, TOP, list_sources, read_configurations
 
-SOURCE_CONFIGURATIONS = ("lit", "banked")
-PLAIN_CONFIGURATIONS = ("tiny", "lit")
+SOURCE_CONFIGURATIONS = ("lit", "banked", "cached1")
+PLAIN_CONFIGURATIONS = ("tiny", "lit", "cached1")
 ROW = re.compile(r"^\| (\S.*?) \| ([\d.]+)(?: \(.*?\))? \| (yes|no) \| (yes|no) \|", re.MULTILINE)
 ROWS = {(tool, version): answers for tool, version, *answers in ROW.findall((RTL / "README.md").read_text())}
 
