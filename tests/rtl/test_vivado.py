@@ -17,7 +17,7 @@ PORT = re.compile(r"^ +(input|output) +(?:logic|wire) +(?:\[ ?(\d+):0\] +)?(\w+)
 CONNECTION = re.compile(r"^ +\.(\w+) *\((.*)\)", re.MULTILINE)
 
 # Every command of Vivado says what it was called with, in a line, and gives its last argument.
-STAND_IN = r"""
+FAKE = r"""
 proc unknown args {{puts [string map {{\n " "}} [join $args |]]; return [lindex $args end]}}
 set argv {{{arguments}}}
 source {{{script}}}
@@ -73,7 +73,7 @@ def run_script(tmp_path, *arguments):
     if shutil.which("tclsh") is None:
         pytest.skip("there is no tclsh: apt install tcl")
     main = tmp_path / "main.tcl"
-    main.write_text(STAND_IN.format(arguments=" ".join(arguments), script=VIVADO / "build.tcl"))
+    main.write_text(FAKE.format(arguments=" ".join(arguments), script=VIVADO / "build.tcl"))
     return subprocess.run(["tclsh", main], capture_output=True, text=True, check=False)
 
 
