@@ -19,6 +19,7 @@ from voxrt.voxelize.formats import scene_message
 from voxrt.voxelize.formats.usd import isolated
 from voxrt.voxelize.formats.usd.isolated import read_isolated
 from voxrt.voxelize.formats.usd.limits import Limits
+from voxrt.voxelize.warning_log import WarningLog
 
 SMALL = Limits(memory=1 << 30, most_memory=1 << 30, seconds=4)
 
@@ -225,3 +226,15 @@ def test_ctrl_c_ends_the_child_and_leaves_nothing(tmp_path):
         time.sleep(0.02)
     assert not left
     assert not list(temporary.iterdir())
+
+
+def test_a_value_without_a_type_in_python_is_one_line(tmp_path):
+    pytest.importorskip("pxr.Usd")
+    from voxrt.voxelize.formats.usd.diagnostics import caught
+
+    unknown = "No to_python (by-value) converter found for C++ type: std::vector<SdfLayerOffset>"
+    belongs = "a value of a type that does not belong there"
+    with pytest.raises(AssetError, match=belongs), caught(tmp_path / "a.usdc", WarningLog()):
+        raise TypeError(unknown)
+    with pytest.raises(TypeError, match="ours"), caught(tmp_path / "a.usdc", WarningLog()):
+        raise TypeError("ours")

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 # A parser's message: FILE:LINE:COLUMN: what is wrong at 'text' in </prim>
 _AT_LINE = re.compile(r"^(?P<file>.*?):(?P<line>\d+):\d+: (?P<problem>.*)", re.DOTALL)
 
+# How USD's bindings begin the message where Python has no type for a value.
+_NO_CONVERTER = "No to_python"
+
 _UNOPENED = re.compile(r"Could not open asset @(?P<asset>[^@]*)@")
 
 
@@ -36,6 +39,10 @@ def caught(path: Path, log: WarningLog) -> Iterator[None]:
         raise _asset_error(path, error) from None
     except UnicodeDecodeError as error:  # a message or a value of the file, on its way to Python
         raise AssetError(path, f"holds text that is not UTF-8 ({error.reason})", fix="export it again") from None
+    except TypeError as error:  # a value of another type than belongs there
+        if not str(error).startswith(_NO_CONVERTER):
+            raise
+        raise AssetError(path, "holds a value of a type that does not belong there", fix="export it again") from None
     finally:
         diagnostics = [_warning(_commentary(one), path) for one in delegate.TakeUncoalescedDiagnostics()]
         for kind, message in sorted(diagnostics):  # USD composes in threads, which report in any order
