@@ -1,9 +1,9 @@
 // Bricks of 8x8x8 voxels as the voxelizer works on them: eight slices along z; each bit of a slice is a column.
 //
-// With slices, a sweep along z takes eight steps of 64 columns. Columns are in Morton order within a slice, so that
-// little is left to do for the Morton order of the result.
+// With slices, a sweep along z takes eight steps of 64 columns. A row of eight columns is a byte of each slice.
 #pragma once
 
+#include "high_bits.h"
 #include "morton.h"
 
 #include <array>
@@ -35,53 +35,58 @@ inline int count(const Slices& s) {
 }
 
 /// The bit of a slice that stands for column (x, y) of a brick, and back.
-inline constexpr std::array<uint8_t, 8> kSpread2 = {0, 1, 4, 5, 16, 17, 20, 21};
-constexpr int column_bit(int x, int y) { return kSpread2[x & 7] | kSpread2[y & 7] << 1; }
-constexpr int column_x(int bit) { return (bit & 1) | (bit >> 1 & 2) | (bit >> 2 & 4); }
-constexpr int column_y(int bit) { return column_x(bit >> 1); }
+constexpr int column_bit(int x, int y) { return (y & 7) << 3 | (x & 7); }
+constexpr int column_x(int bit) { return bit & 7; }
+constexpr int column_y(int bit) { return bit >> 3; }
 
-/// The other way to hold 512 voxels: a byte per column, its bits along z. An interval of a column is one operation.
-using Columns = std::array<uint8_t, 64>;
+/// The other way to hold 512 voxels: by row y, a byte per column, its bits along z. What a triangle covers of a row is
+/// one word.
+using Columns = std::array<uint64_t, 8>;
 
-/// The voxels from … to of a column.
-constexpr uint8_t column_interval(int from, int to) { return uint8_t(0xFF << from & 0xFF >> (7 - to)); }
+inline Slices slices_of(const Columns& columns) {
+    Slices s{};
+    if (is_empty(columns))
+        return s;
+    for (int y = 0; y < kBrickSide; y += 2) {
+        Bytes16 v = bytes_of(columns[y], columns[y + 1]);
+        for (int z = kBrickSide - 1; z >= 0; --z) {
+            s[z] |= uint64_t{high_bits(v)} << 8 * y;
+            v = doubled(v);
+        }
+    }
+    return s;
+}
 
-/// Exchanges the blocks of `size` bits off the diagonal, in 8x8 bits: one step of a transposition (Warren, "Hacker's
-/// Delight", 7-3).
-constexpr uint64_t exchange_blocks(uint64_t v, int distance, uint64_t mask) {
+/// Exchanges bits `low` and `high` of the number of each bit.
+template <int low, int high> constexpr uint64_t exchange_index_bits(uint64_t v) {
+    // with[i]: the bits whose number has bit i.
+    constexpr uint64_t with[6] = {0xAAAA'AAAA'AAAA'AAAA, 0xCCCC'CCCC'CCCC'CCCC, 0xF0F0'F0F0'F0F0'F0F0,
+                                  0xFF00'FF00'FF00'FF00, 0xFFFF'0000'FFFF'0000, 0xFFFF'FFFF'0000'0000};
+    constexpr uint64_t mask = with[low] & ~with[high];
+    constexpr int distance = (1 << high) - (1 << low);
     const uint64_t t = (v ^ v >> distance) & mask;
     return v ^ t ^ t << distance;
 }
 
-inline Slices slices_of(const Columns& columns) {
-    // Eight columns make 8x8 bits, transposed to eight columns of each slice; then 8x8 bytes are transposed likewise.
-    Slices s;
-    for (int group = 0; group < 8; ++group) {
-        uint64_t v = 0;
-        for (int i = 0; i < 8; ++i)
-            v |= uint64_t{columns[8 * group + i]} << 8 * i;
-        v = exchange_blocks(v, 7, 0x00AA'00AA'00AA'00AA);
-        v = exchange_blocks(v, 14, 0x0000'CCCC'0000'CCCC);
-        s[group] = exchange_blocks(v, 28, 0x0000'0000'F0F0'F0F0);
-    }
-    auto exchange = [&s](int a, int b, int distance, uint64_t mask) {
-        const uint64_t t = (s[a] >> distance ^ s[b]) & mask;
-        s[a] ^= t << distance;
-        s[b] ^= t;
-    };
-    for (int i = 0; i < 4; ++i)
-        exchange(i, i + 4, 32, 0x0000'0000'FFFF'FFFF);
-    for (int i : {0, 1, 4, 5})
-        exchange(i, i + 2, 16, 0x0000'FFFF'0000'FFFF);
-    for (int i : {0, 2, 4, 6})
-        exchange(i, i + 1, 8, 0x00FF'00FF'00FF'00FF);
-    return s;
+/// A slice with its columns in Morton order: bit {y2,x2,y1,x1,y0,x0}, from {y2,y1,y0,x2,x1,x0}.
+constexpr uint64_t morton_columns(uint64_t slice) {
+    return exchange_index_bits<3, 4>(exchange_index_bits<2, 3>(exchange_index_bits<1, 3>(slice)));
 }
+static_assert([] {
+    for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y) {
+            const uint64_t code = morton(uint32_t(x), uint32_t(y), 0); // three bits per level, the third is 0
+            const int bit = int(code & 3) | int(code >> 3 & 3) << 2 | int(code >> 6 & 3) << 4;
+            if (morton_columns(uint64_t{1} << column_bit(x, y)) != uint64_t{1} << bit)
+                return false;
+        }
+    return true;
+}());
 
 /// Slice order to Morton order: word {z2,y2,x2}, bit {z1,y1,x1,z0,y0,x0}.
 ///
-/// A nibble of a slice is a square of 2x2 columns. The nibbles of slices z0 = 0 and 1 alternate; 16 bits of a slice,
-/// spread so to 32, are the half z1 of a word.
+/// A nibble of a slice in Morton order is a square of 2x2 columns. The nibbles of slices z0 = 0 and 1 alternate; 16
+/// bits of a slice, spread so to 32, are the half z1 of a word.
 inline Slices morton_order(const Slices& slices) {
     constexpr uint64_t nibbles = 0x0F0F'0F0F'0F0F'0F0F;
     auto spread_bytes = [](uint64_t v) {
@@ -90,7 +95,7 @@ inline Slices morton_order(const Slices& slices) {
     };
     Slices words{};
     for (int z = 0; z < kBrickSide; z += 2) {
-        const uint64_t below = slices[z], above = slices[z + 1];
+        const uint64_t below = morton_columns(slices[z]), above = morton_columns(slices[z + 1]);
         const uint64_t even = (below & nibbles) | (above & nibbles) << 4;
         const uint64_t odd = (below >> 4 & nibbles) | (above & ~nibbles);
         const uint64_t low = spread_bytes(even & 0xFFFF'FFFF) | spread_bytes(odd & 0xFFFF'FFFF) << 8;

@@ -204,8 +204,9 @@ private:
     }
 
     static uint64_t square_of(const Cell& cell) {
-        return cell.side == kBrickSide ? ~uint64_t{0}
-                                       : ((uint64_t{1} << cell.side * cell.side) - 1) << column_bit(cell.x, cell.y);
+        // A byte per row of columns.
+        const uint64_t rows = ~uint64_t{0} >> 8 * (kBrickSide - cell.side) & kFirstColumn * ((1 << cell.side) - 1);
+        return rows << column_bit(cell.x, cell.y);
     }
     Point centre_of(const Cell& cell) const {
         const double middle = (cell.side - 1) / 2.0 + kSample;
@@ -384,18 +385,14 @@ private:
         }
     }
 
-    /// The columns of a slice beside those of `columns`, along x (axis 0) or y (axis 1). Their bits are
-    /// {y2,x2,y1,x1,y0,x0}: added to a number whose other bits are all set, one carries from bit to bit.
+    /// The columns of a slice beside those of `columns`, along x (axis 0) or y (axis 1).
     static uint64_t beside(uint64_t columns, int axis) {
-        constexpr uint64_t low[2][3] = {{0x5555'5555'5555'5555, 0x0F0F'0F0F'0F0F'0F0F, 0x0000'FFFF'0000'FFFF},
-                                        {0x3333'3333'3333'3333, 0x00FF'00FF'00FF'00FF, 0x0000'0000'FFFF'FFFF}};
-        const uint64_t* zero = low[axis]; // columns whose coordinate has bit 0, 1, 2 clear
-        const int scale = 1 << axis;
-        const uint64_t up0 = zero[0], up1 = ~zero[0] & zero[1], up2 = ~zero[0] & ~zero[1] & zero[2];
-        const uint64_t up = (columns & up0) << scale | (columns & up1) << 3 * scale | (columns & up2) << 11 * scale;
-        const uint64_t down = (columns >> scale & up0) | (columns >> 3 * scale & up1) | (columns >> 11 * scale & up2);
-        return up | down;
+        if (axis == 1)
+            return columns << kBrickSide | columns >> kBrickSide;
+        return (columns & ~(kFirstColumn << (kBrickSide - 1))) << 1 | (columns & ~kFirstColumn) >> 1;
     }
+
+    static constexpr uint64_t kFirstColumn = 0x0101'0101'0101'0101; // x = 0
 
     const CapWinding* caps_ = nullptr;
     int side_ = 0, height_ = 0, x0_ = 0, y0_ = 0;

@@ -4,14 +4,13 @@
 // is exact: one division per edge. Cost: about 10 cycles per plane.
 #pragma once
 
+#include "covered_row.h"
 #include "fixed_point.h"
 
 #include <algorithm>
 #include <climits>
 
 namespace voxrt::voxelize {
-
-inline constexpr int kTileSide = 64;
 
 namespace coverage {
 

@@ -213,9 +213,9 @@ private:
         for (int z = 0; z < kBrickSide; ++z) {
             hidden[z] = within[z] & ~surface[z];
             mask[z] = shell[z] | hidden[z];
-            result.shell += std::popcount(shell[z]);
-            result.inside += std::popcount(hidden[z]);
         }
+        result.shell += count(shell);
+        result.inside += count(hidden);
         if (is_empty(mask))
             return;
         const bool has_shell = brick.has_shell();

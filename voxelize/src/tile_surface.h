@@ -8,6 +8,7 @@
 #pragma once
 
 #include "brick.h"
+#include "covered_row.h"
 #include "triangle_coverage.h"
 
 #include <vector>
@@ -66,49 +67,54 @@ public:
 
     /// Of cover_triangle: voxels lo … hi of column (x, y) are shell. A voxel keeps the first material it gets.
     void cover(int x, int y, int lo, int hi) {
-        const auto [column, bit] = locate(x, y);
+        const Position at_column = locate(x, y);
         for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
-            ShellBrick& brick = at(column, k);
-            const int from = std::max(lo - k * kBrickSide, 0), to = std::min(hi - k * kBrickSide, kBrickSide - 1);
-            const uint8_t interval = column_interval(from, to);
-            if (brick.material != material_) {
-                if (brick.material != 0 || brick.cells != kNone)
-                    cover_mixed(brick, interval, bit);
-                else
-                    brick.material = material_;
+            const int from = std::max(lo - k * kBrickSide, 0), end = std::min(hi - k * kBrickSide + 1, kBrickSide);
+            add_shell(at(at_column.column, k), at_column.row, uint64_t((1u << end) - (1u << from)) << at_column.shift);
+        }
+    }
+
+    /// The same, and cross(), for a row of the tile: window and tile have the same lowest column.
+    void cover_row(const CoveredRow& row) {
+        const int v = row.y - y_;
+        for (int group = row.from >> kBrickBits; group <= row.to >> kBrickBits; ++group) {
+            const int32_t *lo = row.lo + group * kBrickSide, *hi = row.hi + group * kBrickSide;
+            int32_t lowest = lo[0], highest = hi[0];
+            for (int i = 1; i < kBrickSide; ++i) {
+                lowest = std::min(lowest, lo[i]);
+                highest = std::max(highest, hi[i]);
             }
-            brick.shell[bit] |= interval;
+            const int first = std::max(row.crossed_from - group * kBrickSide, 0);
+            const int last = std::min(row.crossed_to - group * kBrickSide, kBrickSide - 1);
+            const uint64_t crossed = first <= last ? ~uint64_t{0} << 8 * first & ~uint64_t{0} >> 8 * (7 - last) : 0;
+            for (int k = lowest >> kBrickBits; k <= highest >> kBrickBits; ++k) {
+                const IntervalBytes bytes(lo, hi, k * kBrickSide, crossed != 0);
+                if (bytes.inside == 0)
+                    continue;
+                ShellBrick& brick = at((v >> kBrickBits) * kTileBricks + group, k);
+                add_shell(brick, v & (kBrickSide - 1), bytes.inside);
+                if ((bytes.begins & crossed) != 0)
+                    add_crossings(brick, v & (kBrickSide - 1), bytes.begins & crossed, row.enters);
+            }
         }
     }
 
     /// A voxel has fully transparent surface: that alone makes it no shell, and keeps it out of the inside.
     void cover_transparent(int x, int y, int z) {
-        const auto [column, bit] = locate(x, y);
-        ShellBrick& brick = at(column, z >> kBrickBits);
+        const Position at_column = locate(x, y);
+        ShellBrick& brick = at(at_column.column, z >> kBrickBits);
         if (brick.transparent == kNone) {
             brick.transparent = uint32_t(transparent_.size());
             transparent_.emplace_back();
         }
-        transparent_[brick.transparent][bit] |= uint8_t(1 << (z & (kBrickSide - 1)));
+        transparent_[brick.transparent][z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x - x_, y - y_);
     }
 
     /// Of cover_triangle: the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
-        const auto [column, bit] = locate(x, y);
-        ShellBrick& brick = at(column, z >> kBrickBits);
-        const int slice = z & (kBrickSide - 1);
-        const auto one = uint8_t(1 << slice);
-        Columns& same = enters ? brick.enters : brick.leaves;
-        Columns& opposite = enters ? brick.leaves : brick.enters;
-        brick.crossed = true;
-        if (opposite[bit] & one) {
-            opposite[bit] ^= one;
-        } else if (same[bit] & one) {
-            brick.has_repeated = true;
-            repeated_.push_back({uint32_t(&brick - bricks_.data()), uint8_t(slice), uint8_t(bit), enters});
-        } else {
-            same[bit] |= one;
-        }
+        const Position at_column = locate(x, y);
+        add_crossings(at(at_column.column, z >> kBrickBits), at_column.row,
+                      uint64_t{1} << (at_column.shift + (z & (kBrickSide - 1))), enters);
     }
 
     /// Brick `k` (along z) of a brick column, or null.
@@ -138,36 +144,64 @@ public:
     /// The voxels of a brick that have surface: its shell, and what is fully transparent.
     Slices all_surface(const ShellBrick& brick, const Slices& shell) const {
         Slices found = shell;
-        if (brick.transparent != kNone) {
-            const Slices transparent = slices_of(transparent_[brick.transparent]);
+        if (brick.transparent != kNone)
             for (int z = 0; z < kBrickSide; ++z)
-                found[z] |= transparent[z];
-        }
+                found[z] |= transparent_[brick.transparent][z];
         return found;
     }
 
 private:
+    /// Of a column: its brick column, its row there, and where its byte begins.
     struct Position {
-        int column, bit;
+        int column, row, shift;
     };
     Position locate(int x, int y) const {
         const int u = x - x_, v = y - y_;
-        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), column_bit(u, v)};
+        return {(v >> kBrickBits) * kTileBricks + (u >> kBrickBits), v & (kBrickSide - 1), (u & (kBrickSide - 1)) * 8};
+    }
+
+    void add_shell(ShellBrick& brick, int row, ColumnBytes voxels) {
+        if (brick.material != material_) {
+            if (brick.has_shell())
+                add_other_material(brick, row, voxels);
+            else
+                brick.material = material_;
+        }
+        brick.shell[row] |= voxels;
     }
 
     /// The first triangle keeps a voxel: only newly covered ones take the second material of a brick.
-    void cover_mixed(ShellBrick& brick, uint8_t interval, int bit) {
+    [[gnu::noinline]] void add_other_material(ShellBrick& brick, int row, ColumnBytes voxels) {
         if (brick.cells == kNone) {
             brick.cells = uint32_t(cells_.size());
-            Cells& row = cells_.emplace_back();
+            Cells& cells = cells_.emplace_back();
+            const Slices shell = slices_of(brick.shell);
             for (int z = 0; z < kBrickSide; ++z)
                 for (int i = 0; i < 64; ++i)
-                    row[z * 64 + i] = brick.shell[i] >> z & 1 ? brick.material : 0;
+                    cells[z * 64 + i] = shell[z] >> i & 1 ? brick.material : 0;
             brick.material = 0;
         }
-        Cells& row = cells_[brick.cells];
-        for (uint32_t fresh = interval & ~uint32_t{brick.shell[bit]}; fresh != 0; fresh &= fresh - 1)
-            row[std::countr_zero(fresh) * 64 + bit] = material_;
+        Cells& cells = cells_[brick.cells];
+        for (ColumnBytes fresh = voxels & ~brick.shell[row]; fresh != 0; fresh &= fresh - 1) {
+            const int bit = std::countr_zero(fresh);
+            cells[(bit & 7) * 64 + row * kBrickSide + (bit >> 3)] = material_;
+        }
+    }
+
+    /// Rays cross the surface at voxels of a row, one of a column at most.
+    void add_crossings(ShellBrick& brick, int row, ColumnBytes voxels, bool enters) {
+        ColumnBytes& same = (enters ? brick.enters : brick.leaves)[row];
+        ColumnBytes& opposite = (enters ? brick.leaves : brick.enters)[row];
+        brick.crossed = true;
+        const ColumnBytes cancelled = voxels & opposite;
+        opposite ^= cancelled;
+        voxels ^= cancelled;
+        for (ColumnBytes repeated = voxels & same; repeated != 0; repeated &= repeated - 1) {
+            const int bit = std::countr_zero(repeated);
+            brick.has_repeated = true;
+            repeated_.push_back({index_of(brick), uint8_t(bit & 7), uint8_t(row * kBrickSide + (bit >> 3)), enters});
+        }
+        same |= voxels;
     }
 
     int side_, height_;
@@ -177,7 +211,7 @@ private:
     std::vector<ShellBrick> bricks_;
     std::vector<uint32_t> slots_;
     std::vector<Cells> cells_;
-    std::vector<Columns> transparent_;
+    std::vector<Slices> transparent_;
     std::vector<RepeatedCrossing> repeated_;
 };
 

@@ -37,9 +37,17 @@ public:
     /// Claims whole bricks from <= k < to of a column; returns how many were free before.
     int64_t claim_full(int column, int from, int to, uint8_t material) {
         used_ |= uint64_t{1} << column;
+        uint32_t* const slots = &table_[size_t(column) * height_];
+        uint32_t any = 0;
+        for (int k = from; k < to; ++k)
+            any |= slots[k];
+        if (any == 0) {
+            std::fill(slots + from, slots + to, material);
+            return int64_t{to - from} * kBrickVoxels;
+        }
         int64_t claimed = 0;
         for (int k = from; k < to; ++k) {
-            uint32_t& slot = table_[size_t(column) * height_ + k];
+            uint32_t& slot = slots[k];
             if (slot == 0) {
                 slot = material;
                 claimed += kBrickVoxels;

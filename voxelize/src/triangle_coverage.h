@@ -1,4 +1,4 @@
-// Which voxels a triangle covers, and which columns it crosses: exact, one column at a time.
+// Which voxels a triangle covers, and which columns it crosses: exact, a row of columns at a time.
 //
 // A voxel is covered when the closed triangle meets the voxel's open interior. Thirteen axes can separate a box from a
 // triangle (3 box normals, the triangle's normal, 9 products of edges; Akenine-Moeller, "Fast 3D Triangle-Box Overlap
@@ -98,39 +98,35 @@ template <typename Wide> void extents_of(SlabExtent& extent, int first, int last
 /// floor(below / unit) <= z <= floor((below + spread - 1) / unit); `below` falls by n.x * kUnit per column.
 template <typename Wide> class PlaneWalk {
 public:
-    PlaneWalk(Wide nx, Wide unit, Wide spread) : unit_(unit), spread_(spread) {
+    PlaneWalk(Wide nx, Wide unit, Wide spread) : unit_(unit) {
         step_ = floor_div<Wide>(-nx * kUnit, unit);
         step_part_ = -nx * kUnit - step_ * unit;
+        height_ = floor_div<Wide>(spread - 1, unit);
+        carry_ = unit - (spread - 1 - height_ * unit);
     }
     void start(Wide below) {
         low_ = floor_div<Wide>(below, unit_);
-        low_part_ = below - low_ * unit_;
-        const Wide above = low_part_ + spread_ - 1;
-        const Wide more = floor_div<Wide>(above, unit_);
-        high_ = low_ + more;
-        high_part_ = above - more * unit_;
+        part_ = below - low_ * unit_;
     }
     /// Narrows lo … hi to what the plane passes. Far from the triangle the plane leaves the range of int.
     void clip(int& lo, int& hi) const {
+        const Wide high = low_ + height_ + (part_ >= carry_);
         if (low_ > lo)
             lo = low_ > hi ? hi + 1 : static_cast<int>(low_);
-        if (high_ < hi)
-            hi = high_ < lo ? lo - 1 : static_cast<int>(high_);
+        if (high < hi)
+            hi = high < lo ? lo - 1 : static_cast<int>(high);
     }
     void next() {
-        advance(low_, low_part_);
-        advance(high_, high_part_);
+        part_ += step_part_;
+        const bool carry = part_ >= unit_;
+        low_ += step_ + carry;
+        part_ -= carry ? unit_ : 0;
     }
 
 private:
-    void advance(Wide& whole, Wide& part) const {
-        part += step_part_;
-        const bool carry = part >= unit_;
-        whole += step_ + carry;
-        part -= carry ? unit_ : 0;
-    }
-    Wide unit_, spread_, step_, step_part_;
-    Wide low_ = 0, low_part_ = 0, high_ = 0, high_part_ = 0;
+    Wide unit_, step_, step_part_;
+    Wide height_, carry_;     // (spread - 1) / unit: whole, and which part of `below` makes one more
+    Wide low_ = 0, part_ = 0; // below / unit: whole, and the rest
 };
 
 /// The same by float64 reciprocal, for triangles up to kTinyExtent wide: below < 2^49, so that the error of float64 is
@@ -208,6 +204,21 @@ void cover_flat(const LocalTriangle<Wide>& t, const Window& w, bool inverted, Re
     }
 }
 
+/// Hands a row to a receiver; column by column where it takes no rows.
+template <class Receiver> void cover_row(const CoveredRow& row, const Window& w, Receiver& receiver) {
+    if constexpr (requires { receiver.cover_row(row); }) {
+        receiver.cover_row(row);
+    } else {
+        for (int i = row.from; i <= row.to; ++i) {
+            if (row.is_empty(i))
+                continue;
+            if (i >= row.crossed_from && i <= row.crossed_to)
+                receiver.cross(w.x0 + i, row.y, row.lo[i], row.enters);
+            receiver.cover(w.x0 + i, row.y, row.lo[i], row.hi[i]);
+        }
+    }
+}
+
 template <typename Wide, class Plane, bool Cross, class Receiver>
 void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiver) {
     const int x0 = std::max(w.x0 - t.bx, 0), x1 = std::min(w.x1 - t.bx, t.x1);
@@ -234,6 +245,9 @@ void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiv
         return;
     }
 
+    const int to_window = t.bx - w.x0;
+    CoveredRow row;
+    row.enters = enters;
     SlabExtent rows_x, rows_z, columns_z, ends;
     rows_x.clear(y1 - y0 + 1);
     rows_z.clear(y1 - y0 + 1);
@@ -270,23 +284,26 @@ void cover_local(const LocalTriangle<Wide>& t, const Window& w, Receiver& receiv
         if (!steep)
             plane.start(offset - (nx * (from + (nx > 0)) + ny * (y + (ny > 0))) * kUnit);
         const int row_lo = rows_z.lo[y - y0], row_hi = rows_z.hi[y - y0];
+        row.begin(y + t.by, from + to_window, to + to_window);
+        row.crossed_from = std::clamp(first, from, to + 1) + to_window;
+        row.crossed_to = std::clamp(end, from, to + 1) + to_window - 1;
         for (int x = from; x <= to; ++x) {
             int lo = std::max(row_lo, columns_z.lo[x - x0]), hi = std::min(row_hi, columns_z.hi[x - x0]);
             if (!steep) {
                 plane.clip(lo, hi);
                 plane.next();
             }
-            if (lo > hi)
-                continue;
-            lo += t.bz;
-            hi += t.bz;
-            if (lo > w.top)
-                continue;
-            if (Cross && x >= first && x < end)
-                receiver.cross(x + t.bx, y + t.by, std::max(lo, 0), enters);
-            if (hi >= 0)
-                receiver.cover(x + t.bx, y + t.by, std::max(lo, 0), std::min(hi, w.top));
+            if (lo > hi || lo + t.bz > w.top) {
+                row.set_empty(x + to_window);
+            } else if (hi + t.bz < 0) {
+                row.set_empty(x + to_window);
+                if (Cross && x >= first && x < end)
+                    receiver.cross(x + t.bx, y + t.by, 0, enters);
+            } else {
+                row.set(x + to_window, std::max(lo + t.bz, 0), std::min(hi + t.bz, w.top));
+            }
         }
+        cover_row(row, w, receiver);
     }
 }
 
@@ -306,6 +323,7 @@ void cover(const Vertex& a, const Vertex& b, const Vertex& c, const Window& w, b
 /// receiver.cover(x, y, lo, hi): voxels lo … hi of column (x, y) are covered.
 /// receiver.cross(x, y, z, enters): the ray of column (x, y) crosses the surface below the first voxel above z that the
 /// triangle does not cover; `enters` when the ray goes against the normal. Only where Cross.
+/// receiver.cover_row(row): both for a row of columns (covered_row.h); a receiver without it gets them one by one.
 /// receiver.side(): voxels per side of the grid.
 /// `inverted`: the surface's normals point into the solid.
 template <bool Cross, class Receiver>

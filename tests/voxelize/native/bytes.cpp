@@ -1,0 +1,64 @@
+// Bytes of columns against loops over voxels: IntervalBytes, slices_of, morton_columns. Prints nothing where all agree.
+#include <voxrt/voxelize/brick.h>
+#include <voxrt/voxelize/covered_row.h>
+
+#include <cstdio>
+#include <random>
+
+using namespace voxrt::voxelize;
+
+namespace {
+
+bool intervals_agree(std::mt19937& random) {
+    alignas(16) int32_t lo[8], hi[8];
+    const int base = 8 * static_cast<int>(random() % 8192);
+    for (int i = 0; i < 8; ++i) {
+        lo[i] = std::max(0, base - 12 + static_cast<int>(random() % 30));
+        hi[i] = lo[i] + static_cast<int>(random() % (random() % 8 == 0 ? 65536 : 20)) - 2;
+        if (random() % 5 == 0) {
+            lo[i] = CoveredRow::kNowhere;
+            hi[i] = -1;
+        }
+    }
+    ColumnBytes inside = 0, begins = 0;
+    for (int i = 0; i < 8; ++i)
+        for (int z = 0; z < 8; ++z) {
+            inside |= ColumnBytes{lo[i] <= base + z && base + z <= hi[i]} << (8 * i + z);
+            begins |= ColumnBytes{lo[i] == base + z} << (8 * i + z);
+        }
+    const IntervalBytes all(lo, hi, base, true), some(lo, hi, base, false);
+    return all.inside == inside && all.begins == begins && some.inside == inside && some.begins == 0;
+}
+
+bool slices_agree(std::mt19937_64& random) {
+    Columns columns;
+    for (uint64_t& row : columns)
+        row = random();
+    const Slices slices = slices_of(columns);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x)
+            for (int z = 0; z < 8; ++z)
+                if ((columns[y] >> (8 * x + z) & 1) != (slices[z] >> column_bit(x, y) & 1))
+                    return false;
+    const Slices words = morton_order(slices);
+    for (uint32_t y = 0; y < 8; ++y)
+        for (uint32_t x = 0; x < 8; ++x)
+            for (uint32_t z = 0; z < 8; ++z) {
+                const auto code = static_cast<unsigned>(morton(x, y, z));
+                if ((words[code / 64] >> code % 64 & 1) != (columns[y] >> (8 * x + z) & 1))
+                    return false;
+            }
+    return true;
+}
+
+} // namespace
+
+int main() {
+    std::mt19937 random(1);
+    std::mt19937_64 wide(1);
+    for (int i = 0; i < 100000; ++i)
+        if (!intervals_agree(random) || !slices_agree(wide)) {
+            std::puts("bytes of columns differ from the voxels one by one");
+            return 1;
+        }
+}
