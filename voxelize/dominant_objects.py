@@ -51,6 +51,8 @@ def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tup
     >>> dominant_objects(scene, 128, "auto")
     (('ground',), 1.0)
     """
+    if len(scene.objects) < 2:
+        return (), 0.0
     owners, low, high = _object_bounds(scene, geometry)
     if len(owners) < 2:
         return (), 0.0
