@@ -74,7 +74,7 @@ private:
                 const Word word = words[octant];
                 const std::size_t block = (std::size_t{word} - 1) / 8;
                 const std::size_t child = block < blocks ? block : blocks; // a leaf's, so that nothing branches on it
-                if (!is_leaf(word) & ((word % 8 != 1) | (block <= number) | (block >= blocks)))
+                if ((!is_leaf(word)) & ((word % 8 != 1) | (block <= number) | (block >= blocks)))
                     return false;
                 if (child < taken)
                     take_to(child);
