@@ -35,11 +35,14 @@ class BoardTracer:
         Its parameters ``Lanes`` and ``RayClocks``.
     clock_hz
         Its clock.
+    buffer_lines
+        Rows of a picture that the board's line buffer holds.
     """
 
     lanes: int
     ray_clocks: int
     clock_hz: int
+    buffer_lines: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +104,7 @@ def fit_beam(
     """
     config = configuration_of(tracer.lanes, tracer.ray_clocks, lighting)
     registers = np.array([(c.position, c.look, c.right, c.up) for c in cameras], dtype=np.int32)
-    search = _model.BeamSearch(registers, tracer.clock_hz)
+    search = _model.BeamSearch(registers, tracer.clock_hz, tracer.buffer_lines)
     progress(0, search.total)
     while not search.ended:
         done, band = search.done, search.band()
@@ -114,7 +117,7 @@ def fit_beam(
     return BeamFit(*search.fit())
 
 
-def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
+def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float:
     """Tell by how many lines of the screen each row of a picture is early, at least.
 
     Parameters
@@ -125,6 +128,8 @@ def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
         Cycles of a line of the screen.
     scale
         A row is shown on 2**scale lines.
+    buffer_lines
+        Rows of a picture that the board's line buffer holds.
 
     Returns
     -------
@@ -133,10 +138,10 @@ def beam_lead(rows: Sequence[float], line: float, scale: int) -> float:
 
     Examples
     --------
-    >>> beam_lead([1000.0] * 480, 2400, 0) > 0, beam_lead([2500.0] * 480, 2400, 0) > 0
+    >>> beam_lead([1000.0] * 480, 2400, 0, 16) > 0, beam_lead([2500.0] * 480, 2400, 0, 16) > 0
     (True, False)
     """
-    return _model.beam_lead(rows, line, scale)
+    return _model.beam_lead(rows, line, scale, buffer_lines)
 
 
 def configuration_of(lanes: int, ray_clocks: int, lighting: Lighting) -> str:

@@ -49,6 +49,7 @@ class BaseDesign(msgspec.Struct, frozen=True):
     board: str
     core: dict[str, int]
     clock_hz: int
+    line_bits: int
     seed: int
     fmax_mhz: dict[str, float]
     utilisation: dict[str, tuple[int, int]]
@@ -62,9 +63,14 @@ class BaseDesign(msgspec.Struct, frozen=True):
         return 1 + self.memories["octree"].rows
 
     @property
+    def buffer_lines(self) -> int:
+        """Lines of its line buffer."""
+        return 1 << self.line_bits
+
+    @property
     def tracer(self) -> BoardTracer:
         """Its ray tracer."""
-        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], self.clock_hz)
+        return BoardTracer(self.core["Lanes"], self.core["RayClocks"], self.clock_hz, self.buffer_lines)
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,6 +66,7 @@ def described(board: PlacedBoard, bits: bytes) -> dict[str, Any]:
         "depth": board.design.core["MaxDepth"],
         "blockBits": board.design.core["BlockBits"],
         "clock": board.design.clock_hz,
+        "bufferLines": board.design.buffer_lines,
         "screen": SCREEN,
         "octree": block_rams(board.design.memories["octree"], found),
         "table": block_rams(board.design.memories["table"], found),

@@ -6,7 +6,10 @@
 module board_frames
   import board_pkg::*;
 #(
+  // System clock, Hz.
   parameter int unsigned ClockHz    = 75_000_000,
+  // The line buffer holds 2**LineBits lines: 4 .. 7.
+  parameter int unsigned LineBits   = 4,
   parameter bit          ButtonsLow = 1'b0
 ) (
   input  logic                clk_i,
@@ -37,6 +40,10 @@ module board_frames
   input  logic [         2:0] buttons_i,
   output logic [         7:0] leds_o
 );
+  if (LineBits < 4 || LineBits > 7) begin : gen_bad_lines
+    $error("board_frames: LineBits must be 4 to 7");
+  end
+
   // The core's registers (rtl/registers.rdl).
   localparam logic [23:0] CoreControl = 24'h00000C;
   localparam logic [23:0] CoreStatus = 24'h000010;
@@ -201,7 +208,7 @@ module board_frames
 
     unique case (register_i)
       4'd0:    register_data_o <= 32'h56584244;
-      4'd1:    register_data_o <= 32'h0000_0100;
+      4'd1:    register_data_o <= {14'd0, 2'(LineBits - 4), 16'h0100};
       4'd2: begin
         register_data_o <= {
           16'd0, control_q.period, 2'd0, control_q.scale, control_q.steered, control_q.reverse, control_q.turn,

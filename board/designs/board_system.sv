@@ -249,6 +249,7 @@ module board_system
 
   board_frames #(
     .ClockHz   (ClockHz),
+    .LineBits  (LineBits),
     .ButtonsLow(ButtonsLow)
   ) u_frames (
     .clk_i,

@@ -186,6 +186,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         "board": name,
         "core": board["core"],
         "clock_hz": clock_hz(board),
+        "line_bits": board["line_bits"],
         "seed": seed,
         "fmax_mhz": fmax,
         "utilisation": {

@@ -92,6 +92,8 @@ class SerialDevice:
         Of the ray tracer.
     clock_hz
         Of the ray tracer.
+    buffer_lines
+        Lines of a picture that the board's line buffer holds.
     """
 
     def __init__(self, link: SerialLink, model: Device) -> None:
@@ -110,6 +112,7 @@ class SerialDevice:
         self.lanes = lanes = configuration["lanes"]
         self.ray_clocks = configuration["ray_clocks"]
         self.clock_hz = self._board("clock")
+        self.buffer_lines = 16 << (version >> 16 & 3)
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
             version=f"{version >> 8 & 0xFF}.{version & 0xFF}",

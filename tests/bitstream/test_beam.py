@@ -19,7 +19,7 @@ BUFFER_LINES, LINES = 16, 525  # of the boards: board/designs/board_pkg.sv
 BANDS = 12
 
 
-def repeated_rows(rows, line, scale):
+def repeated_rows(rows, line, scale, buffer_lines=BUFFER_LINES):
     """Walk the screen's clock line by line: the rows that are not complete when their first line begins."""
     stored, done, remaining, repeated = 0, 0, rows[0], 0
     # Each step is 1/8 line. The trace starts with the vertical blanking.
@@ -30,7 +30,7 @@ def repeated_rows(rows, line, scale):
             repeated += 1
         stored = done - shown
         left = line / 8
-        while left > 0 and done < len(rows) and stored < BUFFER_LINES:
+        while left > 0 and done < len(rows) and stored < buffer_lines:
             step_cycles = min(left, remaining)
             left -= step_cycles
             remaining -= step_cycles
@@ -40,19 +40,23 @@ def repeated_rows(rows, line, scale):
     return repeated
 
 
-@given(st.lists(st.integers(100, 6000), min_size=12, max_size=12), st.sampled_from([0, 1, 2]))
-def test_a_lead_means_that_no_row_is_repeated(bands, scale):
+@given(
+    st.lists(st.integers(100, 6000), min_size=12, max_size=12),
+    st.sampled_from([0, 1, 2]),
+    st.sampled_from([16, 32, 64]),
+)
+def test_a_lead_means_that_no_row_is_repeated(bands, scale, lines):
     rows = [float(cycles) for cycles in bands for _ in range((SCREEN[1] >> scale) // 12)]
-    if beam_lead(rows, 2400, scale) >= 1:
-        assert repeated_rows(rows, 2400, scale) == 0
+    if beam_lead(rows, 2400, scale, lines) >= 1:
+        assert repeated_rows(rows, 2400, scale, lines) == 0
 
 
 def test_slow_rows_are_late():
     for scale, fast, slow in ((0, 2200, 2300), (1, 4500, 4700), (2, 9000, 9300)):
         rows = SCREEN[1] >> scale
-        assert beam_lead([fast] * rows, 2400, scale) > 0
+        assert beam_lead([fast] * rows, 2400, scale, BUFFER_LINES) > 0
         # Beyond the blanking and the buffer, slow rows fall behind.
-        assert beam_lead([slow * 1.2] * rows, 2400, scale) < 0
+        assert beam_lead([slow * 1.2] * rows, 2400, scale, BUFFER_LINES) < 0
         assert repeated_rows([slow * 1.2] * rows, 2400, scale) > 0
 
 
@@ -65,7 +69,7 @@ def test_bands_cost_what_the_frame_costs(house):
     (camera,) = orbit(house, (320, 240), 1)
     whole = voxrt.render(house, camera, size=(320, 240), engine="rtl", config="tiny").cost.cycles
     views = [(view.position, view.look, view.right, view.up) for view in orbit(house, SCREEN, 8)]
-    search = _model.BeamSearch(np.array(views, np.int32), 75e6)
+    search = _model.BeamSearch(np.array(views, np.int32), 75e6, BUFFER_LINES)
     cycles = []
     for _ in range(BANDS):
         band = search.band()
@@ -80,13 +84,16 @@ def test_bands_cost_what_the_frame_costs(house):
 
 def test_a_slow_clock_takes_larger_pixels(house):
     cameras, lighting = orbit(house, SCREEN, 1), voxrt.Lighting()
-    scales = [fit_beam(house, cameras, lighting, BoardTracer(1, 1, mega * 1_000_000)).scale for mega in (800, 75, 10)]
+    scales = [
+        fit_beam(house, cameras, lighting, BoardTracer(1, 1, mega * 1_000_000, BUFFER_LINES)).scale
+        for mega in (800, 75, 10)
+    ]
     assert scales == [0, 1, 2]
 
 
 def test_lanes_that_nobody_simulates_are_refused(house):
     with pytest.raises(voxrt.SimulatorError, match="no simulated ray tracer has 3 lanes"):
-        fit_beam(house, orbit(house, SCREEN, 1), voxrt.Lighting(), BoardTracer(3, 1, 75_000_000))
+        fit_beam(house, orbit(house, SCREEN, 1), voxrt.Lighting(), BoardTracer(3, 1, 75_000_000, BUFFER_LINES))
 
 
 def test_an_orbit_shows_all_of_the_scene_from_everywhere(house):

@@ -125,7 +125,7 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
                     rom,
                     orbit(rom, SCREEN),
                     lighting,
-                    BoardTracer(device.lanes, device.ray_clocks, device.clock_hz),
+                    BoardTracer(device.lanes, device.ray_clocks, device.clock_hz, device.buffer_lines),
                     progress=lambda done, total: progress("count cycles", done, total),
                 )
                 device.prepare_orbit(orbit(rom, beam.size), lighting, beam.scale)

@@ -13,7 +13,7 @@ export function orbitOf(voxrt, count, [width, height]) {
 // `hardware`: the board's ray tracer, with the same memory. `onProgress`: called with the pictures done, of how many.
 export function fitBeam(voxrt, hardware, board, look, onProgress = () => {}) {
   const { wasm } = voxrt;
-  voxrt.guard(() => voxrt.checked(wasm.vx_beam(board.orbit.cameras, board.clock)));
+  voxrt.guard(() => voxrt.checked(wasm.vx_beam(board.orbit.cameras, board.clock, board.bufferLines)));
   for (;;) {
     const size = voxrt.checked(wasm.vx_beam_band());
     const [scale, cyclesPerPixel, lead, framesPerSecond, done, total] = voxrt.view(Float64Array, wasm.vx_beam_figures(), 6);

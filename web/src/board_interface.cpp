@@ -61,9 +61,9 @@ EXPORT(vx_orbit) int vx_orbit(int count, int width, int height) {
 EXPORT(vx_registers) const int32_t* vx_registers() { return registers.data(); }
 
 /// Begins the search for the largest pictures that a board traces in time, of an orbit of `count` cameras; returns 0.
-EXPORT(vx_beam) int vx_beam(int count, double clock_hz) {
+EXPORT(vx_beam) int vx_beam(int count, double clock_hz, int buffer_lines) {
     return guarded([&] {
-        search.emplace(cameras(count, sim::kScreenWidth, sim::kScreenHeight), clock_hz);
+        search.emplace(cameras(count, sim::kScreenWidth, sim::kScreenHeight), clock_hz, buffer_lines);
         return 0;
     });
 }

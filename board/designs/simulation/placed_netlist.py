@@ -268,7 +268,8 @@ _CELLS: dict[str, Callable[[_Writer, int, Mapping[str, Any]], None]] = {
     "DP16KD": _Writer.block_ram,
     "MULT18X18D": _Writer.multiplier,
     "TRELLIS_IO": _Writer.pad,
-    "SIOLOGIC": _Writer.pad_register,
+    "IOLOGIC": _Writer.pad_register,  # of pins at the left and right sides
+    "SIOLOGIC": _Writer.pad_register,  # above and below
     "DCCA": _Writer.clock_gate,
     "EHXPLLL": _Writer.pll,
 }

@@ -13,30 +13,31 @@ namespace {
 constexpr double kPixelHz = 25e6;
 constexpr int kLinePixels = 800, kLines = 525; // with the blanking
 constexpr int kLargestScale = 2;
-constexpr int kBufferLines = 16; // rows of a picture that the boards' line buffers hold
 constexpr int kBands = 12;
 constexpr size_t kViews = 8;
 constexpr double kSafety = 1.05; // for what lies between the views
 
 } // namespace
 
-double beam_lead(const std::vector<double>& rows, double line, int scale) {
+double beam_lead(const std::vector<double>& rows, double line, int scale, int buffer_lines) {
     const double shown = std::ldexp(line, scale);
     const double blanking = (kLines - kScreenHeight) * line;
     double end = 0, lead = std::numeric_limits<double>::infinity();
     for (size_t row = 0; row < rows.size(); ++row) {
         const double number = static_cast<double>(row);
         // A row needs a free place in the line buffer: that of the row which has just been shown to its end.
-        const double begin = row < kBufferLines ? end : std::max(end, blanking + (number - kBufferLines + 1) * shown);
+        const double free = blanking + (number - buffer_lines + 1) * shown;
+        const double begin = number < buffer_lines ? end : std::max(end, free);
         end = begin + kSafety * rows[row];
         lead = std::min(lead, (blanking + number * shown - end) / line);
     }
     return lead;
 }
 
-BeamSearch::BeamSearch(const std::vector<Camera>& cameras, double clock_hz) : line_(clock_hz * kLinePixels / kPixelHz) {
-    if (cameras.empty() || !(clock_hz > 0))
-        throw std::invalid_argument("a search needs a camera, and a clock above 0 Hz");
+BeamSearch::BeamSearch(const std::vector<Camera>& cameras, double clock_hz, int buffer_lines)
+    : line_(clock_hz * kLinePixels / kPixelHz), buffer_lines_(buffer_lines) {
+    if (cameras.empty() || !(clock_hz > 0) || buffer_lines < 1)
+        throw std::invalid_argument("a search needs a camera, a clock above 0 Hz, and a line or more");
     const size_t count = std::min(kViews, cameras.size());
     for (size_t i = 0; i < count; ++i)
         views_.push_back(cameras[i * cameras.size() / kViews]);
@@ -60,7 +61,7 @@ void BeamSearch::give(double cycles) {
     rows_.insert(rows_.end(), static_cast<size_t>(rows), cycles / rows);
     if (++band_ < kBands)
         return;
-    const double lead = beam_lead(rows_, line_, scale_);
+    const double lead = beam_lead(rows_, line_, scale_, buffer_lines_);
     finish({scale_, std::exchange(rows_, {}), lead});
 }
 
@@ -84,7 +85,7 @@ void BeamSearch::finish(Picture picture) {
     std::vector<double> estimate;
     for (const double row : chosen_.rows)
         estimate.insert(estimate.end(), 2, 2 * row);
-    if (beam_lead(estimate, line_, 0) >= 0)
+    if (beam_lead(estimate, line_, 0, buffer_lines_) >= 0)
         return try_scale(0, slowest_);
     ended_ = true;
 }

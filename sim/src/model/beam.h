@@ -21,8 +21,9 @@ namespace voxrt::sim {
 constexpr int32_t kScreenWidth = 640, kScreenHeight = 480;
 
 /// By how many lines of the screen each row of a picture is early, at least; below 0 where a row is late. `rows`:
-/// cycles of each row. `line`: cycles of a line of the screen. A row is shown on 2^scale lines.
-double beam_lead(const std::vector<double>& rows, double line, int scale);
+/// cycles of each row. `line`: cycles of a line of the screen. A row is shown on 2^scale lines. `buffer_lines`: rows of
+/// a picture that the board's line buffer holds.
+double beam_lead(const std::vector<double>& rows, double line, int scale, int buffer_lines);
 
 struct BeamFit {
     int scale;                // 0: pictures of 640 x 480 pixels; 1: 320 x 240; 2: 160 x 120
@@ -35,7 +36,8 @@ struct BeamFit {
 class BeamSearch {
 public:
     /// `cameras`: of the orbit, for pictures of 640 x 480; one or more. `clock_hz`: of the board's ray tracer.
-    BeamSearch(const std::vector<Camera>& cameras, double clock_hz);
+    /// `buffer_lines`: of its line buffer, one or more.
+    BeamSearch(const std::vector<Camera>& cameras, double clock_hz, int buffer_lines);
 
     /// Rows of a picture, as a picture of its own.
     struct Band {
@@ -68,6 +70,7 @@ private:
 
     std::vector<Camera> views_;
     double line_; // cycles of a line of the screen
+    int buffer_lines_;
     size_t measured_ = 0;
     bool ended_ = false;
     size_t view_ = 0, slowest_ = 0;

@@ -45,7 +45,7 @@ nb::object orbit_of(const Points& points, int width, int height, int count) {
     return to_numpy(std::move(all), {static_cast<size_t>(count), 4, 3});
 }
 
-void new_search_in(BeamSearch* place, const Cameras& cameras, double clock_hz) {
+void new_search_in(BeamSearch* place, const Cameras& cameras, double clock_hz, int buffer_lines) {
     std::vector<Camera> list(cameras.shape(0));
     for (size_t i = 0; i < list.size(); ++i) {
         const int32_t* at = cameras.data() + 12 * i;
@@ -53,7 +53,7 @@ void new_search_in(BeamSearch* place, const Cameras& cameras, double clock_hz) {
             for (int axis = 0; axis < 3; ++axis)
                 triple[axis] = *at++;
     }
-    new (place) BeamSearch(list, clock_hz);
+    new (place) BeamSearch(list, clock_hz, buffer_lines);
 }
 
 nb::object band_of(const BeamSearch& search) {
@@ -77,9 +77,10 @@ void bind_views(nb::module_& m) {
     fit_type = NamedTuple(m, "BeamFit", {"scale", "cycles_per_pixel", "lead", "frames_per_second"}, "beam.h");
     m.def("orbit", &orbit_of, nb::arg("points"), nb::arg("width"), nb::arg("height"), nb::arg("count"),
           "Cameras around points, float64 (N, 3), voxels: their registers, int32, shape (count, 4, 3). orbit.h");
-    m.def("beam_lead", &beam_lead, nb::arg("rows"), nb::arg("line"), nb::arg("scale"), "beam.h");
+    m.def("beam_lead", &beam_lead, nb::arg("rows"), nb::arg("line"), nb::arg("scale"), nb::arg("buffer_lines"),
+          "beam.h");
     nb::class_<BeamSearch>(m, "BeamSearch", "The largest pictures that a board traces in time: beam.h.")
-        .def("__init__", &new_search_in, nb::arg("cameras"), nb::arg("clock_hz"),
+        .def("__init__", &new_search_in, nb::arg("cameras"), nb::arg("clock_hz"), nb::arg("buffer_lines"),
              "cameras: int32, shape (N, 4, 3), for pictures of 640 x 480.")
         .def_prop_ro("ended", &BeamSearch::ended)
         .def_prop_ro("done", &BeamSearch::done, "Pictures that are complete.")

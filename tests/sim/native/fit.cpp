@@ -114,7 +114,7 @@ void exercise_boards(Random& random, unsigned depth) {
     for (const sim::Camera& camera : cameras)
         for (const sim::Point& point : points)
             check(sees(camera, point, 640, 480), "a camera of an orbit does not see all of the scene");
-    sim::BeamSearch search(cameras, 1e6 * (10 + upto(random, 200)));
+    sim::BeamSearch search(cameras, 1e6 * (10 + upto(random, 200)), 1 << (4 + upto(random, 3)));
     int bands = 0;
     for (; !search.ended(); ++bands) {
         const sim::BeamSearch::Band band = search.band();
