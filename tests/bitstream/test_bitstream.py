@@ -58,6 +58,7 @@ def board():
         "bare",
         {"Lanes": 1, "MaxDepth": 10, "BlockBits": BLOCK_BITS, "Light": 0, "Mirrors": 0},
         75_000_000,
+        4,
         1,
         {"system": 80.0},
         {"DP16KD": (10, 208)},
