@@ -104,6 +104,8 @@ BUILDS = {
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
     "brightness-light": Build("voxrt_brightness", {"MaxDepth": 6, "Mirrors": 0}, ("bench_brightness",)),
     "brightness-mirrors": Build("voxrt_brightness", {"MaxDepth": 6, "Light": 0}, ("bench_brightness",)),
+    "hit_point": Build("voxrt_hit_point", {"MaxDepth": 6}, ("bench_hit_point",)),
+    "hit_point-deep": Build("voxrt_hit_point", {"MaxDepth": 16}, ("bench_hit_point",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
