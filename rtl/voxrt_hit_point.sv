@@ -2,12 +2,13 @@
 // voxrt_lane, so that the ring's slot is free for another ray.
 //
 // On each axis the ray has crossed the planes whose keys (T, axis) are at most its own. T grows by the weight from a
-// plane to the next, so their number in a leaf is floor(since / weight), where since is what voxrt_next_cell makes of
-// the key and T of the leaf's near plane. It is below 16 times the leaf's size. A division without restoring gives a bit
-// per clock on all axes: twice the remainder, less the weight, or plus it where the remainder is negative.
+// plane to the next, so their number behind the leaf's near plane is floor(since / weight), where since is the ray's T
+// less that of the near plane; one less where, at equal T, the plane comes after the ray's key. It is below 16 times the
+// leaf's size. A division without restoring gives a bit per clock on all axes: twice the remainder, less the weight, or
+// plus it where the remainder is negative.
 //
-// A leaf of 2**level voxels has a number of level + 4 bits. The bits above are 0: four of them at a time are skipped
-// while the ray goes from stage 7 to 9, so that a division takes level + 4 clocks, and three more at most.
+// A leaf of 2**level voxels has a number of level + 4 bits. Of the bits above, which are 0, none, Skip or 2 * Skip are
+// left out: a division takes level + 4 clocks and Skip more at most.
 //
 // Two places. The first is given to a ray at stage 3, when its weights are read; it gets since at stage 6. At stage 9
 // voxrt_slot_scheduler says whether the ray is taken: there it is known whether the light may reach its face. The second
@@ -22,8 +23,8 @@ module voxrt_hit_point
   // Stage 3: a ray hits, and may be one to take.
   input  logic                              hit3_i,
   input  weights_t                          weights3_i,
-  // Stage 6: floor(since / weight) planes are crossed; the leaf's size, one-hot.
-  input  logic [key_bits(MaxDepth, 1'b1)-1:0] since6_i  [3],
+  // Stage 6: -1 - since, signed; the leaf's size, one-hot.
+  input  logic [key_bits(MaxDepth, 1'b1)-1:0] until6_i  [3],
   input  logic [              MaxDepth-1:0] size6_i,
   // Stage 9: whether the ray there has a place. If it is taken: what is known of its hit point, which is the corner of
   // its leaf, and its material.
@@ -41,15 +42,13 @@ module voxrt_hit_point
   localparam int unsigned Bits = MaxDepth - 1 + FractionBits;
   localparam int unsigned SinceBits = WeightBits + Bits;
   localparam int unsigned CountBits = $clog2(Bits + 1);
-  localparam int unsigned Skip = 4;
-  localparam int unsigned MaxSkips = (MaxDepth - 1) / Skip;
-  localparam int unsigned SkipBits = larger($clog2(MaxSkips + 1), 1);
+  localparam int unsigned Skip = (MaxDepth + 2) / 3;
 
-  // How often Skip bits are skipped.
-  function automatic logic [SkipBits-1:0] skips_of(logic [MaxDepth-1:0] size);
+  // How often Skip bits are left out.
+  function automatic logic [1:0] skips_of(logic [MaxDepth-1:0] size);
     skips_of = '0;
     for (int unsigned level = 0; level < MaxDepth; level++) begin
-      if (size[level]) skips_of |= SkipBits'((MaxDepth - 1 - level) / Skip);
+      if (size[level]) skips_of |= 2'((MaxDepth - 1 - level) / Skip);
     end
   endfunction
 
@@ -57,8 +56,8 @@ module voxrt_hit_point
   logic       [         9:4] held_q;   // The stage that its ray is in, one-hot.
   logic                      taken_q;  // The ray is taken: it waits for the second place.
   weights_t                  weights_q;
-  logic [2:0][SinceBits-1:0] since_q;
-  logic       [SkipBits-1:0] skips_q, to_skip_q;
+  logic [2:0][SinceBits-1:0] until_q;
+  logic       [         1:0] skips_q;
   hit_point_t                hit_q;
   material_t                 material_q;
   logic                      holds3, moves;
@@ -72,14 +71,10 @@ module voxrt_hit_point
     else if (moves) taken_q <= 1'b0;
     if (holds3) weights_q <= weights3_i;
     if (held_q[6]) begin
-      for (int unsigned a = 0; a < 3; a++) since_q[a] <= since6_i[a][SinceBits-1:0];
-      skips_q   <= skips_of(size6_i);
-      to_skip_q <= skips_of(size6_i);
-    end else if (to_skip_q != '0) begin
-      for (int unsigned a = 0; a < 3; a++) since_q[a] <= since_q[a] << Skip;
-      to_skip_q <= to_skip_q - 1'b1;
+      for (int unsigned a = 0; a < 3; a++) until_q[a] <= until6_i[a][SinceBits-1:0];
+      skips_q <= skips_of(size6_i);
     end
-    if (takes9_i) begin
+    if (held_q[9]) begin
       hit_q      <= hit9_i;
       material_q <= material9_i;
     end
@@ -91,16 +86,25 @@ module voxrt_hit_point
 
   // The second place. The bits found take the place of the lower bits of since.
   logic                       busy_q, done_q;
-  logic       [CountBits-1:0] left_q;
+  logic       [CountBits-1:0] left, left_q;
   weights_t                   divisor_q;
   logic [2:0][WeightBits:0]   remainder_q, next_remainder;  // Signed.
   logic [2:0][      Bits-1:0] lower_q;
+  logic [2:0][ SinceBits-1:0] since;
   hit_point_t                 result_q;
   material_t                  result_material_q;
 
-  assign moves = taken_q && (!busy_q || (done_q && ready_i));
+  assign moves = taken_q && !busy_q;
 
   always_comb begin
+    since = ~until_q;
+    left  = CountBits'(Bits);
+    for (int unsigned skips = 1; skips < 3; skips++) begin
+      if (skips_q == 2'(skips)) begin
+        for (int unsigned a = 0; a < 3; a++) since[a] = ~until_q[a] << (Skip * skips);
+        left = CountBits'(Bits - Skip * skips);
+      end
+    end
     for (int unsigned a = 0; a < 3; a++) begin
       next_remainder[a] = {remainder_q[a][WeightBits-1:0], lower_q[a][Bits-1]} +
           (remainder_q[a][WeightBits] ? {1'b0, divisor_q[a]} : ~{1'b0, divisor_q[a]}) +
@@ -113,21 +117,21 @@ module voxrt_hit_point
       divisor_q         <= weights_q;
       result_q          <= hit_q;
       result_material_q <= material_q;
-      left_q            <= CountBits'(Bits) - CountBits'(Skip) * CountBits'(skips_q);
+      left_q            <= left;
     end else begin
       left_q <= left_q - 1'b1;
     end
     for (int unsigned a = 0; a < 3; a++) begin
       if (moves) begin
-        remainder_q[a] <= {1'b0, since_q[a][SinceBits-1:Bits]};
-        lower_q[a]     <= since_q[a][Bits-1:0];
+        remainder_q[a] <= {1'b0, since[a][SinceBits-1:Bits]};
+        lower_q[a]     <= since[a][Bits-1:0];
       end else if (!done_q) begin
         remainder_q[a] <= next_remainder[a];
         lower_q[a]     <= {lower_q[a][Bits-2:0], !next_remainder[a][WeightBits]};
       end
     end
     busy_q <= moves || (busy_q && !(done_q && ready_i));
-    done_q <= !moves && (done_q ? !ready_i : busy_q && left_q == CountBits'(1));
+    done_q <= done_q ? !ready_i : busy_q && left_q == CountBits'(1);
     if (!rst_ni) begin
       busy_q <= 1'b0;
       done_q <= 1'b0;
@@ -151,9 +155,8 @@ module voxrt_hit_point
     if (rst_ni && reset_seen_q) begin
       assert (!takes9_i || holds9_o) else $error("a ray is taken that has no place");
       assert (!takes9_i || !taken_q) else $error("a place has two rays");
-      assert (!moves || to_skip_q == '0) else $error("a ray is divided before its bits are skipped");
       for (int unsigned a = 0; a < 3; a++) begin
-        assert (!moves || since_q[a][SinceBits-1:Bits] < weights_q[a]) else $error("a ray is not in its leaf");
+        assert (!moves || since[a][SinceBits-1:Bits] < weights_q[a]) else $error("a ray is not in its leaf");
         assert (!valid_o || (result_q.point[a] & PointLimit'(lower_q[a])) == '0)
         else $error("a hit point is not in its leaf");
       end

@@ -272,7 +272,7 @@ module voxrt_lane
   logic                leaves_cell9, restarts;
   logic [MaxDepth-1:0] top_size, corner8[3], size10, corner11[3], size11;
   logic [         2:0] octant11;
-  logic [ KeyBits-1:0] exit_time9[3], since6[3];
+  logic [ KeyBits-1:0] exit_time9[3], until6[3];
   face_e               key_face8, exit_face9;
 
   assign restarts = decision.issues || decision.reflects;
@@ -294,7 +294,7 @@ module voxrt_lane
     .dead_i        (dead_q[6+Extra]),
     .corner_i      (corner_q[6+Extra]),
     .size_i        (size_q[6+Extra]),
-    .since_o       (since6),
+    .until_o       (until6),
     .corner8_o     (corner8),
     .key_face8_o   (key_face8),
     .step_o        (next_step),
@@ -322,7 +322,7 @@ module voxrt_lane
       .rst_ni,
       .hit3_i     (active_q[3+Extra] && action3_q == Finish && material3_q != '0 && !modes.shadow3),
       .weights3_i (weights3),
-      .since6_i   (since6),
+      .until6_i   (until6),
       .size6_i    (size_q[6+Extra]),
       .holds9_o   (holds9),
       .takes9_i   (takes9),
@@ -337,7 +337,7 @@ module voxrt_lane
     logic unused_hit_point;
     always_comb begin
       unused_hit_point = &{weights3, takes9, hit9, point_ready, modes.shadow3};
-      for (int unsigned a = 0; a < 3; a++) unused_hit_point ^= ^since6[a];
+      for (int unsigned a = 0; a < 3; a++) unused_hit_point ^= ^until6[a];
     end
     assign {holds9, point_valid, point, point_material} = '0;
   end

@@ -29,8 +29,8 @@ module voxrt_next_cell
   input  logic [2:0]                             dead_i,
   input  logic [MaxDepth-1:0]                    corner_i    [3],
   input  logic [MaxDepth-1:0]                    size_i,
-  // Only with Light: floor(since / weight) is the number of planes that have been crossed, from that of T on.
-  output logic [key_bits(MaxDepth, Light)-1:0]   since_o     [3],
+  // For voxrt_hit_point, where near planes are given.
+  output logic [key_bits(MaxDepth, Light)-1:0]   until_o     [3],
   // Stage 8.
   output logic [MaxDepth-1:0]                    corner8_o   [3],
   output face_e                                  key_face8_o,
@@ -69,7 +69,7 @@ module voxrt_next_cell
       first[a]      = action_i == Leave ? a != 2 : 2'(a) <= key_face_i;
       if (Light && dead_i[a] && action_i != Leave) {other[a], first[a]} = '0;
       difference[a] = {time_i[a], 1'b0} - {other[a], first[a]};
-      since_o[a]    = Light ? ~difference[a][KeyBits:1] : '0;
+      until_o[a]    = Light ? difference[a][KeyBits:1] : '0;
     end
   end
 

@@ -1,6 +1,6 @@
 """voxrt_hit_point against exact fractions: rays that hit at any clock, of which some are taken; resets at any clock.
 
-The bench is the ring: a ray's weights are there at stage 3, since and size at stage 6, all else at stage 9.
+The bench is the ring: a ray's weights are there at stage 3, times and the leaf's size at stage 6, all else at stage 9.
 """
 
 import random
@@ -62,7 +62,7 @@ def sub_cell(origin, ray, axis, key):
 
 
 def since_near_plane(origin, ray, axis, corner, key):
-    """Give what voxrt_next_cell makes of T of a leaf's near plane; on a dead axis, T is of a plane one before."""
+    """Give what has passed since a leaf's near plane; on a dead axis, T is of a plane one before."""
     dead = ray.dead >> axis & 1
     time = (16 * corner - origin - dead) * ray.weight[axis]
     return -1 - time if dead else key[0] - time - (axis > key[1])
@@ -86,7 +86,7 @@ class Ring:
             at3, at6, at9 = (self.stages[stage] or some_hit(self.depth) for stage in (3, 6, 9))
             drive(dut, hit3_i=coming is not None, weights3_i=packed_array(at3.weights, WEIGHT), size6_i=at6.size)
             for axis, value in enumerate(at6.since):
-                dut.since6_i[axis].value = wrapped(value, len(dut.since6_i[axis]))
+                dut.until6_i[axis].value = wrapped(-1 - value, len(dut.until6_i[axis]))
             drive(dut, hit9_i=HIT_POINT.pack(**at9.known), material9_i=at9.material, ready_i=next(self.takes))
             await FallingEdge(dut.clk_i)
             holds = int(dut.holds9_o.value)
