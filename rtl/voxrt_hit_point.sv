@@ -44,12 +44,20 @@ module voxrt_hit_point
   localparam int unsigned CountBits = $clog2(Bits + 1);
   localparam int unsigned Skip = (MaxDepth + 2) / 3;
 
-  // How often Skip bits are left out.
-  function automatic logic [1:0] skips_of(logic [MaxDepth-1:0] size);
-    skips_of = '0;
+  // How a ray comes to the second place, or not: with how many bits left out.
+  typedef enum logic [1:0] {
+    Stay,
+    MoveAll,
+    MoveSkip,
+    MoveSkip2
+  } move_e;
+
+  function automatic move_e move_of(logic [MaxDepth-1:0] size);
+    logic [1:0] move = '0;
     for (int unsigned level = 0; level < MaxDepth; level++) begin
-      if (size[level]) skips_of |= 2'((MaxDepth - 1 - level) / Skip);
+      if (size[level]) move |= 2'(1 + (MaxDepth - 1 - level) / Skip);
     end
+    return move_e'(move);
   endfunction
 
   // The first place.
@@ -57,10 +65,10 @@ module voxrt_hit_point
   logic                      taken_q;  // The ray is taken: it waits for the second place.
   weights_t                  weights_q;
   logic [2:0][SinceBits-1:0] until_q;
-  logic       [         1:0] skips_q;
+  move_e                     move_q, move;
   hit_point_t                hit_q;
   material_t                 material_q;
-  logic                      holds3, moves;
+  logic                      holds3;
 
   assign holds3   = hit3_i && held_q == '0 && !taken_q;
   assign holds9_o = held_q[9];
@@ -68,11 +76,11 @@ module voxrt_hit_point
   always_ff @(posedge clk_i) begin
     held_q <= {held_q[8:4], holds3};
     if (takes9_i) taken_q <= 1'b1;
-    else if (moves) taken_q <= 1'b0;
+    else if (move != Stay) taken_q <= 1'b0;
     if (holds3) weights_q <= weights3_i;
     if (held_q[6]) begin
       for (int unsigned a = 0; a < 3; a++) until_q[a] <= until6_i[a][SinceBits-1:0];
-      skips_q <= skips_of(size6_i);
+      move_q <= move_of(size6_i);
     end
     if (held_q[9]) begin
       hit_q      <= hit9_i;
@@ -86,51 +94,50 @@ module voxrt_hit_point
 
   // The second place. The bits found take the place of the lower bits of since.
   logic                       busy_q, done_q;
-  logic       [CountBits-1:0] left, left_q;
+  logic       [CountBits-1:0] left_q;
   weights_t                   divisor_q;
-  logic [2:0][WeightBits:0]   remainder_q, next_remainder;  // Signed.
+  logic [2:0][WeightBits:0]   remainder_q, sum;  // Signed.
   logic [2:0][      Bits-1:0] lower_q;
-  logic [2:0][ SinceBits-1:0] since;
+  logic [2:0][ SinceBits-1:0] since, next;  // Remainder and lower bits, without the sign.
   hit_point_t                 result_q;
   material_t                  result_material_q;
 
-  assign moves = taken_q && !busy_q;
+  assign move = taken_q && !busy_q ? move_q : Stay;
 
   always_comb begin
     since = ~until_q;
-    left  = CountBits'(Bits);
-    for (int unsigned skips = 1; skips < 3; skips++) begin
-      if (skips_q == 2'(skips)) begin
-        for (int unsigned a = 0; a < 3; a++) since[a] = ~until_q[a] << (Skip * skips);
-        left = CountBits'(Bits - Skip * skips);
-      end
-    end
     for (int unsigned a = 0; a < 3; a++) begin
-      next_remainder[a] = {remainder_q[a][WeightBits-1:0], lower_q[a][Bits-1]} +
+      sum[a] = {remainder_q[a][WeightBits-1:0], lower_q[a][Bits-1]} +
           (remainder_q[a][WeightBits] ? {1'b0, divisor_q[a]} : ~{1'b0, divisor_q[a]}) +
           (WeightBits + 1)'(!remainder_q[a][WeightBits]);
+      unique case (move)
+        MoveAll:   next[a] = since[a];
+        MoveSkip:  next[a] = since[a] << Skip;
+        MoveSkip2: next[a] = since[a] << (2 * Skip);
+        default:   next[a] = {sum[a][WeightBits-1:0], lower_q[a][Bits-2:0], !sum[a][WeightBits]};
+      endcase
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (moves) begin
+    if (move != Stay) begin
       divisor_q         <= weights_q;
       result_q          <= hit_q;
       result_material_q <= material_q;
-      left_q            <= left;
-    end else begin
-      left_q <= left_q - 1'b1;
     end
-    for (int unsigned a = 0; a < 3; a++) begin
-      if (moves) begin
-        remainder_q[a] <= {1'b0, since[a][SinceBits-1:Bits]};
-        lower_q[a]     <= since[a][Bits-1:0];
-      end else if (!done_q) begin
-        remainder_q[a] <= next_remainder[a];
-        lower_q[a]     <= {lower_q[a][Bits-2:0], !next_remainder[a][WeightBits]};
+    unique case (move)
+      MoveAll:   left_q <= CountBits'(Bits);
+      MoveSkip:  left_q <= CountBits'(Bits - Skip);
+      MoveSkip2: left_q <= CountBits'(Bits - 2 * Skip);
+      default:   left_q <= left_q - 1'b1;
+    endcase
+    if (move != Stay || (busy_q && !done_q)) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        {remainder_q[a][WeightBits-1:0], lower_q[a]} <= next[a];
+        remainder_q[a][WeightBits]                   <= move == Stay && sum[a][WeightBits];
       end
     end
-    busy_q <= moves || (busy_q && !(done_q && ready_i));
+    busy_q <= move != Stay || (busy_q && !(done_q && ready_i));
     done_q <= done_q ? !ready_i : busy_q && left_q == CountBits'(1);
     if (!rst_ni) begin
       busy_q <= 1'b0;
@@ -156,7 +163,7 @@ module voxrt_hit_point
       assert (!takes9_i || holds9_o) else $error("a ray is taken that has no place");
       assert (!takes9_i || !taken_q) else $error("a place has two rays");
       for (int unsigned a = 0; a < 3; a++) begin
-        assert (!moves || since[a][SinceBits-1:Bits] < weights_q[a]) else $error("a ray is not in its leaf");
+        assert (move == Stay || since[a][SinceBits-1:Bits] < weights_q[a]) else $error("a ray is not in its leaf");
         assert (!valid_o || (result_q.point[a] & PointLimit'(lower_q[a])) == '0)
         else $error("a hit point is not in its leaf");
       end
