@@ -172,11 +172,22 @@ module voxrt_cached_memory
     .axi_i
   );
 
-  assign events_o = '{
-      bus_error: bus_error,
-      bus_timeout: bus_timeout,
-      word_requests: 8'($countones(read_i)),
-      line_requests: 8'($countones(request_ready)),
-      lines_read: fetch_valid && fetch_ready
-  };
+  // Counts come a clock later, so that the sums are not behind the caches' decisions.
+  memory_events_t counts_q;
+
+  always_ff @(posedge clk_i) begin
+    counts_q <= '{
+        word_requests: 8'($countones(read_i)),
+        line_requests: 8'($countones(request_ready)),
+        lines_read: fetch_valid && fetch_ready,
+        default: '0
+    };
+    if (!rst_ni) counts_q <= '0;
+  end
+
+  always_comb begin
+    events_o             = counts_q;
+    events_o.bus_error   = bus_error;
+    events_o.bus_timeout = bus_timeout;
+  end
 endmodule
