@@ -5,17 +5,22 @@ module sdram_bench
   parameter int unsigned TrcdPs = 20_000,
   parameter int unsigned TrpPs = 20_000,
   parameter int unsigned TrfcPs = 66_000,
-  parameter int unsigned RefreshPs = 7_812_500
+  parameter int unsigned RefreshPs = 7_812_500,
+  parameter int unsigned AnswerTicks = 9,
+  parameter int unsigned HoldTicks = 3
 ) (
   input  logic              clk_i,
-  input  logic              sdram_clk_i,
+  input  logic              sdram_clk_i,  // As clk_i, later.
+  input  logic              tick_i,       // Ten changes per clock.
   input  logic              rst_ni,
-  // Ports 0 and 1: lines.
+  // Ports 0 and 1: lines. Port 0 is the screen's.
+  input  logic              urgent_i,
   input  logic [1:0]        valid_i,
-  output logic [1:0]        ready_o,
-  input  logic [1:0]        write_i,
+  output logic [3:0]        accepted_o,   // Of all ports.
+  output logic [3:0][19:0]  accepted_line_o,
+  input  logic              write_i,      // Of port 1.
   input  logic [31:0]       line_i[2],
-  input  logic [31:0]       mask_i[2],
+  input  logic [15:0]       mask_i,
   input  logic [255:0]      data_i,
   output logic [1:0]        done_o,
   output logic [255:0]      line_o,
@@ -36,7 +41,8 @@ module sdram_bench
   logic [255:0] request_data;
   logic [1:0][255:0] answers;
 
-  assign ready_o   = ready[1:0];
+  assign accepted_o = ready & valid;
+  assign accepted_line_o = lines;
   assign done_o    = done[1:0];
   assign answer0_o = answers[0];
   assign answer1_o = answers[1];
@@ -79,15 +85,18 @@ module sdram_bench
     );
   end
 
-  board_sdram_arbiter u_arbiter (
+  board_sdram_arbiter #(
+    .Ports(4)
+  ) u_arbiter (
     .clk_i,
     .rst_ni,
+    .urgent_i,
     .valid_i        (valid),
     .ready_o        (ready),
-    .write_i        ({2'b00, write_i}),
+    .write_i        ({2'b00, write_i, 1'b0}),
     .line_i         (lines),
-    .mask_i         ({32'd0, mask_i[1][15:0], mask_i[0][15:0]}),
-    .data_i         ({4{data_i}}),
+    .mask_i         ({32'd0, mask_i, 16'd0}),
+    .data_i         ({512'd0, data_i, 256'd0}),
     .done_o         (done),
     .request_valid_o(request_valid),
     .request_ready_i(request_ready),
@@ -98,10 +107,20 @@ module sdram_bench
     .done_i         (controller_done)
   );
 
-  logic cke, cs_n, ras_n, cas_n, we_n, oe, driven;
-  logic [1:0] ba, dqm;
-  logic [12:0] a;
-  logic [15:0] to_chip, from_chip;
+  // As board_sdram_pins: out by a flip-flop, in at the falling edge.
+  typedef struct packed {
+    logic        cke, cs_n, ras_n, cas_n, we_n;
+    logic [ 1:0] ba, dqm;
+    logic [12:0] a;
+    logic        oe;
+    logic [15:0] dq;
+  } pins_t;
+  pins_t       inner, outer_q;
+  logic        driven;
+  logic [15:0] from_chip, from_chip_q;
+
+  always_ff @(posedge clk_i) outer_q <= inner;
+  always_ff @(negedge clk_i) from_chip_q <= from_chip;
 
   board_sdram #(
     .PowerOnUs(2)
@@ -116,17 +135,17 @@ module sdram_bench
     .request_data_i (request_data),
     .done_o         (controller_done),
     .line_o,
-    .sdram_cke_o    (cke),
-    .sdram_cs_no    (cs_n),
-    .sdram_ras_no   (ras_n),
-    .sdram_cas_no   (cas_n),
-    .sdram_we_no    (we_n),
-    .sdram_ba_o     (ba),
-    .sdram_a_o      (a),
-    .sdram_dqm_o    (dqm),
-    .sdram_dq_oe_o  (oe),
-    .sdram_dq_o     (to_chip),
-    .sdram_dq_i     (from_chip)
+    .sdram_cke_o(inner.cke),
+    .sdram_cs_no(inner.cs_n),
+    .sdram_ras_no(inner.ras_n),
+    .sdram_cas_no(inner.cas_n),
+    .sdram_we_no(inner.we_n),
+    .sdram_ba_o(inner.ba),
+    .sdram_a_o(inner.a),
+    .sdram_dqm_o(inner.dqm),
+    .sdram_dq_oe_o(inner.oe),
+    .sdram_dq_o(inner.dq),
+    .sdram_dq_i(from_chip_q)
   );
 
   sdram_model #(
@@ -134,19 +153,22 @@ module sdram_bench
     .TrcdPs   (TrcdPs),
     .TrpPs    (TrpPs),
     .TrfcPs   (TrfcPs),
-    .RefreshPs(RefreshPs)
+    .RefreshPs(RefreshPs),
+    .AnswerTicks(AnswerTicks),
+    .HoldTicks(HoldTicks)
   ) u_model (
-    .clk_i      (sdram_clk_i),
-    .cke_i      (cke),
-    .cs_ni      (cs_n),
-    .ras_ni     (ras_n),
-    .cas_ni     (cas_n),
-    .we_ni      (we_n),
-    .ba_i       (ba),
-    .a_i        (a),
-    .dqm_i      (dqm),
-    .dq_driven_i(oe),
-    .dq_i       (to_chip),
+    .tick_i,
+    .clk_i(sdram_clk_i),
+    .cke_i(outer_q.cke),
+    .cs_ni(outer_q.cs_n),
+    .ras_ni(outer_q.ras_n),
+    .cas_ni(outer_q.cas_n),
+    .we_ni(outer_q.we_n),
+    .ba_i(outer_q.ba),
+    .a_i(outer_q.a),
+    .dqm_i(outer_q.dqm),
+    .dq_driven_i(outer_q.oe),
+    .dq_i(outer_q.dq),
     .dq_driven_o(driven),
     .dq_o       (from_chip)
   );

@@ -2,6 +2,10 @@
 //
 // Rules: what is done first after power-on, tRCD, tRP, tRC, tRAS, tRFC, tMRD, tWR, the time between refreshes, a bank
 // that is open or not, and both sides driving the data. Times are of speed -7 parts, in picoseconds. Bursts of 8 only.
+//
+// Time runs in ticks, a tenth of a period each: every change of tick_i. What is read is there AnswerTicks after the clock
+// edge that CAS latency counts from, and stays HoldTicks beyond the next: between, it is noise. These have the way of the
+// clock to the chip, and the data's way back, in them.
 module sdram_model #(
   parameter int unsigned PeriodPs = 13_333,
   parameter int unsigned PowerOnPs = 200_000_000,
@@ -11,8 +15,12 @@ module sdram_model #(
   parameter int unsigned TrasPs = 45_000,
   parameter int unsigned TrfcPs = 66_000,
   parameter int unsigned TwrPs = 15_000,
-  parameter int unsigned RefreshPs = 7_812_500
+  parameter int unsigned TrrdPs = 15_000,
+  parameter int unsigned RefreshPs = 7_812_500,
+  parameter int unsigned AnswerTicks = 9,
+  parameter int unsigned HoldTicks = 3
 ) (
+  input  logic        tick_i,
   input  logic        clk_i,
   input  logic        cke_i,
   input  logic        cs_ni,
@@ -43,6 +51,9 @@ module sdram_model #(
   logic [ 8:0] column;
   logic        pipe_valid[4];
   logic [15:0] pipe[4];
+  logic        answer_valid = 1'b0, clk_before = 1'b0;
+  logic [15:0] answer;
+  int unsigned ticks = 0;
 
   task automatic rule(input logic holds, input string name);
     if (!holds) begin
@@ -59,7 +70,7 @@ module sdram_model #(
     end
   end
 
-  always @(posedge clk_i) begin
+  task automatic clock_edge();
     now += 64'(PeriodPs);
     // Automatic precharge.
     for (int i = 0; i < 4; i++) begin
@@ -107,6 +118,7 @@ module sdram_model #(
           rule(!open[ba_i], "activate of an open bank");
           rule(activated[ba_i] == 0 || now >= activated[ba_i] + 64'(TrcPs), "tRC");
           rule(now >= closed[ba_i] + 64'(TrpPs), "tRP");
+          for (int i = 0; i < 4; i++) rule(activated[i] == 0 || now >= activated[i] + 64'(TrrdPs), "tRRD");
           open[ba_i]      = 1'b1;
           row[ba_i]       = a_i;
           activated[ba_i] = now;
@@ -151,9 +163,25 @@ module sdram_model #(
       column[2:0]++;
       beats--;
     end
+    answer_valid = latency != 0 && pipe_valid[latency-1];
+    answer       = pipe[latency-1];
+  endtask
+
+  always @(tick_i) begin
+    ticks++;
+    if (clk_i && !clk_before) begin
+      ticks = 0;
+      clock_edge();
+    end
+    clk_before = clk_i;
+    if (ticks == HoldTicks) begin
+      dq_driven_o = 1'b0;
+      dq_o        = 16'hDEAD;
+    end
+    if (ticks == AnswerTicks) begin
+      dq_driven_o = answer_valid;
+      dq_o        = answer_valid ? answer : 16'hDEAD;
+    end
     rule(!(dq_driven_o && dq_driven_i), "both sides drive the data");
-    dq_driven_o <= latency != 0 && pipe_valid[latency-1];
-    // What is not driven is noise, so that a wrong latency shows.
-    dq_o        <= latency != 0 && pipe_valid[latency-1] ? pipe[latency-1] : 16'hDEAD;
   end
 endmodule
