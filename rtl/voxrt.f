@@ -13,6 +13,7 @@ voxrt_divide.sv
 voxrt_fifo.sv
 voxrt_frame.sv
 voxrt_free_list.sv
+voxrt_hit_point.sv
 voxrt_l1_cache.sv
 voxrt_l2_cache.sv
 voxrt_lane.sv

@@ -37,6 +37,7 @@ module voxrt_buffered_lane
   input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
   output logic                                           mem_stops_o,
   // To voxrt_light.
+  output logic                                           hit_point_claim_o,
   output logic                                           hit_point_valid_o,
   input  logic                                           hit_point_ready_i,
   output hit_point_t                                     hit_point_o,
@@ -246,8 +247,9 @@ module voxrt_buffered_lane
     .allocate_tag_i  (allocate_tag),
     .result_o        (result),
     .result_pixel_o  (result_pixel),
-    .hit_point_valid_o,
+    .hit_point_claim_o,
     .hit_point_ready_i,
+    .hit_point_valid_o,
     .hit_point_o,
     .bad_pointer_o,
     .step_limit_o

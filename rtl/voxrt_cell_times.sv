@@ -1,5 +1,5 @@
-// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, or middle ones, one per
-// axis; modulo 2**KeyBits.
+// When a ray crosses three planes of its cell: T, stages 1 to 5 of voxrt_lane. Far planes, middle ones, or, where it
+// hits, near ones, one per axis; modulo 2**KeyBits.
 //
 // Distances from origins to planes come from the camera's origin, which all rays share, or, with Light or Mirrors, from
 // an origin per ray: reflections move it, and shadow rays start at a hit point and count 1/32 voxel.
@@ -20,14 +20,15 @@ module voxrt_cell_times
   // Stage 1: the cell's lowest corner. Stage 2: the ray's row, the cell's size, one-hot, and whether the far planes are
   // wanted.
   input  logic                  [$clog2(Slots)-1:0]              slot1_i,
-  input  logic                  [cell_bits(MaxDepth, Light)-1:0] corner1_i   [3],
+  input  logic                  [MaxDepth-1:0]                   corner1_i   [3],
   input  logic                  [2:0]                            mirrored1_i,
   input  logic                  [2:0]                            dead1_i,
   input  logic                                                   shadow1_i,
   input  logic                  [row_bits(Light)-1:0]            row2_i,
-  input  logic                  [cell_bits(MaxDepth, Light)-1:0] size2_i,
+  input  logic                  [MaxDepth-1:0]                   size2_i,
   input  logic                                                   shadow2_i,
   input  logic                                                   takes_far2_i,
+  input  logic                                                   takes_near2_i,      // Only with Light.
   // Stage 9: a new ray with its origin; or the ray is reflected by a plane of the key's face.
   input  logic                  [$clog2(Slots)-1:0]              slot9_i,
   input  decision_t                                              decision_i,
@@ -35,11 +36,12 @@ module voxrt_cell_times
   input  face_e                                                  key_face_i,
   // Stage 6.
   output logic                  [key_bits(MaxDepth, Light)-1:0]  time_o      [3],
+  // For voxrt_hit_point: stage 3.
+  output weights_t                                               weights3_o,
   // For voxrt_lod, with an origin that all rays share: stage 2, near plane - origin, voxels, signed; stage 3.
   output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o [3],
   output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
-  localparam int unsigned SubBits = Light ? FractionBits : 0;
   localparam int unsigned RowBits = row_bits(Light);
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
@@ -65,7 +67,7 @@ module voxrt_cell_times
     assign origin1[0] = origin_x_q[slot1_i];
     assign origin1[1] = origin_y_q[slot1_i];
     assign origin1[2] = origin_z_q[slot1_i];
-    assign step2      = (DistanceBits'(size2_i) << (FractionBits - SubBits)) >> !takes_far2_i;
+    assign step2      = takes_near2_i ? '0 : (DistanceBits'(size2_i) << FractionBits) >> !takes_far2_i;
 
     always_comb begin
       for (int unsigned a = 0; a < 3; a++) begin
@@ -77,7 +79,7 @@ module voxrt_cell_times
     // Planes of a dead axis must not meet the origin: a distance one less has the sign that tells where it is.
     always_ff @(posedge clk_i) begin
       for (int unsigned a = 0; a < 3; a++) begin
-        near2_q[a] <= (DistanceBits'(corner1_i[a]) << (FractionBits - SubBits) << shadow1_i) - origin1[a] -
+        near2_q[a] <= (DistanceBits'(corner1_i[a]) << FractionBits << shadow1_i) - origin1[a] -
             DistanceBits'(dead1_i[a]);
         distance3_q[a] <= near2_q[a] + (step2 << shadow2_i);
       end
@@ -95,7 +97,8 @@ module voxrt_cell_times
     logic                           unused_origin;
 
     assign near2_o       = near2_q;
-    assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, slot1_i, slot9_i, decision_i, key_face_i};
+    assign unused_origin = &{ray_origin_i, shadow1_i, shadow2_i, takes_near2_i, slot1_i, slot9_i, decision_i,
+                             key_face_i};
 
     // The fraction of corner - origin is the other origin's, as the two add up to whole voxels. On a dead axis the
     // origin's fraction counts as above 0.
@@ -138,7 +141,8 @@ module voxrt_cell_times
     end
   end
 
-  assign reach3_o = reach3_q;
+  assign reach3_o   = reach3_q;
+  assign weights3_o = Light ? {weight3_q[2], weight3_q[1], weight3_q[0]} : '0;
 
   for (genvar a = 0; a < 3; a++) begin : gen_time
     voxrt_plane_time #(

@@ -27,8 +27,8 @@
 // The ring never stops: rays are issued only when the reorder buffer has an entry for them. A word that the memory did
 // not deliver (mem_ack_i low) is asked for again when the ray comes round.
 //
-// Mirrors and Light let a ray continue after a hit: voxrt_slot_scheduler. With Light, corner and size have four bits
-// more, for hit points, and rays that refine theirs read no word.
+// Mirrors lets a ray continue after a hit: voxrt_slot_scheduler. With Light, a ray that hits goes to voxrt_hit_point;
+// while that has no place for it, it stays in its slot and reads no word.
 module voxrt_lane
   import voxrt_pkg::*;
 #(
@@ -69,9 +69,10 @@ module voxrt_lane
   input  logic            [TagBits-1:0]                   allocate_tag_i,
   output result_t                                         result_o,
   output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
-  // Hit points, for voxrt_light: only with hit_point_ready_i, or when a shadow ray is issued.
-  output logic                                            hit_point_valid_o,
+  // For voxrt_light: a hit point will come, only with hit_point_ready_i or when a shadow ray is issued; it comes.
+  output logic                                            hit_point_claim_o,
   input  logic                                            hit_point_ready_i,
+  output logic                                            hit_point_valid_o,
   output hit_point_t                                      hit_point_o,
   // Errors, for one clock each.
   output logic                                            bad_pointer_o,
@@ -89,10 +90,6 @@ module voxrt_lane
   localparam int unsigned LevelBits = $clog2(MaxDepth);
   localparam int unsigned WholeBits = distance_bits(MaxDepth, PositionBits) - FractionBits;
 
-  // Corners and sizes count 1 / 2**SubBits voxel.
-  localparam int unsigned SubBits = Light ? FractionBits : 0;
-  localparam int unsigned CellBits = cell_bits(MaxDepth, Light);
-
   // Which slot is in which stage, and whether it has a ray.
   logic [SlotBits-1:0] slot  [Stages];
   logic [SlotBits-1:0] slot_q[Slots];
@@ -109,8 +106,8 @@ module voxrt_lane
   localparam int unsigned CellStages = 7 + Extra;
   logic [         2:0] mirrored_q[Slots], dead_q[Slots];
   logic [ RowBits-1:0] row_q     [Slots];
-  logic [CellBits-1:0] corner_q  [CellStages][3];
-  logic [CellBits-1:0] size_q    [CellStages];
+  logic [MaxDepth-1:0] corner_q  [CellStages][3];
+  logic [MaxDepth-1:0] size_q    [CellStages];
 
   always_ff @(posedge clk_i) begin
     for (int unsigned s = 1; s < CellStages; s++) begin
@@ -133,27 +130,27 @@ module voxrt_lane
 
   // Then it is read as if it were eight.
   assign root_is_leaf  = (Light || Mirrors) && root_i[PayloadBits];
-  assign mem_read_o    = active_q[0] && !modes.refines0 && !root_is_leaf;
+  assign mem_read_o    = active_q[0] && !modes.waits0 && !root_is_leaf;
   assign mem_address_o = {block0_q, octant0_q};
 
   // 2 decode.
   logic                 leaf, bad_pointer, step_limit, arrived;
   logic [PayloadBits:0] word;
   action_e              action;
-  logic [CellBits-1:0]  size2;
+  logic [MaxDepth-1:0]  size2;
 
   assign size2       = size_q[2+Extra];
   assign word        = root_is_leaf ? root_i : mem_word_i;
-  assign arrived     = (mem_ack_i || root_is_leaf) && !modes.refines2;
+  assign arrived     = (mem_ack_i || root_is_leaf) && !modes.waits2;
   assign leaf        = word[PayloadBits];
   assign bad_pointer = leaf && word[8];
-  assign step_limit  = !leaf && size2[SubBits];
+  assign step_limit  = !leaf && size2[0];
 
   always_comb begin
     action = Finish;
-    if (modes.refines2) action = size2[0] ? Retry : Descend;
+    if (modes.waits2) action = Finish;
     else if (!arrived) action = Retry;
-    else if (!leaf && !size2[SubBits]) action = Descend;
+    else if (!leaf && !size2[0]) action = Descend;
     else if (leaf && word[8:0] == '0) action = Leave;
   end
 
@@ -168,15 +165,15 @@ module voxrt_lane
   logic                 bad_pointer_q, step_limit_q;
 
   // Binary number of a one-hot size.
-  function automatic logic [LevelBits-1:0] level_of(logic [CellBits-1:0] size);
+  function automatic logic [LevelBits-1:0] level_of(logic [MaxDepth-1:0] size);
     level_of = '0;
-    for (int unsigned i = 0; i < MaxDepth; i++) if (size[i+SubBits]) level_of |= LevelBits'(i);
+    for (int unsigned i = 0; i < MaxDepth; i++) if (size[i]) level_of |= LevelBits'(i);
   endfunction
 
   always_ff @(posedge clk_i) begin
     action3_q      <= action;
     block3_q       <= word[BlockBits-1:0];
-    material3_q    <= leaf && !bad_pointer ? word[7:0] : '0;
+    material3_q    <= modes.waits2 ? modes.material2 : leaf && !bad_pointer ? word[7:0] : '0;
     child_level3_q <= level_of(size2 >> 1);
     bad_pointer_q  <= active_q[2+Extra] && arrived && bad_pointer;
     step_limit_q   <= active_q[2+Extra] && arrived && step_limit;
@@ -189,12 +186,13 @@ module voxrt_lane
   assign bad_pointer_o = bad_pointer_q;
   assign step_limit_o  = step_limit_q;
 
-  // 1 to 5: T of planes. A ray that hits, or refines its hit point, needs the middle planes of its leaf.
+  // 1 to 5: T of planes. With Light, a ray that hits needs the near planes of its leaf.
   decision_t          decision;
   step_t              next_step, step9;
   logic [KeyBits-1:0] time6[3];
   logic signed [WholeBits-1:0] near2[3];
   logic        [WholeBits-1:0] reach3;
+  weights_t                    weights3;
 
   voxrt_cell_times #(
     .MaxDepth    (MaxDepth),
@@ -214,12 +212,14 @@ module voxrt_lane
     .row2_i      (row_q[2+Extra]),
     .size2_i     (size2),
     .shadow2_i   (modes.shadow2),
-    .takes_far2_i(Light ? action == Leave : leaf),
+    .takes_far2_i(leaf),
+    .takes_near2_i(Light && action == Finish),
     .slot9_i     (slot[9]),
     .decision_i  (decision),
     .ray_origin_i(ray_i.origin),
     .key_face_i  (step9.key_face),
     .time_o      (time6),
+    .weights3_o  (weights3),
     .near2_o     (near2),
     .reach3_o    (reach3)
   );
@@ -270,13 +270,13 @@ module voxrt_lane
 
   // 6 to 10: the next cell.
   logic                leaves_cell9, restarts;
-  logic [CellBits-1:0] top_size, corner8[3], size10, corner11[3], size11;
+  logic [MaxDepth-1:0] top_size, corner8[3], size10, corner11[3], size11;
   logic [         2:0] octant11;
-  logic [ KeyBits-1:0] exit_time9[3];
+  logic [ KeyBits-1:0] exit_time9[3], until6[3];
   face_e               key_face8, exit_face9;
 
   assign restarts = decision.issues || decision.reflects;
-  assign top_size = CellBits'(world_i.side[MaxDepth:1]) << SubBits;
+  assign top_size = world_i.side[MaxDepth:1];
 
   voxrt_next_cell #(
     .MaxDepth(MaxDepth),
@@ -294,6 +294,7 @@ module voxrt_lane
     .dead_i        (dead_q[6+Extra]),
     .corner_i      (corner_q[6+Extra]),
     .size_i        (size_q[6+Extra]),
+    .until_o       (until6),
     .corner8_o     (corner8),
     .key_face8_o   (key_face8),
     .step_o        (next_step),
@@ -307,6 +308,39 @@ module voxrt_lane
     .size11_o      (size11),
     .octant11_o    (octant11)
   );
+
+  // 3 to 9, beside the ring: hit points.
+  logic       holds9, takes9, point_valid, point_ready;
+  hit_point_t hit9, point;
+  material_t  point_material;
+
+  if (Light) begin : gen_hit_point
+    voxrt_hit_point #(
+      .MaxDepth(MaxDepth)
+    ) u_hit_point (
+      .clk_i,
+      .rst_ni,
+      .hit3_i     (active_q[3+Extra] && action3_q == Finish && material3_q != '0 && !modes.shadow3),
+      .weights3_i (weights3),
+      .until6_i   (until6),
+      .size6_i    (size_q[6+Extra]),
+      .holds9_o   (holds9),
+      .takes9_i   (takes9),
+      .hit9_i     (hit9),
+      .material9_i(material9_q),
+      .valid_o    (point_valid),
+      .ready_i    (point_ready),
+      .hit_point_o(point),
+      .material_o (point_material)
+    );
+  end else begin : gen_no_hit_point
+    logic unused_hit_point;
+    always_comb begin
+      unused_hit_point = &{weights3, takes9, hit9, point_ready, modes.shadow3};
+      for (int unsigned a = 0; a < 3; a++) unused_hit_point ^= ^until6[a];
+    end
+    assign {holds9, point_valid, point, point_material} = '0;
+  end
 
   // 9 schedule.
   logic [KeyBits-1:0] keys[4];
@@ -346,10 +380,19 @@ module voxrt_lane
     .allocate_tag_i,
     .result_o,
     .result_pixel_o,
-    .hit_point_valid_o,
-    .hit_point_ready_i,
-    .hit_point_o
+    .holds_i         (holds9),
+    .takes_o         (takes9),
+    .hit_o           (hit9),
+    .point_valid_i   (point_valid),
+    .point_ready_o   (point_ready),
+    .point_i         (point),
+    .point_material_i(point_material),
+    .hit_point_ready_i
   );
+
+  assign hit_point_claim_o = takes9;
+  assign hit_point_valid_o = point_valid && point_ready;
+  assign hit_point_o       = point;
 
   assign row_free_o.valid = decision.bypasses || ((step9.done || step9.continues) && !decision.keeps);
   assign row_free_o.row   = RowLimit'(decision.bypasses ? ray_row_i : row_q[9+Extra]);
@@ -395,7 +438,7 @@ module voxrt_lane
   assign mirrored11 = mirrored_q[11+Extra];
 
   always_ff @(posedge clk_i) begin
-    if (action3_q == Descend && !modes.refines3) stack_q[{slot[3], child_level3_q}] <= block3_q;
+    if (action3_q == Descend) stack_q[{slot[3], child_level3_q}] <= block3_q;
     block11_q <= stack_q[{slot[10], level_of(size10)}];
     top11_q   <= (size10 & top_size) != '0;
   end

@@ -1,8 +1,9 @@
 // From hit points of the camera's rays to shadow rays, for all lanes; and where the light is among the planes.
 //
 // Lanes are served in turn: once per Lanes clocks is enough for a lane, whose rays read a dozen words between two hit
-// points. A lane has at most QueueDepth shadow rays under way, from its hit point until it issues the ray (issued_i):
-// it may give a hit point while hit_point_ready_o is high, and at a clock in which it issues a shadow ray.
+// points. A lane has at most QueueDepth shadow rays under way, from its claim until it issues the ray (issued_i): it may
+// claim while hit_point_ready_o is high, and at a clock in which it issues a shadow ray. Some clocks later it gives the
+// hit point.
 module voxrt_light
   import voxrt_pkg::*;
 #(
@@ -16,8 +17,9 @@ module voxrt_light
   input  logic          [MaxDepth:0] side_i,                     // Of the world, voxels, one-hot.
   input  logic          [2:0][31:0]  light_i,                    // 1/16 voxel, signed.
   // Hit points, as voxrt_lane gives them.
-  input  logic          [ Lanes-1:0] hit_point_valid_i,
+  input  logic          [ Lanes-1:0] hit_point_claim_i,
   output logic          [ Lanes-1:0] hit_point_ready_o,
+  input  logic          [ Lanes-1:0] hit_point_valid_i,
   input  hit_point_t                 hit_point_i        [Lanes],
   input  logic          [ Lanes-1:0] issued_i,
   // To voxrt_ray_setup, which always takes them.
@@ -48,7 +50,7 @@ module voxrt_light
   end
 
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
-    logic    [CountBits-1:0] credits_q;  // Shadow rays that the lane may still ask for.
+    logic    [CountBits-1:0] credits_q;  // Shadow rays that the lane may still claim.
     logic                    ready;
     queued_t                 arriving;
 
@@ -62,7 +64,7 @@ module voxrt_light
     assign hit_point_ready_o[i] = credits_q != '0;
 
     always_ff @(posedge clk_i) begin
-      credits_q <= credits_q - CountBits'(hit_point_valid_i[i]) + CountBits'(issued_i[i]);
+      credits_q <= credits_q - CountBits'(hit_point_claim_i[i]) + CountBits'(issued_i[i]);
       if (!rst_ni) credits_q <= CountBits'(QueueDepth);
     end
 
@@ -87,7 +89,7 @@ module voxrt_light
 
     always_ff @(posedge clk_i) begin
       if (rst_ni && reset_seen_q) begin
-        assert (!hit_point_valid_i[i] || hit_point_ready_o[i] || issued_i[i]) else $error("a hit point without credit");
+        assert (!hit_point_claim_i[i] || hit_point_ready_o[i] || issued_i[i]) else $error("a claim without credit");
         assert (!hit_point_valid_i[i] || ready) else $error("the queue of hit points overflows");
         assert (credits_q <= CountBits'(QueueDepth)) else $error("more credits than places");
       end

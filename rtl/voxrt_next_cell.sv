@@ -1,5 +1,5 @@
 // From the times of a cell's planes to the cell that follows: stages 6 to 10 of voxrt_lane, whose table says what each
-// does. Times are modulo 2**KeyBits; corners and sizes (one-hot) count 1 / 2**SubBits voxel.
+// does. Times are modulo 2**KeyBits; sizes are one-hot.
 //
 // The next corner is the old one with one bit set, that of the next size:
 //   Descend   size / 2, on the axes whose middle plane is behind
@@ -18,19 +18,21 @@ module voxrt_next_cell
   input  logic                                   rst_ni,
   // Held during a frame.
   input  logic [MaxDepth-1:0]                    outside_mask_i,  // Bits that are 0 in the world.
-  input  logic [cell_bits(MaxDepth, Light)-1:0]  top_size_i,      // Half of the world.
+  input  logic [MaxDepth-1:0]                    top_size_i,      // Half of the world.
   // Which of stages 6, 7, 8 have a ray.
   input  logic [8:6]                             active_i,
   // Stage 6.
   input  action_e                                action_i,
-  input  logic [key_bits(MaxDepth, Light)-1:0]   time_i      [3], // Of far planes, to leave by; else of middle planes.
+  input  logic [key_bits(MaxDepth, Light)-1:0]   time_i      [3], // Of far planes, to leave by; else middle or near.
   input  logic [key_bits(MaxDepth, Light)-1:0]   key_time_i,
   input  face_e                                  key_face_i,
   input  logic [2:0]                             dead_i,
-  input  logic [cell_bits(MaxDepth, Light)-1:0]  corner_i    [3],
-  input  logic [cell_bits(MaxDepth, Light)-1:0]  size_i,
+  input  logic [MaxDepth-1:0]                    corner_i    [3],
+  input  logic [MaxDepth-1:0]                    size_i,
+  // For voxrt_hit_point, where near planes are given.
+  output logic [key_bits(MaxDepth, Light)-1:0]   until_o     [3],
   // Stage 8.
-  output logic [cell_bits(MaxDepth, Light)-1:0]  corner8_o   [3],
+  output logic [MaxDepth-1:0]                    corner8_o   [3],
   output face_e                                  key_face8_o,
   // Stage 9: what the ray has done, and its next key, where it leaves its cell. Material and mirrored are the lane's.
   output step_t                                  step_o,
@@ -41,14 +43,12 @@ module voxrt_next_cell
   input  logic                                   restarts_i,
   input  logic [2:0]                             set_i,
   // Stage 10.
-  output logic [cell_bits(MaxDepth, Light)-1:0]  size10_o,
+  output logic [MaxDepth-1:0]                    size10_o,
   // Stage 11; octant in the mirrored frame.
-  output logic [cell_bits(MaxDepth, Light)-1:0]  corner11_o  [3],
-  output logic [cell_bits(MaxDepth, Light)-1:0]  size11_o,
+  output logic [MaxDepth-1:0]                    corner11_o  [3],
+  output logic [MaxDepth-1:0]                    size11_o,
   output logic [2:0]                             octant11_o
 );
-  localparam int unsigned SubBits = Light ? FractionBits : 0;
-  localparam int unsigned CellBits = cell_bits(MaxDepth, Light);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
 
   // 6 compare. To leave: is x before y, y before z, z before x; else: is the middle plane before the key, on a dead
@@ -59,7 +59,7 @@ module voxrt_next_cell
   logic [         2:0] before7_q;
   logic [ KeyBits-1:0] time7_q   [3];
   face_e               key_face7_q;
-  logic [CellBits-1:0] corner7_q [3], size7_q;
+  logic [MaxDepth-1:0] corner7_q [3], size7_q;
   logic [         2:0] dead7_q;
   action_e             action7_q;
 
@@ -67,7 +67,9 @@ module voxrt_next_cell
     for (int unsigned a = 0; a < 3; a++) begin
       other[a]      = action_i == Leave ? time_i[(a+1)%3] : key_time_i;
       first[a]      = action_i == Leave ? a != 2 : 2'(a) <= key_face_i;
+      if (Light && dead_i[a] && action_i != Leave) {other[a], first[a]} = '0;
       difference[a] = {time_i[a], 1'b0} - {other[a], first[a]};
+      until_o[a]    = Light ? difference[a][KeyBits:1] : '0;
     end
   end
 
@@ -92,7 +94,7 @@ module voxrt_next_cell
   logic [         2:0] exit;  // One-hot.
   face_e               exit_face, exit_face8_q, key_face8_q;
   logic [ KeyBits-1:0] time8_q  [3];
-  logic [CellBits-1:0] corner8_q[3], size8_q, coordinate8_q;
+  logic [MaxDepth-1:0] corner8_q[3], size8_q, coordinate8_q;
   logic [         2:0] set8_q;
   logic                dead8_q, descends8_q;
   action_e             action8_q;
@@ -102,7 +104,7 @@ module voxrt_next_cell
   assign x_before_z = !dead7_q[0] && (dead7_q[2] || !before7_q[2]);
   assign exit       = {!x_before_z && !y_before_z, !x_before_y && y_before_z, x_before_y && x_before_z};
   assign exit_face  = exit[0] ? FaceX : exit[1] ? FaceY : FaceZ;
-  assign descends7  = action7_q == Descend || (Light && action7_q == Finish);
+  assign descends7  = action7_q == Descend;
 
   always_ff @(posedge clk_i) begin
     if (active_i[7]) begin
@@ -113,7 +115,7 @@ module voxrt_next_cell
     key_face8_q   <= key_face7_q;
     exit_face8_q  <= exit_face;
     size8_q       <= size7_q;
-    coordinate8_q <= corner7_q[exit_face] | (CellBits'(outside_mask_i) << SubBits);
+    coordinate8_q <= corner7_q[exit_face] | outside_mask_i;
     dead8_q       <= dead7_q == '1;
     descends8_q   <= descends7;
     set8_q        <= action7_q == Leave ? exit : descends7 ? before7_q : '0;
@@ -123,7 +125,7 @@ module voxrt_next_cell
   assign key_face8_o = key_face8_q;
 
   // 8 add.
-  logic [CellBits-1:0] sum, sum9_q, coordinate9_q, inner_size9_q, corner9_q[3];
+  logic [MaxDepth-1:0] sum, sum9_q, coordinate9_q, inner_size9_q, corner9_q[3];
   logic [ KeyBits-1:0] time9_q[3];
   logic [         2:0] set9_q;
   logic                done, leaves_world, leaves_cell9_q, done9_q, continues9_q;
@@ -159,8 +161,7 @@ module voxrt_next_cell
     step_o.continues = continues9_q;
     step_o.key_face  = key_face9_q;
     step_o.set       = set9_q;
-    step_o.smallest  = inner_size9_q[0];
-    for (int unsigned a = 0; a < 3; a++) step_o.corner[a] = PointLimit'(corner9_q[a]);
+    for (int unsigned a = 0; a < 3; a++) step_o.corner[a] = DepthLimit'(corner9_q[a]);
   end
 
   assign leaves_cell_o = leaves_cell9_q;
@@ -168,7 +169,7 @@ module voxrt_next_cell
   assign exit_face_o   = exit_face9_q;
 
   // 9 schedule.
-  logic [CellBits-1:0] corner10_q[3], size10_q, cleared10_q;
+  logic [MaxDepth-1:0] corner10_q[3], size10_q, cleared10_q;
   logic [         2:0] set10_q;
 
   always_ff @(posedge clk_i) begin
@@ -182,7 +183,7 @@ module voxrt_next_cell
   assign size10_o = size10_q;
 
   // 10 corner.
-  logic [CellBits-1:0] corner11_q[3], size11_q;
+  logic [MaxDepth-1:0] corner11_q[3], size11_q;
   logic [         2:0] octant11_q;
 
   always_ff @(posedge clk_i) begin

@@ -67,11 +67,6 @@ package voxrt_pkg;
     return WeightBits + max_depth + (light ? ShadowFractionBits : FractionBits) + 1;
   endfunction
 
-  // Corners and sizes of cells count voxels; with light, 1/16 voxel.
-  function automatic int cell_bits(int max_depth, bit light);
-    return max_depth + (light ? FractionBits : 0);
-  endfunction
-
   // The light, in 1/16 voxel, signed: farther ones are farther than 2**DirectionBits from all of the world.
   function automatic int light_bits(int max_depth);
     return larger(max_depth + FractionBits + 1, DirectionBits) + 1;
@@ -268,9 +263,8 @@ package voxrt_pkg;
     material_t                  material;   // Of the word read; 0 without a hit.
     face_e                      key_face;   // Of the plane crossed last.
     logic [2:0]                 mirrored;
-    logic [2:0][PointLimit-1:0] corner;     // Of the cell read.
+    logic [2:0][DepthLimit-1:0] corner;     // Of the cell read.
     logic [2:0]                 set;        // Axes on which the next corner has the bit of the next size.
-    logic                       smallest;   // The next size is the least there is.
   } step_t;
 
   // What the slot scheduler decides at stage 9 of a lane.
@@ -286,11 +280,12 @@ package voxrt_pkg;
 
   // What rays are, in the stages of a lane that ask.
   typedef struct packed {
-    logic refines0;  // It has hit, and descends to its hit point.
-    logic refines2;
-    logic refines3;
-    logic shadow1;
-    logic shadow2;
+    logic      waits0;     // It has hit, and waits for voxrt_hit_point.
+    logic      waits2;
+    material_t material2;  // That it has hit.
+    logic      shadow1;
+    logic      shadow2;
+    logic      shadow3;
   } ray_modes_t;
 
   // What a lane tells its reorder buffer of a pixel.

@@ -126,11 +126,11 @@ module voxrt_ray_setup
     for (int unsigned a = 0; a < 3; a++) begin
       negative[a]  = direction_i[a] < 0;
       zero[a]      = direction_i[a] == 0;
-      // Bits above the magnitude's are the sign, or the component is too large.
+      // Bits above the size's are the sign, or the component is too large; -2**DirectionBits alone shows in its magnitude.
       magnitude[a] = (direction_i[a][DirectionBits:0] ^ {(DirectionBits + 1){negative[a]}}) +
           (DirectionBits + 1)'(negative[a]);
       too_large[a] = magnitude[a][DirectionBits] ||
-          direction_i[a][ScanBits-1:DirectionBits+1] != {(ScanBits - DirectionBits - 1){negative[a]}};
+          direction_i[a][ScanBits-1:DirectionBits] != {(ScanBits - DirectionBits){negative[a]}};
     end
   end
 

@@ -279,6 +279,7 @@ module voxrt_rtu
   light_planes_t               light_planes;
   logic          [  Lanes-1:0] lane_pixel_valid, lane_pixel_ready, lane_pixel_lit;
   logic          [  Lanes-1:0] hit_point_valid, hit_point_ready, shadow_issued, bad_pointer, step_limit;
+  logic          [  Lanes-1:0] hit_point_claim;
   logic          [  Width-1:0] lane_pixel[Lanes];
   hit_point_t                  hit_point [Lanes];
 
@@ -312,6 +313,7 @@ module voxrt_rtu
       .mem_ack_i        (word_valid[i]),
       .mem_word_i       (word[i]),
       .mem_stops_o      (lane_stops[i]),
+      .hit_point_claim_o(hit_point_claim[i]),
       .hit_point_valid_o(hit_point_valid[i]),
       .hit_point_ready_i(hit_point_ready[i]),
       .hit_point_o      (hit_point[i]),
@@ -334,6 +336,7 @@ module voxrt_rtu
       .rst_ni,
       .side_i           (world.side[MaxDepth:0]),
       .light_i          (frame.light),
+      .hit_point_claim_i(hit_point_claim),
       .hit_point_valid_i(hit_point_valid),
       .hit_point_ready_o(hit_point_ready),
       .hit_point_i      (hit_point),
@@ -347,7 +350,7 @@ module voxrt_rtu
     logic [Lanes-1:0] unused_hit_point;
     always_comb begin
       for (int unsigned i = 0; i < Lanes; i++) begin
-        unused_hit_point[i] = &{hit_point_valid[i], shadow_issued[i], hit_point[i]};
+        unused_hit_point[i] = &{hit_point_valid[i], hit_point_claim[i], shadow_issued[i], hit_point[i]};
       end
     end
     assign hit_point_ready = '0;

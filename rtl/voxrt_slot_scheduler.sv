@@ -1,18 +1,18 @@
-// Schedules the slots of voxrt_lane: stage 9. A ray that is done is reflected, refines its hit point, or retires; where
-// one retires or asks for a shadow ray, a new ray is issued to the slot.
+// Schedules the slots of voxrt_lane: stage 9. A ray that is done is reflected, goes to voxrt_hit_point, or retires; where
+// one goes or retires, a new ray is issued to the slot.
 //
 // Mirrors: a ray that hits one starts again at the root in its slot, with the key of the hit, the mirror bit of that
 // axis flipped and the origin moved by 16 (side - 2 plane), so that the plane's T stays; it is in the cell that it
 // came from. The root's octant needs no compare: that cell and the one hit differ on the one axis alone.
 //
-// Light: a camera's ray that hits refines its hit point: it continues its descent, by the same compares and without
-// words, to the cell of 1/16 voxel that it is in. The hit point goes to voxrt_light; the slot is free. A shadow ray, in
-// 1/32 voxel, comes back with the tag. Whether what it hits is before the light is a compare of cells on the axis of
-// the face: T_hit < T_light there says that the plane is before the light's coordinate. Another such compare finds back
-// faces, which need neither hit point nor shadow ray.
+// Light: a camera's ray that hits is taken by voxrt_hit_point, and the slot is free. Its pixel is stored when its hit
+// point is known, which goes to voxrt_light; a shadow ray, in 1/32 voxel, comes back with the tag. Whether what it hits
+// is before the light is a compare of cells on the axis of the face: T_hit < T_light there says that the plane is before
+// the light's coordinate. Another such compare finds back faces, which need neither hit point nor shadow ray.
 //
-// A ray whose hit point finds voxrt_light's queue full asks again at its next pass through stage 9, and gives its slot
-// to a shadow ray if one waits: so neither waits for the other for ever.
+// A ray that voxrt_hit_point has no place for, or that finds voxrt_light without a credit, waits: it goes round without
+// reading words, and hits again. It needs no credit where a shadow ray waits for its slot, which gives one back: so
+// neither waits for the other for ever.
 module voxrt_slot_scheduler
   import voxrt_pkg::*;
 #(
@@ -34,7 +34,7 @@ module voxrt_slot_scheduler
   output ray_modes_t                                      modes_o,
   // Stages 3 and 8.
   input  material_t                                       material3_i,
-  input  logic            [cell_bits(MaxDepth, Light)-1:0] corner8_i       [3],
+  input  logic            [MaxDepth-1:0]                  corner8_i        [3],
   input  face_e                                           key_face8_i,
   // Stage 9: the ray of the slot, the ray that waits, and what becomes of them.
   input  step_t                                           step_i,
@@ -42,45 +42,47 @@ module voxrt_slot_scheduler
   output logic                                            ray_ready_o,
   input  ray_t                                            ray_i,
   output decision_t                                       decision_o,
-  // Reorder buffer and voxrt_light, as voxrt_lane says.
+  // Reorder buffer, as voxrt_lane says.
   output logic                                            allocate_o,
   input  logic                                            allocate_ready_i,
   input  logic            [TagBits-1:0]                   allocate_tag_i,
   output result_t                                         result_o,
   output logic [pixel_bits(MaxDepth, Light, Mirrors)-1:0] result_pixel_o,
-  output logic                                            hit_point_valid_o,
-  input  logic                                            hit_point_ready_i,
-  output hit_point_t                                      hit_point_o
+  // voxrt_hit_point: whether it has a place for the ray at stage 9; the ray is taken. Hit points; voxrt_light's credit.
+  input  logic                                            holds_i,
+  output logic                                            takes_o,
+  output hit_point_t                                      hit_o,
+  input  logic                                            point_valid_i,
+  output logic                                            point_ready_o,
+  input  hit_point_t                                      point_i,
+  input  material_t                                       point_material_i,
+  input  logic                                            hit_point_ready_i
 );
-  localparam int unsigned SubBits = Light ? FractionBits : 0;
-  localparam int unsigned CellBits = cell_bits(MaxDepth, Light);
   localparam int unsigned PointBits = MaxDepth + FractionBits;
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);
 
   logic [TagBits-1:0] tag_q[Slots];
   face_e              face;  // FaceNone without material.
-  logic               hits_face, reflects, escapes, shows_mean, is_lightable, refines, asks, retires;
-  logic               refining9, shadow9, backface;
+  logic               hits_face, reflects, escapes, shows_mean, is_lightable, asks, takes, retires;
+  logic               shadow9, backface, stores_point;
   logic               keeps, issues, bypasses, allocatable;
   logic [2:0]         set;
   pixel_t             pixel;
-  material_t          refined_material;
   shade_e             shade;
   mirrors_t           mirrors;
 
   assign face         = step_i.material == '0 ? FaceNone : step_i.key_face;
   assign hits_face    = step_i.done && face != FaceNone && !shadow9;
   assign is_lightable = Light && hits_face && shading_i.light && !reflects && !escapes && !shows_mean;
-  assign refines      = is_lightable && !backface;
-  assign asks         = Light && (step_i.done || step_i.continues) && refining9 && step_i.smallest &&
-      (hit_point_ready_i || (ray_valid_i && ray_i.shadow && !ray_i.resolved));
-  assign retires      = step_i.done && !reflects && !refines;
-  assign keeps        = (step_i.continues || (step_i.done && (reflects || refines))) && !asks;
+  assign asks         = is_lightable && !backface;
+  assign takes        = asks && holds_i && (hit_point_ready_i || (ray_valid_i && ray_i.shadow && !ray_i.resolved));
+  assign retires      = step_i.done && !reflects && !asks;
+  assign keeps        = (step_i.continues || (step_i.done && (reflects || asks))) && !takes;
 
   // A shadow ray has an entry in the reorder buffer already.
   assign allocatable = ray_i.shadow || allocate_ready_i;
   assign issues      = ray_valid_i && !ray_i.resolved && allocatable && !keeps;
-  assign bypasses    = ray_valid_i && ray_i.resolved && allocatable && !step_i.done && !asks;
+  assign bypasses    = ray_valid_i && ray_i.resolved && allocatable && !step_i.done && !stores_point;
   assign ray_ready_o = issues || bypasses;
   assign allocate_o  = ray_ready_o && !ray_i.shadow;
 
@@ -92,17 +94,25 @@ module voxrt_slot_scheduler
 
   always_ff @(posedge clk_i) if (issues) tag_q[slot_i[9]] <= ray_i.shadow ? ray_i.tag : allocate_tag_i;
 
+  // A hit point waits for the port of the reorder buffer while rays retire.
+  assign point_ready_o = Light && !retires;
+  assign stores_point  = Light && point_valid_i && !retires;
+
   // Pixels. That of a shadow ray is stored already.
   assign result_o.complete = retires || bypasses;
-  assign result_o.store    = (retires && !shadow9) || (bypasses && !ray_i.shadow) || asks;
-  assign result_o.tag      = step_i.done || asks ? tag_q[slot_i[9]] : ray_i.shadow ? ray_i.tag : allocate_tag_i;
+  assign result_o.store    = (retires && !shadow9) || (bypasses && !ray_i.shadow) || stores_point;
+
+  always_comb begin
+    result_o.tag = step_i.done ? tag_q[slot_i[9]] : ray_i.shadow ? ray_i.tag : allocate_tag_i;
+    if (stores_point) result_o.tag = point_i.tag;
+  end
 
   always_comb begin
     pixel = '{material: step_i.material, face: face};
     if (escapes) pixel = '{material: '0, face: FaceNone};
-    if (asks) pixel = '{material: refined_material, face: step_i.key_face};
-    else if (!step_i.done) pixel = ray_i.pixel;
-    shade = asks || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
+    if (!step_i.done) pixel = ray_i.pixel;
+    if (stores_point) pixel = '{material: point_material_i, face: point_i.face};
+    shade = stores_point || is_lightable ? ShadeLight : shows_mean ? ShadeMean : ShadeAngle;
   end
 
   if (Light || Mirrors) begin : gen_detail
@@ -111,10 +121,11 @@ module voxrt_slot_scheduler
     always_comb begin
       payload = (DetailBits - 2)'(step_i.mirrored);
       if (Light) begin
-        payload = (DetailBits - 2)'({step_i.mirrored, hit_point_o.point[2][PointBits-1:0],
-                                     hit_point_o.point[1][PointBits-1:0], hit_point_o.point[0][PointBits-1:0]});
+        payload = (DetailBits - 2)'({stores_point ? point_i.mirrored : step_i.mirrored,
+                                     point_i.point[2][PointBits-1:0],
+                                     point_i.point[1][PointBits-1:0], point_i.point[0][PointBits-1:0]});
       end
-      if (Mirrors && shows_mean && !asks) payload = (DetailBits - 2)'(mirrors);
+      if (Mirrors && shows_mean && !stores_point) payload = (DetailBits - 2)'(mirrors);
     end
 
     assign result_pixel_o = {shade, payload, pixel};
@@ -135,9 +146,9 @@ module voxrt_slot_scheduler
 
     always_comb begin
       unique case (key_face8_i)
-        FaceX:   plane8 = corner8_i[0][CellBits-1:SubBits];
-        FaceY:   plane8 = corner8_i[1][CellBits-1:SubBits];
-        default: plane8 = corner8_i[2][CellBits-1:SubBits];
+        FaceX:   plane8 = corner8_i[0];
+        FaceY:   plane8 = corner8_i[1];
+        default: plane8 = corner8_i[2];
       endcase
     end
 
@@ -172,7 +183,7 @@ module voxrt_slot_scheduler
         decision_o.mirrored[a] = step_i.mirrored[a] ^ (reflects && step_i.key_face == 2'(a));
         set[a]                 = step_i.set[a];
         if (reflects) begin
-          set[a] = (step_i.corner[a][CellBits-1:SubBits] & side_i[MaxDepth:1]) != '0;
+          set[a] = (step_i.corner[a][MaxDepth-1:0] & side_i[MaxDepth:1]) != '0;
           if (step_i.key_face == 2'(a)) set[a] = !shift_q[MaxDepth+1];
         end
       end
@@ -191,26 +202,25 @@ module voxrt_slot_scheduler
 
   // Hit points, and the results of shadow rays.
   if (Light) begin : gen_light
-    logic      refining_q[Slots];
+    logic      waits_q   [Slots];
     logic      shadow_q  [Slots];
-    material_t material_q[Slots];  // That a ray has hit.
-    logic      occluded;
+    material_t material_q[Slots];  // That a ray has hit that waits.
+    logic      shadow3_q, occluded;
 
-    assign modes_o.refines0 = refining_q[slot0_i];
-    assign modes_o.refines2 = refining_q[slot_i[2]];
-    assign modes_o.refines3 = refining_q[slot_i[3]];
-    assign refining9        = refining_q[slot_i[9]];
-    assign modes_o.shadow1  = shadow_q[slot_i[1]];
-    assign modes_o.shadow2  = shadow_q[slot_i[2]];
-    assign shadow9          = shadow_q[slot_i[9]];
+    assign modes_o.waits0    = waits_q[slot0_i];
+    assign modes_o.waits2    = waits_q[slot_i[2]];
+    assign modes_o.material2 = material_q[slot_i[2]];
+    assign modes_o.shadow1   = shadow_q[slot_i[1]];
+    assign modes_o.shadow2   = shadow_q[slot_i[2]];
+    assign modes_o.shadow3   = shadow3_q;
+    assign shadow9           = shadow_q[slot_i[9]];
 
     always_ff @(posedge clk_i) begin
-      if (issues || refines) refining_q[slot_i[9]] <= !issues;
+      if (issues || asks) waits_q[slot_i[9]] <= !issues;
       if (issues) shadow_q[slot_i[9]] <= ray_i.shadow;
-      if (refines) material_q[slot_i[9]] <= step_i.material;
+      if (asks) material_q[slot_i[9]] <= step_i.material;
+      shadow3_q <= modes_o.shadow2;
     end
-
-    assign refined_material = material_q[slot_i[9]];
 
     // Of a shadow ray: what it hits is before the light. Of another: the light is not in front of the face.
     always_comb begin
@@ -218,28 +228,28 @@ module voxrt_slot_scheduler
       backface = 1'b0;
       for (int unsigned a = 0; a < 3; a++) begin
         if (face == 2'(a)) begin
-          occluded = {1'b0, step_i.corner[a][CellBits-1:SubBits]} <
+          occluded = {1'b0, step_i.corner[a][MaxDepth-1:0]} <
               light_planes_i.occluder[step_i.mirrored[a]][a][MaxDepth:0];
-          backface = {1'b0, step_i.corner[a][CellBits-1:SubBits]} <
+          backface = {1'b0, step_i.corner[a][MaxDepth-1:0]} <
               light_planes_i.backface[step_i.mirrored[a]][a][MaxDepth:0];
         end
-        hit_point_o.point[a] = step_i.corner[a] | PointLimit'(step_i.set[a]);
+        hit_o.point[a] = PointLimit'(step_i.corner[a]) << FractionBits;
       end
     end
 
-    assign result_o.lit         = step_i.done ? shadow9 && (step_i.material == '0 || !occluded) : ray_i.lit;
-    assign hit_point_valid_o    = asks;
-    assign hit_point_o.tag      = tag_q[slot_i[9]];
-    assign hit_point_o.face     = step_i.key_face;
-    assign hit_point_o.mirrored = step_i.mirrored;
+    assign result_o.lit   = step_i.done ? shadow9 && (step_i.material == '0 || !occluded) : ray_i.lit;
+    assign takes_o        = takes;
+    assign hit_o.tag      = tag_q[slot_i[9]];
+    assign hit_o.face     = step_i.key_face;
+    assign hit_o.mirrored = step_i.mirrored;
   end else begin : gen_no_light
     logic unused_light;
-    assign unused_light = &{slot0_i, hit_point_ready_i, light_planes_i, step_i.corner};
-    assign {modes_o, refining9, shadow9, backface} = '0;
-    assign refined_material  = '0;
-    assign result_o.lit      = 1'b0;
-    assign hit_point_valid_o = 1'b0;
-    assign hit_point_o       = '0;
+    assign unused_light = &{slot0_i, takes, holds_i, point_valid_i, point_i, point_material_i, hit_point_ready_i,
+                            light_planes_i, step_i.corner};
+    assign {modes_o, shadow9, backface} = '0;
+    assign result_o.lit = 1'b0;
+    assign takes_o      = 1'b0;
+    assign hit_o        = '0;
   end
 
 `ifndef SYNTHESIS

@@ -138,10 +138,10 @@ class Surroundings:
 
     def order(self, issues):
         """Make shadow rays of hit points, sooner or later."""
-        asks = int(self.dut.hit_point_valid_o.value)
-        self.credits += issues - asks
+        claims = int(self.dut.hit_point_claim_o.value)
+        self.credits += issues - claims
         assert self.credits >= 0, "a shadow ray without a credit"
-        if asks:
+        if int(self.dut.hit_point_valid_o.value):
             hit = HIT_POINT.unpack(self.dut.hit_point_o)
             tag, face, mirrored, place = hit["tag"], hit["face"], hit["mirrored"], hit["point"]
             assert self.stored[tag] % 4 == face
@@ -312,7 +312,7 @@ async def pixels(dut, sending, taking):
 
 @cocotb.test()
 async def all_slots_ask_for_a_shadow_ray(dut):
-    """Shadow rays come when no slot is free, and there are no credits for others: a ray that asks gives its slot up."""
+    """Shadow rays come when no slot is free, and there are no credits for others: a ray that hits gives its slot up."""
     await begin(dut)
     shader = await some_shader(dut)
     voxels = np.zeros((SIDE,) * 3, np.uint8)

@@ -17,6 +17,7 @@ class Lanes:
     def __init__(self, dut, asking, starting):
         self.dut = dut
         self.asks, self.starts = pace(asking), pace(starting)
+        self.claimed = [0] * LANES
         self.wanted = [[] for _ in range(LANES)]
         self.waiting = [0] * LANES
         self.credits = [QUEUE] * LANES
@@ -25,15 +26,17 @@ class Lanes:
         """Go on for so many clocks."""
         dut, side, light = self.dut, self.side, self.light
         for _ in range(clocks):
-            asks = [ask and self.credits[lane] > 0 and next(self.asks) for lane in range(LANES)]
+            claims = [ask and self.credits[lane] > 0 and next(self.asks) for lane in range(LANES)]
+            gives = [self.claimed[lane] > 0 and random.random() < 0.5 for lane in range(LANES)]
             starts = [self.waiting[lane] > 0 and next(self.starts) for lane in range(LANES)]
-            drive(dut, hit_point_valid_i=sum(bool(bit) << lane for lane, bit in enumerate(asks)))
+            drive(dut, hit_point_claim_i=sum(bool(bit) << lane for lane, bit in enumerate(claims)))
+            drive(dut, hit_point_valid_i=sum(bool(bit) << lane for lane, bit in enumerate(gives)))
             drive(dut, issued_i=sum(bool(bit) << lane for lane, bit in enumerate(starts)))
             for lane in range(LANES):
                 face, mirrored, tag = random.randrange(3), random.randrange(8), random.randrange(256)
                 place = some_place(side, face)
                 dut.hit_point_i[lane].value = HIT_POINT.pack(tag=tag, face=face, mirrored=mirrored, point=place)
-                if asks[lane]:
+                if gives[lane]:
                     point = lit_point(place, mirrored, face, side)
                     direction = [2 * at - own for at, own in zip(light, point, strict=True)]
                     self.wanted[lane].append((tag, point, direction))
@@ -41,7 +44,8 @@ class Lanes:
             ready = dut.hit_point_ready_o.value.to_unsigned()
             assert ready == sum((count > 0) << lane for lane, count in enumerate(self.credits))
             for lane in range(LANES):
-                self.credits[lane] += bool(starts[lane]) - bool(asks[lane])
+                self.credits[lane] += bool(starts[lane]) - bool(claims[lane])
+                self.claimed[lane] += bool(claims[lane]) - bool(gives[lane])
                 self.waiting[lane] -= bool(starts[lane])
             if int(dut.valid_o.value):
                 lane = dut.lane_o.value.to_unsigned().bit_length() - 1
@@ -75,7 +79,7 @@ class Lanes:
 @cocotb.parametrize(asking=["always", "random"], starting=["always", "random"])
 async def shadow_rays(dut, asking, starting):
     """Lanes that ask as fast as they may, lanes that start late."""
-    await start(dut, hit_point_valid_i=0, issued_i=0)
+    await start(dut, hit_point_claim_i=0, hit_point_valid_i=0, issued_i=0)
     lanes = Lanes(dut, asking, starting)
     for _ in range(10):
         lanes.frame()
@@ -84,16 +88,17 @@ async def shadow_rays(dut, asking, starting):
         await lanes.run(80)
         await lanes.run(150, ask=False)
         assert not any(lanes.wanted)
+        assert not any(lanes.claimed)
 
 
 @cocotb.test()
 async def reset_at_any_clock(dut):
     """Drop what is under way; all credits are back."""
-    await start(dut, hit_point_valid_i=0, issued_i=0)
+    await start(dut, hit_point_claim_i=0, hit_point_valid_i=0, issued_i=0)
     for _ in range(10):
         lanes = Lanes(dut, "random", "random")
         lanes.frame()
         await ClockCycles(dut.clk_i, 3)
         await lanes.run(random.randrange(1, 60))
-        drive(dut, hit_point_valid_i=0, issued_i=0)
+        drive(dut, hit_point_claim_i=0, hit_point_valid_i=0, issued_i=0)
         await reset(dut)

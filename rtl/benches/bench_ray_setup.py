@@ -9,6 +9,7 @@ from streams import drive, pace, reset, start
 from structs import DISTANCE, RAY, SHADOW_POINT, WEIGHT, WORLD, packed_array, signed, unpacked_array
 
 LANES, LATENCY = 3, 60
+SCAN_BITS = 29  # voxrt_pkg::ScanBits.
 KEY_BITS = 52  # voxrt_pkg::key_bits(6, 1).
 
 
@@ -129,6 +130,25 @@ async def a_world_of_one_leaf_is_answered(dut):
     drive(dut, valid_i=0)
     await ClockCycles(dut.clk_i, LATENCY)
     assert [(ray["resolved"], ray["pixel"]) for ray in got] == [(1, 7 << 2), (1, FACE_NONE)]
+
+
+@cocotb.test()
+async def a_component_of_2_to_20_or_more_is_flagged(dut):
+    """Flag the least and the most that does not fit, and every higher power of two, of either sign."""
+    await start(dut, valid_i=0)
+    drive(dut, world_i=world([40, 40, 50], 3), root_leaf_i=0, root_material_i=0, shadow_i=0, lane_i=1)
+    got, wanted = [], []
+    cocotb.start_soon(collect(dut, got))
+    for size in {(1 << bits) - below for bits in range(19, SCAN_BITS) for below in (0, 1)}:
+        for component in (size, -size):
+            if component < 1 << (SCAN_BITS - 1):
+                wanted.append(int(size >= 1 << 20))
+                axis = random.randrange(3)
+                drive(dut, valid_i=1, direction_i=[component if a == axis else 3 for a in range(3)])
+                await taken(dut)
+    drive(dut, valid_i=0)
+    await ClockCycles(dut.clk_i, LATENCY)
+    assert [ray["overflow"] for ray in got] == wanted
 
 
 @cocotb.test()

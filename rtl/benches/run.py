@@ -104,9 +104,12 @@ BUILDS = {
     "brightness": Build("voxrt_brightness", {"MaxDepth": 6}, ("bench_brightness",)),
     "brightness-light": Build("voxrt_brightness", {"MaxDepth": 6, "Mirrors": 0}, ("bench_brightness",)),
     "brightness-mirrors": Build("voxrt_brightness", {"MaxDepth": 6, "Light": 0}, ("bench_brightness",)),
+    "hit_point": Build("voxrt_hit_point", {"MaxDepth": 6}, ("bench_hit_point",)),
+    "hit_point-deep": Build("voxrt_hit_point", {"MaxDepth": 16}, ("bench_hit_point",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
     "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
+    "lane-lit": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Light": 1, "Mirrors": 1}, ("bench_lane",)),
     "lane-mirrors": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Mirrors": 1}, ("bench_lane",)),
     "private_memory": Build(
         "voxrt_on_chip_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_on_chip_memory",)

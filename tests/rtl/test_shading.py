@@ -288,6 +288,45 @@ def test_the_deepest_world_and_the_farthest_mirrors(config):
         assert (got["material"] > 0).mean() > 0.3
 
 
+def some_leaves(rng, depth, blocks):
+    """Make a memory with leaves of every size, at most so many blocks and those of a level more."""
+    words, pending = [0], [0]
+    for _ in range(depth):
+        following = []
+        for address in pending:
+            words[address] = len(words)
+            following += [len(words) + octant for octant in np.flatnonzero(rng.random(8) < 0.4)]
+            words += [0xFFFFFF00 | int(material) for material in rng.choice([0, 0, 0, 0, 2, 3, 4], 8)]
+        if not following or len(words) > 8 * blocks:
+            break
+        pending = following
+    return np.array(words, np.uint32)
+
+
+@needs_shading
+@pytest.mark.parametrize("seed", range(12))
+def test_hit_points_in_leaves_of_any_size(config, seed):
+    rng = np.random.default_rng([seed, 5])
+    design = TRACERS[config]
+    depth = int(rng.integers(1, design.max_depth + 1))
+    words = some_leaves(rng, depth, 400)
+    model = _model.Memory(words, depth)
+    design.load(words)
+    side, reach = 16 << depth, 2**17
+    for _ in range(4):
+        near = rng.integers(0, side, 3)
+        camera = random_camera(rng, 1 << depth)
+        camera[0] = np.where(rng.random(3) < 0.3, near // 16 * 16, near)
+        shading = random_shading(rng, 1 << depth, camera)
+        shading["light"] = (near + rng.integers(-reach, reach, 3) // rng.integers(1, 100)).astype(np.int32)
+        width, height = (int(n) for n in rng.integers(1, 40, 2))
+        expected = model.render(MATERIALS, camera, width, height, **shading)
+        stall_seed = int(rng.integers(2) * rng.integers(2**32))
+        got = design.render(camera, width, height, depth, MATERIALS, stall_seed=stall_seed, **shading)
+        got["errors"] = [error for error in got["errors"] if error != "direction overflow"]
+        assert_equal(got, expected.colour, expected.material, expected.face, config)
+
+
 @needs_shading
 def test_a_light_too_far_is_flagged_and_all_is_in_shadow(config):
     design = TRACERS[config]

@@ -98,14 +98,15 @@ def test_extreme_directions_and_positions():
         assert_exact(voxels, [position, look, [200, 3, 0], [0, 100, 77]], 3, 3)
 
 
+@pytest.mark.parametrize("step", [32767, -32768])  # The second reaches 2**20 and 2**21, either sign, exactly.
 @pytest.mark.parametrize("config", rtl.CONFIGS)
-def test_a_direction_too_large_is_flagged_and_not_traced(config):
+def test_a_direction_too_large_is_flagged_and_not_traced(config, step):
     design = tracer(config)
     design.load(words_of(np.full((2, 2, 2), 5, np.uint8)))
-    camera = np.array([[16, 16, 16], [0, 0, 1], [32767, 0, 0], [0, 0, 0]], np.int32)
-    got = design.render(camera, 100, 1, 1, MATERIALS)
-    offset = np.arange(100) - 50
-    fits = np.abs(offset) * 32767 < 2**20
+    camera = np.array([[16, 16, 16], [0, 0, 1], [step, 0, 0], [0, 0, 0]], np.int32)
+    got = design.render(camera, 140, 1, 1, MATERIALS)
+    offset = np.arange(140) - 70
+    fits = np.abs(offset * step) < 2**20
     np.testing.assert_array_equal(got["material"][0], np.where(fits, 5, 0))
     np.testing.assert_array_equal(got["colour"][0][~fits], np.broadcast_to(MATERIALS[0], ((~fits).sum(), 3)))
     assert got["errors"] == ["direction overflow"]
