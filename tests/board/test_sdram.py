@@ -65,4 +65,4 @@ def test_four_ports_read_what_was_written(tmp_path):
 def test_the_model_stops_at_a_broken_rule(rule, parameters, tmp_path):
     finished = run_bench(tmp_path, 20_000, **parameters)
     assert finished.returncode != 0
-    assert rule in finished.stdout
+    assert rule in finished.stdout + finished.stderr
