@@ -33,8 +33,8 @@ module board_frame_reader
 
   // The row that comes.
   logic       row_event, busy_q, missed_q, reading_q, asks_q, first_q;
-  logic [9:0] row, target, row_q;
-  logic [8:0] picture_row;
+  logic [9:0] row, target;
+  logic [8:0] row_q, picture_row;
   logic [5:0] asked_q, come_q, lines;
   logic [UrgentBit:0] waited_q;
 
@@ -59,7 +59,7 @@ module board_frame_reader
   assign valid_o     = asks_q;
   assign urgent_o    = waited_q[UrgentBit];
   assign line_o      = {4'hF, frame_i, picture_row, asked_q};
-  assign picture_row = row_q[8:0] >> scale_i;
+  assign picture_row = row_q >> scale_i;
 
   // A line that has come, word by word.
   logic [255:0] data_q;
@@ -115,7 +115,7 @@ module board_frame_reader
           missed_q <= 1'b1;
         end else begin
           busy_q   <= 1'b1;
-          row_q    <= target;
+          row_q    <= target[8:0];
           asks_q   <= 1'b1;
           first_q  <= 1'b1;
           asked_q  <= '0;

@@ -104,7 +104,7 @@ module board_sdram #(
   assign refreshes = refresh_due_q && !next_valid_q && !streams_q && open_q == '0 && closes_q == '0 &&
       refresh_wait_q == '0;
 
-  assign request_ready_o = state_q == Run && !refresh_due_q && (!next_valid_q || starts);
+  assign request_ready_o = state_q == Run && !refresh_due_q && !next_valid_q;
 
   assign sdram_cke_o = 1'b1;
   // Flip-flops are 0 after configuration: the chip is not selected until the first clock out of reset.

