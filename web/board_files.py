@@ -43,11 +43,16 @@ _BLOCK_RAM = re.compile(rb"\xf6\x00\x00\x00(....)\xb2\xd0\x01\x00(?=.{2306})", r
 
 
 def add_boards(folder: Path) -> dict[str, str]:
-    """Write the files of each board, and return the verilated configurations by board."""
+    """Write the files of each board, and return the verilated configurations by board.
+
+    Boards with a frame buffer are left out: the page counts the cycles of those that race the beam.
+    """
     folder.mkdir()
     configurations = {}
     for name in board_names():
         board = read_board(name)
+        if board.design.frame_buffer:
+            continue
         bits = pack(board, board.config)
         (folder / f"{name}.bit").write_bytes(bits)
         configurations[name] = configuration_of(board.design.core["Lanes"], board.design.core["RayClocks"], Lighting())

@@ -32,6 +32,8 @@ TOP = "ecp5_top"
 SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f"}
 """The file that lists the sources of a design, by its top."""
 TABLE_WORDS = 4096
+OCTREE_WORDS = 1 + 8 * 983_039
+"""Words of the octree memory of a board with SDRAM: 30 of its 32 MB."""
 _VCO_MHZ = 750
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
 

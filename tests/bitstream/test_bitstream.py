@@ -56,9 +56,8 @@ def board():
     memories = find_slices(config, {"octree": (ROWS, BITS), "table": (TABLE_ROWS, 32)})
     design = BaseDesign(
         "bare",
-        {"Lanes": 1, "MaxDepth": 10, "BlockBits": BLOCK_BITS, "Light": 0, "Mirrors": 0},
+        {"Lanes": 1, "MaxDepth": 10, "BlockBits": BLOCK_BITS, "MemoryForm": 0, "Light": 0, "Mirrors": 0},
         75_000_000,
-        4,
         1,
         {"system": 80.0},
         {"DP16KD": (10, 208)},
@@ -127,7 +126,7 @@ def test_the_placed_designs_are_of_the_present_sources(name):
     board, described = read_board(name), build.read_board(name)
     assert board.design.sources == build.sources_digest(described)
     assert board.design.core == described["core"]
-    assert BOARDS[name] == board.design.capacity
+    assert BOARDS[name] == (build.OCTREE_WORDS if board.design.frame_buffer else board.design.capacity)
     assert board.design.fmax_mhz["system"] * 1e6 > board.design.clock_hz
     assert board.design.fmax_mhz["pixel"] > 25
     assert board.design.fmax_mhz["bit"] > 125

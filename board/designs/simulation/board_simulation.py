@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 _HERE = Path(__file__).resolve().parent
 _CELLS = {"ecp5_cells.sv", "ecp5_sdram_cells.sv"}
-_CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM.
+_CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
+_CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
 
 @dataclass(frozen=True)
@@ -76,10 +77,27 @@ def compile_sources(
     models = _HERE / "ecp5_models.sv"
     sources = [models if path.name in _CELLS else path for path in list_sources(top_of(board))]
     if top is None and top_of(board) in _CHIPS:
-        sources, top = [*sources, _HERE / "sdram_model.sv", _HERE / "sdram_board.sv"], "sdram_board"
+        sources, top = [*sources, *_CHIP], _CHIP[-1].stem
     return compile_verilog(
         [*sources, *extra], folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=top or top_of(board)
     )
+
+
+def compile_placed(board: Mapping[str, Any], sources: Sequence[Path], folder: Path) -> Path:
+    """Compile the netlist of a board's design after place and route, whose top is `top`; give the program.
+
+    Parameters
+    ----------
+    board
+        As `read_board` gives it.
+    sources
+        The netlist and the models of its cells.
+    folder
+        Where to.
+    """
+    if top_of(board) in _CHIPS:
+        return compile_verilog([*sources, *_CHIP], folder, ["-DPLACED"], top=_CHIP[-1].stem, opt="-O1")
+    return compile_verilog(sources, folder, [], top="top", opt="-O1")
 
 
 def compile_verilog(
