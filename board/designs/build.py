@@ -129,7 +129,10 @@ def constraints(board: Mapping[str, Any]) -> str:
     for port, pin in pins.get("sdram", {}).items():
         kind = "PULLMODE=NONE IO_TYPE=LVCMOS33 DRIVE=4 SLEWRATE=FAST"
         single = isinstance(pin, str)
-        places += [(f"sdram_{port}" if single else f"sdram_{port}[{i}]", p, kind) for i, p in enumerate([pin] if single else pin)]
+        places += [
+            (f"sdram_{port}" if single else f"sdram_{port}[{i}]", p, kind)
+            for i, p in enumerate([pin] if single else pin)
+        ]
     lines = ["SYSCONFIG CONFIG_IOVOLTAGE=3.3 COMPRESS_CONFIG=ON MCCLK_FREQ=62 MASTER_SPI_PORT=ENABLE;"]
     lines += [f'FREQUENCY PORT "clk" {board["clock_mhz"]} MHZ;']
     for port, pin, kind in places:

@@ -131,12 +131,12 @@ def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
             n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, tree.depth - n).words) <= capacity
         )
         remedy = f"build it with --depth {fits}, or give the asset"
-        holds = "holds"
+        verb = "holds"
         if placed.design.frame_buffer and tree.depth <= most:
-            holds = "starts from"
+            verb = "starts from"
             remedy = f"write it into the running board: voxrt upload {source} --to serial:PORT"
         raise voxrt.DoesNotFitError(
-            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} {holds} {capacity:,} words "
+            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} {verb} {capacity:,} words "
             f"and {most} levels; {remedy}"
         )
     return blob

@@ -264,7 +264,9 @@ class _Writer:
                 value = 1 if parameters[f"{name}.REGSET"].strip() == "SET" else 0
                 register = f"{output.lower()}{number}"
                 self._declarations.append(f"  reg {register} = 1'b{value};")
-                self._lines.append(f"  always @(posedge {self.value(cell, 'CLK')}) {register} <= {self.value(cell, data)};")
+                self._lines.append(
+                    f"  always @(posedge {self.value(cell, 'CLK')}) {register} <= {self.value(cell, data)};"
+                )
                 self.drive(cell, output, register)
 
     def clock_gate(self, _number: int, cell: Mapping[str, Any]) -> None:
