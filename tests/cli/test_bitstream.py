@@ -41,3 +41,12 @@ def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
     tree = package.read_any(deep)[0].rom.octree
     assert len(coarsen(tree, tree.depth - fits).words) <= 32_769
     assert fits == 10 or len(coarsen(tree, tree.depth - fits - 1).words) > 32_769
+
+
+def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(voxrt, tmp_path):
+    package.build("examples/planet.glb", tmp_path, depth=8)
+    finished = voxrt("bitstream", tmp_path / "planet.mem", "--board", "ulx3s-85f-sdram")
+    assert finished.code == 4
+    assert len(finished.err.splitlines()) == 1
+    assert "and ulx3s-85f-sdram starts from 32,769 words and 12 levels; " in finished.err
+    assert finished.err.strip().endswith(f"voxrt upload {tmp_path / 'planet.mem'} --to serial:PORT")
