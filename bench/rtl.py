@@ -32,8 +32,7 @@ BAND = 4
 """Rows whose words are counted together."""
 NOTES = (
     "Bound: max(1, words per pixel / lanes). With light and with mirrors the words are those of all rays of a pixel:",
-    "camera ray, shadow ray and reflected rays. A lane refines the hit point of a shadow ray in turns that read no",
-    "word, so frames with light stay above the bound.",
+    "camera ray, shadow ray and reflected rays.",
     "",
     "Bound in order: rays start one per clock, from the top of the picture down. Where rays of the sky come first,",
     "lanes wait for rays, and no queue makes up for that. It is the time of a machine that starts rays so, with",

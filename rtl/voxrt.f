@@ -14,6 +14,7 @@ voxrt_fifo.sv
 voxrt_frame.sv
 voxrt_free_list.sv
 voxrt_hit_point.sv
+voxrt_line_queue.sv
 voxrt_l1_cache.sv
 voxrt_l2_cache.sv
 voxrt_lane.sv

@@ -1,5 +1,6 @@
 // The octree memory in an external memory, behind caches: one per lane (voxrt_l1_cache), one for all (voxrt_l2_cache),
-// and a reader on two AXI ports (voxrt_line_reader).
+// and a reader on two AXI ports (voxrt_line_reader). Two lanes of a pipe of the L2 share the queue of lines that come
+// from it (voxrt_line_queue).
 //
 // A frame begins with start_i; its root may be read from ready_o on. Between them, the caches are emptied if they must
 // be: after a reset, after an error of the bus, and when flush_i has asked for it. flush_i may come at any clock; it never
@@ -68,7 +69,38 @@ module voxrt_cached_memory
   logic [                7:0][PayloadBits:0] answer_words[2], fill_words;
   logic                                       fetch_valid, fetch_ready, fill_valid, fill_ready;
 
+  // Lane 4 g + p and, if there is one, lane 4 g + p + 2 are of queue 2 g + p; pipe p answers them.
+  localparam int unsigned Queues = Lanes < 3 ? Lanes : 2 * (Lanes / 4) + (Lanes % 4 < 2 ? Lanes % 4 : 2);
+
+  logic [         1:0]                fill_lanes  [Queues];
+  logic [L1SetBits-1:0]               fill_set    [Queues];
+  logic [         1:0]                fill_quarter[Queues];
+  logic [         1:0][PayloadBits:0] fill_pair   [Queues];
+
+  for (genvar q = 0; q < Queues; q++) begin : gen_queue
+    localparam int unsigned First = 4 * (q / 2) + q % 2;
+
+    voxrt_line_queue #(
+      .Lanes   (2),
+      .SetBits (L1SetBits),
+      .WordBits(PayloadBits + 1),
+      .Depth   (2 * l1_outstanding(L1SetBits))
+    ) u_lines (
+      .clk_i,
+      .rst_ni,
+      .valid_i  ({First + 2 < Lanes && answer_valid[First+2<Lanes?First+2 : First], answer_valid[First]}),
+      .set_i    (answer_line[q%2][L1SetBits-1:0]),
+      .words_i  (answer_words[q%2]),
+      .valid_o  (fill_lanes[q]),
+      .set_o    (fill_set[q]),
+      .quarter_o(fill_quarter[q]),
+      .pair_o   (fill_pair[q])
+    );
+  end
+
   for (genvar i = 0; i < Lanes; i++) begin : gen_lane
+    localparam int unsigned Queue = 2 * (i / 4) + i % 2;
+
     voxrt_l1_cache #(
       .BlockBits(BlockBits),
       .SetBits  (L1SetBits),
@@ -76,19 +108,20 @@ module voxrt_cached_memory
     ) u_l1 (
       .clk_i,
       .rst_ni,
-      .clear_i        (clears),
-      .idle_o         (l1_idle[i]),
-      .read_i         (read_i[i]),
-      .address_i      (address_i[i]),
-      .ack_o          (ack_o[i]),
-      .word_o         (word_o[i]),
-      .stops_i        (stops_i[i]),
-      .request_valid_o(request_valid[i]),
-      .request_ready_i(request_ready[i]),
-      .request_line_o (request_line[i]),
-      .answer_valid_i (answer_valid[i]),
-      .answer_set_i   (answer_line[i%2][L1SetBits-1:0]),
-      .answer_words_i (answer_words[i%2])
+      .clear_i         (clears),
+      .idle_o          (l1_idle[i]),
+      .read_i          (read_i[i]),
+      .address_i       (address_i[i]),
+      .ack_o           (ack_o[i]),
+      .word_o          (word_o[i]),
+      .stops_i         (stops_i[i]),
+      .request_valid_o (request_valid[i]),
+      .request_ready_i (request_ready[i]),
+      .request_line_o  (request_line[i]),
+      .answer_valid_i  (fill_lanes[Queue][i/2%2]),
+      .answer_set_i    (fill_set[Queue]),
+      .answer_quarter_i(fill_quarter[Queue]),
+      .answer_pair_i   (fill_pair[Queue])
     );
   end
 

