@@ -14,6 +14,7 @@ import numpy as np
 
 from voxrt.beam import SCREEN, configuration_of
 from voxrt.bitstream import board_names, pack, read_board
+from voxrt.board.designs import build
 from voxrt.board.designs.base_design import places
 from voxrt.board.designs.boot_table import (
     CAMERA_WORDS,
@@ -50,9 +51,9 @@ def add_boards(folder: Path) -> dict[str, str]:
     folder.mkdir()
     configurations = {}
     for name in board_names():
-        board = read_board(name)
-        if board.design.frame_buffer:
+        if "boot_block_bits" in build.read_board(name):
             continue
+        board = read_board(name)
         bits = pack(board, board.config)
         (folder / f"{name}.bit").write_bytes(bits)
         configurations[name] = configuration_of(board.design.core["Lanes"], board.design.core["RayClocks"], Lighting())
