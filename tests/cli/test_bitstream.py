@@ -3,6 +3,8 @@
 import pytest
 
 import voxrt as package
+from voxrt.bitstream import BaseDesign, Memory, PlacedBoard
+from voxrt.cli.bitstream import read_memory
 from voxrt.octree import coarsen
 
 
@@ -43,10 +45,16 @@ def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
     assert fits == 10 or len(coarsen(tree, tree.depth - fits - 1).words) > 32_769
 
 
-def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(voxrt, tmp_path):
+def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(tmp_path):
+    core = {"Lanes": 2, "MaxDepth": 12, "BlockBits": 20, "MemoryForm": 2, "RayClocks": 1}
+    memories = {"octree": Memory(32768, 13, ())}
+    design = BaseDesign("ulx3s-85f-sdram", core, 75_000_000, 1, {}, {}, "", {}, memories)
+    board = PlacedBoard(design.board, "a board with SDRAM", None, "none", design, "")
     package.build("examples/planet.glb", tmp_path, depth=8)
-    finished = voxrt("bitstream", tmp_path / "planet.mem", "--board", "ulx3s-85f-sdram")
-    assert finished.code == 4
-    assert len(finished.err.splitlines()) == 1
-    assert "and ulx3s-85f-sdram starts from 32,769 words and 12 levels; " in finished.err
-    assert finished.err.strip().endswith(f"voxrt upload {tmp_path / 'planet.mem'} --to serial:PORT")
+    file = tmp_path / "planet.mem"
+    with pytest.raises(package.DoesNotFitError) as refusal:
+        read_memory(file, None, board)
+    assert "66,881 words and 8 levels, and ulx3s-85f-sdram starts from 32,769 words and 12 levels; " in str(
+        refusal.value
+    )
+    assert str(refusal.value).endswith(f"write it into the running board: voxrt upload {file} --to serial:PORT")

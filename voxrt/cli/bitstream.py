@@ -73,7 +73,7 @@ def bitstream(
     check_folder(output)
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
-    blob = _read(source, depth, placed)
+    blob = read_memory(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     roots = (0,) if blob.animation is None else blob.animation.roots
@@ -107,8 +107,8 @@ def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
         return rebuild_board(name, Path(folder), seed)
 
 
-def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
-    """Read a memory, or build an asset for the board's budget."""
+def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
+    """Read a memory, or build an asset for the board's budget; refuse what the bitstream cannot bring."""
     from voxrt.export import Blob  # noqa: PLC0415
     from voxrt.octree import coarsen  # noqa: PLC0415
     from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
