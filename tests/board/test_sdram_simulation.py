@@ -20,6 +20,7 @@ from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
     CAMERAS,
     OCTREE_MEMORY,
+    PAGE_WORDS,
     RUN,
     SDRAM_REGISTERS,
     STEERED,
@@ -148,6 +149,11 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         write(board, SDRAM_REGISTERS["page"], [1])
         write(board, OCTREE_MEMORY + 4 * (base + place), [1, 9, 17])
         assert read(board, OCTREE_MEMORY + 4 * (base + place), 3) == [1, 9, 17]
+        # The last words of the memory; those beyond are dropped, and read as 0.
+        write(board, SDRAM_REGISTERS["page"], [(OCTREE_WORDS - 1) // PAGE_WORDS])
+        last = OCTREE_MEMORY + 4 * ((OCTREE_WORDS - 2) % PAGE_WORDS)
+        write(board, last, [25, 33, 41])
+        assert read(board, last, 3) == [25, 33, 0]
         write(board, SDRAM_REGISTERS["page"], [0])
         assert read(board, OCTREE_MEMORY + 4 * (base + place), 8) == empty
         pixels = board.frames(3)[-1][0]
