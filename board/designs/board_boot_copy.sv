@@ -26,6 +26,7 @@ module board_boot_copy
     Idle
   } state_e;
 
+  (* no_rw_check *)
   logic [PayloadBits:0] rows_q[8*2**BlockBits]  /* verilator public_flat_rw */;
   logic [PayloadBits:0] read_q, row_q;
 
@@ -36,12 +37,17 @@ module board_boot_copy
   state_e               state_q;
   logic [BlockBits-1:0] block_q;
   logic [          3:0] step_q;
+  logic [BlockBits+2:0] place, place_q;
   logic [         31:0] word;
   logic [        255:0] data_q;
 
+  // Each row is written back as it was read: without a write port it would be a ROM to yosys, which lays ROMs out in a way
+  // that voxrt.board.designs.base_design does not know. The reset lasts until the first row has been read.
   always_ff @(posedge clk_i) begin
-    read_q <= rows_q[{block_q, step_q[2:0]}];
-    row_q  <= read_q;
+    place_q <= place;
+    read_q  <= rows_q[place];
+    row_q   <= read_q;
+    if (state_q == Fetch) rows_q[place_q] <= read_q;
   end
 
   voxrt_word_decoder #(
@@ -52,6 +58,7 @@ module board_boot_copy
     .word_o     (word)
   );
 
+  assign place   = {block_q, step_q[2:0]};
   assign busy_o  = state_q != Idle;
   assign valid_o = state_q == Line;
   assign line_o  = 20'(block_q) + 20'd1;

@@ -1,8 +1,8 @@
 // Controller of an SDR SDRAM of 32 MB (16 bits, 4 banks, 8192 rows, 512 columns): reads and writes lines of 32 bytes.
 //
 // A line is two bursts of 8, the second with automatic precharge; CAS latency 3. While a line streams, the next one
-// waits with its row open already, if its bank is another one: a line each 16 clocks. It is 21 or 22 after one in the same
-// bank, and from a read to a write. Refreshes wait for the lines under way, each 6.7 us. bench/sdram.py measures 16.4
+// waits with its row open already, if its bank is another one: a line each 16 clocks, or 21 or 22 after one in the same
+// bank, or from a read to a write. Refreshes wait for the lines under way, each 6.7 us. bench/sdram.py measures 16.4
 // clocks per line in a row, 17.8 anywhere. Lines that follow each other are in different banks. Answers come in order.
 //
 // Counts of clocks hold up to 80 MHz, for parts of speed -7 and faster. board_sdram_pins adds one clock on the way out,

@@ -156,6 +156,6 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         assert read(board, last, 3) == [25, 33, 0]
         write(board, SDRAM_REGISTERS["page"], [0])
         assert read(board, OCTREE_MEMORY + 4 * (base + place), 8) == empty
-        pixels = board.frames(3)[-1][0]
+        pixels = board.frames(6)[-1][0]
         assert np.array_equal(pixels, picture(replace(new, words=changed), camera, 1))
         assert not np.array_equal(pixels, expected)

@@ -73,6 +73,14 @@ def bitstream(
     check_folder(output)
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
+    reached, needed = design.fmax_mhz["system"], design.clock_hz / 1e6
+    if reached < needed:
+        warn(
+            [
+                f"{placed.name}: place and route reach {reached:.1f} of {needed:.1f} MHz, so the board may fail; try "
+                "another --seed"
+            ]
+        )
     blob = read_memory(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
