@@ -129,8 +129,7 @@ def test_whole_frames_from_power_on_and_after_an_upload(program, tmp_path):
         swap = [*scene_writes(new, Lighting(), (320, 240), base), *camera_writes(camera), control]
         write(board, TABLE + 4 * 1024, encode_list(swap))
         write(board, BOARD_REGISTERS["play"], [1024])
-        expected = picture(new, camera, 1)
-        pictures = [picture(old, camera, 0) for camera in cameras]
+        expected, pictures = picture(new, camera, 1), [picture(old, camera, 0) for camera in cameras]
         last = [pixels for pixels, _ in board.frames(6)]
         first = next(number for number, pixels in enumerate(last) if np.array_equal(pixels, expected))
         assert all(np.array_equal(pixels, expected) for pixels in last[first:])

@@ -1,10 +1,13 @@
 """``voxrt bitstream``: what it refuses, in one line and before any work."""
 
+from pathlib import Path
+
 import pytest
 
 import voxrt as package
 from voxrt.bitstream import BaseDesign, Memory, PlacedBoard
-from voxrt.cli.bitstream import read_memory
+from voxrt.cli.bitstream import read_memory, summary_rows
+from voxrt.cli.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen
 
 
@@ -58,3 +61,31 @@ def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(tmp_path):
         refusal.value
     )
     assert str(refusal.value).endswith(f"write it into the running board: voxrt upload {file} --to serial:PORT")
+
+
+@pytest.mark.parametrize(("reached", "said"), [(80.0, False), (53.1, True)])
+def test_a_clock_that_is_not_reached_is_told(reached, said):
+    clocks = {"system": reached, "pixel": 100.0, "bit": 300.0}
+    told = BitstreamResult(
+        *(
+            "house",
+            "bare",
+            "a board",
+            "house.bit",
+            9,
+            16_385,
+            4,
+            2,
+            75_000_000,
+            clocks,
+            {},
+            1,
+            (640, 480),
+            4.5,
+            None,
+            29.8,
+        )
+    )
+    rows = dict(summary_rows(told, Path("house.report.json")))
+    assert rows["cycles"].endswith("whole pictures are shown, however long they take")
+    assert ("place and route reach 53.1 of 75.0 MHz" in rows.get("clock", "")) == said

@@ -73,14 +73,6 @@ def bitstream(
     check_folder(output)
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
-    reached, needed = design.fmax_mhz["system"], design.clock_hz / 1e6
-    if reached < needed:
-        warn(
-            [
-                f"{placed.name}: place and route reach {reached:.1f} of {needed:.1f} MHz, so the board may fail; try "
-                "another --seed"
-            ]
-        )
     blob = read_memory(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
@@ -97,7 +89,7 @@ def bitstream(
     file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file)
     _write(file, bits, report, result)
-    summarize(f"{source.name}:", _rows(result, report))
+    summarize(f"{source.name}:", summary_rows(result, report))
     if load:
         load_bitstream(placed, file)
         summarize(f"{file.name}:", [("loaded", placed.title)])
@@ -160,7 +152,8 @@ def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> No
         write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
 
 
-def _rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+    """Give the rows of the summary: names and values."""
     width, height = result.size
     squares = f", each pixel as {640 // width} x {640 // width}" if width < 640 else ""
     lanes = f"{result.lanes} lane{'' if result.lanes == 1 else 's'}"
@@ -171,8 +164,11 @@ def _rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
         cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
     else:
         cycles += "some rows are repeated, because the next ones are late"
+    reached, needed = result.fmax_mhz["system"], result.clock_hz / 1e6
+    clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
     return [
         ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        *([("clock", clock)] if reached < needed else []),
         ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
         ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
         ("cycles", cycles),
