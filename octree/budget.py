@@ -37,8 +37,9 @@ BOARDS = {
     "ulx3s-12f": 1 + 8 * 2048,
     "ulx3s-45f": 1 + 8 * 4096,
     "ulx3s-85f": 1 + 8 * 4096,
+    "ulx3s-85f-sdram": 1 + 8 * 983_039,
 }
-"""Words of the octree memory of each board's design: 2**BlockBits blocks of 8, and the root."""
+"""Words of the octree memory of each board's design: blocks of 8, and the root."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

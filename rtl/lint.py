@@ -46,11 +46,12 @@ def main() -> int:
         settings = [f"-G{key}={value}" for key, value in configuration.parameters.items()]
         if not lint(f"configuration {name}", TOP, [*settings, *list_sources()]):
             return 1
-    designs = [DESIGNS / line for line in (DESIGNS / "ecp5.f").read_text().splitlines() if not line.startswith("//")]
-    for lanes in (1, 4):
-        arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
-        if not lint(f"board design with {lanes} lanes", "ecp5_top", arguments):
-            return 1
+    for top, name in (("ecp5_top", "ecp5.f"), ("ecp5_top_sdram", "ecp5_sdram.f")):
+        designs = [DESIGNS / line for line in (DESIGNS / name).read_text().splitlines() if not line.startswith("//")]
+        for lanes in (1, 4):
+            arguments = [f"-GLanes={lanes}", DESIGNS / "lint.vlt", *list_sources(), *designs]
+            if not lint(f"{top} with {lanes} lanes", top, arguments):
+                return 1
     for wrapper in ("voxrt_pynq_z1", "voxrt_zynq_cached"):
         if not lint(f"wrapper {wrapper}", wrapper, [VIVADO / "lint.vlt", *list_sources(), VIVADO / f"{wrapper}.v"]):
             return 1

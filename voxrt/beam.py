@@ -6,6 +6,7 @@ A board without a frame buffer traces each line before the screen needs it. A li
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,12 @@ if TYPE_CHECKING:
     from voxrt.octree.camera import Lighting
 
 SCREEN = (640, 480)
+SCREEN_HZ = 25_000_000 / (800 * 525)
+_SMALL = (160, 120)
+_VIEWS = 8
+_CACHED = 2  # rtl/voxrt_pkg.sv
+SDRAM_CLOCKS = (40, 30)
+"""Of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +122,53 @@ def fit_beam(
         if search.done > done:
             progress(search.done, search.total)
     return BeamFit(*search.fit())
+
+
+def fit_frames(
+    rom: Rom,
+    cameras: Sequence[Camera],
+    lighting: Lighting,
+    tracer: BoardTracer,
+    progress: Callable[[int, int], None] = lambda _done, _total: None,
+) -> BeamFit:
+    """Estimate how many pictures a board with a frame buffer shows per second, from all around a scene.
+
+    The cycles are counted by the verilated ray tracer with caches that has as many lanes, or the next fewer, in small
+    pictures of eight of the views; a board with more lanes takes as many times fewer.
+
+    Parameters
+    ----------
+    rom
+        The scene.
+    cameras
+        Of the orbit, for pictures of 160 x 120 pixels.
+    lighting
+        Of the pictures.
+    tracer
+        The board's ray tracer.
+    progress
+        Receives how many views are complete, of how many.
+
+    Raises
+    ------
+    SimulatorError
+        The verilated ray tracer is missing, or cannot hold the scene.
+    """
+    cached = [each for each in read_configurations().values() if each.parameters["MemoryForm"] == _CACHED]
+    config = max(
+        (each for each in cached if each.parameters["Lanes"] <= tracer.lanes), key=lambda each: each.parameters["Lanes"]
+    )
+    most = 0.0
+    for number, camera in enumerate(cameras[:: len(cameras) // _VIEWS]):
+        progress(number, _VIEWS)
+        frame = sim.render(
+            rom, camera, _SMALL, engine="rtl", config=config.name, lighting=lighting, dram=sim.Dram(*SDRAM_CLOCKS)
+        )
+        most = max(most, (frame.cost.cycles or 0) / (_SMALL[0] * _SMALL[1]))
+    cycles = most * config.parameters["Lanes"] / tracer.lanes
+    # A frame starts at a vertical blanking.
+    screens = math.ceil(cycles * SCREEN[0] * SCREEN[1] * SCREEN_HZ / tracer.clock_hz)
+    return BeamFit(0, cycles, 0.0, SCREEN_HZ / max(1, screens))
 
 
 def beam_lead(rows: Sequence[float], line: float, scale: int, buffer_lines: int) -> float:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from voxrt.board.scene import Scene
     from voxrt.octree.camera import Camera, Lighting
 
+_CACHED = 2  # rtl/voxrt_pkg.sv
 _INSTALL = "pip install 'voxrt-build[fpga]'"
 
 
@@ -49,18 +50,28 @@ class BaseDesign(msgspec.Struct, frozen=True):
     board: str
     core: dict[str, int]
     clock_hz: int
-    line_bits: int
     seed: int
     fmax_mhz: dict[str, float]
     utilisation: dict[str, tuple[int, int]]
     sources: str
     tools: dict[str, str]
     memories: dict[str, Memory]
+    line_bits: int = 0
 
     @property
     def capacity(self) -> int:
-        """Words of the octree memory."""
+        """Words of the octree that the bitstream brings."""
         return 1 + self.memories["octree"].rows
+
+    @property
+    def block_bits(self) -> int:
+        """The bitstream brings 2**block_bits blocks of eight words."""
+        return (self.memories["octree"].rows // 8).bit_length() - 1
+
+    @property
+    def frame_buffer(self) -> bool:
+        """It shows whole frames from an SDRAM, and takes larger scenes from a host; others race the beam."""
+        return self.core["MemoryForm"] == _CACHED
 
     @property
     def buffer_lines(self) -> int:
@@ -170,7 +181,7 @@ def make_bitstream(
     """
     memories = board.design.memories
     contents = {
-        "octree": encode_octree(scene.words, board.design.core["BlockBits"]),
+        "octree": encode_octree(scene.words, board.design.block_bits),
         "table": boot_table(scene, cameras, lighting, scale=beam.scale),
     }
     config = patch_config(board.config, {name: memory.slices for name, memory in memories.items()}, contents)

@@ -14,6 +14,7 @@ import numpy as np
 
 from voxrt.beam import SCREEN, configuration_of
 from voxrt.bitstream import board_names, pack, read_board
+from voxrt.board.designs import build
 from voxrt.board.designs.base_design import places
 from voxrt.board.designs.boot_table import (
     CAMERA_WORDS,
@@ -43,10 +44,15 @@ _BLOCK_RAM = re.compile(rb"\xf6\x00\x00\x00(....)\xb2\xd0\x01\x00(?=.{2306})", r
 
 
 def add_boards(folder: Path) -> dict[str, str]:
-    """Write the files of each board, and return the verilated configurations by board."""
+    """Write the files of each board, and return the verilated configurations by board.
+
+    Boards with a frame buffer are left out: the page counts the cycles of those that race the beam.
+    """
     folder.mkdir()
     configurations = {}
     for name in board_names():
+        if "boot_block_bits" in build.read_board(name):
+            continue
         board = read_board(name)
         bits = pack(board, board.config)
         (folder / f"{name}.bit").write_bytes(bits)

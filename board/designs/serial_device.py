@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import threading
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -36,8 +37,10 @@ from .boot_table import (
     CAMERAS,
     CAMERAS_WORD,
     OCTREE_MEMORY,
+    PAGE_WORDS,
     RUN,
     SCREEN,
+    SDRAM_REGISTERS,
     STEERED,
     TABLE,
     TURN,
@@ -45,7 +48,7 @@ from .boot_table import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -64,6 +67,8 @@ _SCALE_BITS = 0x30
 _PERIOD_BITS = 0xFF00
 _SCENE_WORD = 0
 """Where the list of the present scene is in the table: that of power-on, or the last one that changed the scene."""
+_FIRST_WORDS = 4096
+"""Words of an octree that are read at first; most of a small one."""
 _FREE_WORDS = (1024, 1536)
 """Parts of the table where other lists of the host are written, in turn."""
 
@@ -94,6 +99,8 @@ class SerialDevice:
         Of the ray tracer.
     buffer_lines
         Lines of a picture that the board's line buffer holds.
+    frame_buffer
+        The board holds whole frames: pictures have the screen's size, however long they take.
     """
 
     def __init__(self, link: SerialLink, model: Device) -> None:
@@ -113,10 +120,14 @@ class SerialDevice:
         self.ray_clocks = configuration["ray_clocks"]
         self.clock_hz = self._board("clock")
         self.buffer_lines = 16 << (version >> 16 & 3)
+        self.frame_buffer = bool(configuration["cached"])
+        blocks = 1 << configuration["block_bits"]
+        if self.frame_buffer:
+            blocks = int(link.read(SDRAM_REGISTERS["blocks"], 1)[0])
         self.identity = Identity(
             name=f"board at {link.name}, {lanes} lane{'' if lanes == 1 else 's'}",
             version=f"{version >> 8 & 0xFF}.{version & 0xFF}",
-            capacity=1 + (8 << configuration["block_bits"]),
+            capacity=1 + 8 * blocks,
             depth=configuration["max_depth"],
             size=SCREEN,
             position_limit=1 << (configuration["position_bits"] - 1),
@@ -128,9 +139,14 @@ class SerialDevice:
     def loaded(self) -> LoadedScene | None:
         """Read the scene that the board shows, and where it is; None if its words are no octree."""
         root, depth = self._core("root")["address"], self._core("depth")["depth"]
-        words = self.read_memory(0, self.identity.capacity)[root:]
-        pointers = words >> 31 == 0
-        words = np.where(pointers, words - np.uint32(root), words)
+        words, end = np.zeros(0, dtype=np.uint32), _FIRST_WORDS
+        while len(words) < end:  # a level more each time, at least
+            start, end = root + len(words), min(end, self.identity.capacity - root)
+            if end <= len(words):
+                break
+            more = self.read_memory(start, root + end - start)
+            words = np.concatenate([words, np.where(more >> 31 == 0, more - np.uint32(root), more)])
+            end = octree_span(words, 0, depth)[1]
         try:
             words = words[: octree_span(words, 0, depth)[1]]
             check_memory(words, depth)
@@ -153,12 +169,18 @@ class SerialDevice:
 
     def write_memory(self, address: int, words: NDArray[np.uint32]) -> None:
         """Write words from word `address` on, at once: the frame in progress, if any, goes on."""
-        self._link.write(OCTREE_MEMORY + 4 * address, words)
+        for page, word, part in _pages(address, len(words)):
+            with self._page(page):
+                self._link.write(OCTREE_MEMORY + 4 * word, words[part])
         self._model.write_memory(address, words)
 
     def read_memory(self, address: int, count: int) -> NDArray[np.uint32]:
         """Read `count` words from word `address` on."""
-        return self._link.read(OCTREE_MEMORY + 4 * address, count)
+        words = np.zeros(count, dtype=np.uint32)
+        for page, word, part in _pages(address, count):
+            with self._page(page):
+                words[part] = self._link.read(OCTREE_MEMORY + 4 * word, part.stop - part.start)
+        return words
 
     def write_materials(self, colours: NDArray[np.uint8], mirrors: NDArray[np.bool_], /) -> None:
         """Keep the material table; :meth:`select_scene` writes it together with the scene."""
@@ -235,9 +257,20 @@ class SerialDevice:
 
     def _choose_scale(self, present: int) -> int:
         """Take pixels of twice the side when the board could not keep up with the screen since the last frame."""
+        if self.frame_buffer:
+            return 0
         repeated = self._board("underruns"), self._board("late")
         behind, self._repeated = repeated != self._repeated, repeated
         return min(present + behind, _LARGEST_SCALE)
+
+    @contextmanager
+    def _page(self, page: int) -> Iterator[None]:
+        """Let the address map show a page of the octree; other hosts find the first one."""
+        if page:
+            self._link.write(SDRAM_REGISTERS["page"], [page])
+        yield
+        if page:
+            self._link.write(SDRAM_REGISTERS["page"], [0])
 
     def _replace_orbit(self, writes: Writes, cameras: NDArray[np.uint32]) -> None:
         """Write the cameras while none of them is played, then play `writes`. A failure leaves the old cameras."""
@@ -286,6 +319,16 @@ class SerialDevice:
 
     def _core(self, name: str) -> dict[str, int]:
         return decode_fields(name, int(self._link.read(REGISTERS[name][0], 1)[0]))
+
+
+def _pages(address: int, count: int) -> Iterator[tuple[int, int, slice]]:
+    """Cut words of the octree at pages: the page, the first word in it, and which of the words these are."""
+    start = 0
+    while start < count:
+        page, word = divmod(address + start, PAGE_WORDS)
+        stop = min(count, start + PAGE_WORDS - word)
+        yield page, word, slice(start, stop)
+        start = stop
 
 
 def _material_rows(table: NDArray[np.uint32]) -> NDArray[np.uint32]:

@@ -32,7 +32,7 @@ CAMERA = sim.frame_scene(ROM, (8, 8))
         ("time", "now", "time must be"),
         ("colours", 255, "colours must be an integer 1 … 254, not 255"),
         ("budget", 0, "budget must be an integer"),
-        ("budget", "abacus", "budget must be 'icepi-zero', 'pynq-z1', .* or 'ulx3s-85f'"),
+        ("budget", "abacus", "budget must be 'icepi-zero', 'pynq-z1', .* or 'ulx3s-85f-sdram'"),
         ("interior", 300, "interior must be an integer 1 … 255, not 300"),
         ("size", (0, 5), r"size\[0\] must be an integer 1 … 16384, not 0"),
         ("size", 640, "size must be a width and a height"),

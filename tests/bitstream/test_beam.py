@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import voxrt
-from voxrt.beam import SCREEN, BoardTracer, beam_lead, fit_beam
+from voxrt.beam import SCREEN, SCREEN_HZ, BoardTracer, beam_lead, fit_beam, fit_frames
 from voxrt.octree.camera import Camera, look_at
 from voxrt.orbit import orbit
 from voxrt.sim import _model
@@ -89,6 +89,18 @@ def test_a_slow_clock_takes_larger_pixels(house):
         for mega in (800, 75, 10)
     ]
     assert scales == [0, 1, 2]
+
+
+def test_a_frame_buffer_shows_fewer_pictures_of_the_same_size(house):
+    cameras, lighting = orbit(house, (160, 120), 8), voxrt.Lighting()
+    fits = [fit_frames(house, cameras, lighting, BoardTracer(2, 1, mega * 1_000_000, 0)) for mega in (1000, 75, 7)]
+    assert [fit.scale for fit in fits] == [0, 0, 0]
+    assert fits[0].frames_per_second == SCREEN_HZ
+    assert fits[1].frames_per_second > fits[2].frames_per_second
+    for fit in fits:  # each is shown for whole screens
+        assert SCREEN_HZ / fit.frames_per_second == pytest.approx(round(SCREEN_HZ / fit.frames_per_second))
+    alone = fit_frames(house, cameras, lighting, BoardTracer(1, 1, 75_000_000, 0))
+    assert alone.cycles_per_pixel == 2 * fits[1].cycles_per_pixel
 
 
 def test_lanes_that_nobody_simulates_are_refused(house):

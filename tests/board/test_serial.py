@@ -7,7 +7,7 @@ from itertools import chain, repeat
 
 import numpy as np
 import pytest
-from fakes.ecp5_board import CLOCK, Board
+from fakes.ecp5_board import CLOCK, SDRAM_BLOCK_BITS, Board
 from oracles import worlds
 from oracles.cuts import memory_of
 
@@ -106,6 +106,30 @@ def test_a_scene_changes_on_the_running_board():
         camera = frame_world(scene.depth, SIZE)
         np.testing.assert_array_equal(board.screen(), picture_of(scene, camera, SIZE))
         assert board.registers[CONTROL] & 0xF == RUN | TURN
+
+
+def test_words_of_an_sdram_have_pages():
+    board = Board(sdram=True)
+    device = opened(board)
+    assert device.identity.capacity == 1 + (8 << SDRAM_BLOCK_BITS)
+    words = 1 + 8 * np.arange(300, dtype=np.uint32)
+    start = (1 << 21) - 100
+    device.write_memory(start, words)
+    np.testing.assert_array_equal(device.read_memory(start, 300), words)
+    np.testing.assert_array_equal(board.core.read_memory(start, 300), words)
+    assert board.registers[0x1030] == 0
+
+
+def test_a_board_with_frames_keeps_the_size_of_the_screen():
+    board, scene = Board(sdram=True), scene_of(4)
+    show(board, scene)
+    board.registers[0x101C] += 5  # late
+    device = opened(board)
+    assert device.frame_buffer
+    np.testing.assert_array_equal(device.loaded().scene.words, scene.words)
+    board.registers[0x101C] += 5
+    device.frame(View(frame_world(scene.depth, SIZE), SIZE, scene.background))
+    assert board.registers[CONTROL] >> 4 & 3 == 0
 
 
 def test_the_present_scene_is_read_back():

@@ -1,8 +1,13 @@
 """``voxrt bitstream``: what it refuses, in one line and before any work."""
 
+from pathlib import Path
+
 import pytest
 
 import voxrt as package
+from voxrt.bitstream import BaseDesign, Memory, PlacedBoard
+from voxrt.cli.bitstream import read_memory, summary_rows
+from voxrt.cli.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen
 
 
@@ -41,3 +46,46 @@ def test_a_memory_that_is_too_deep_names_the_depth_that_fits(voxrt, deep):
     tree = package.read_any(deep)[0].rom.octree
     assert len(coarsen(tree, tree.depth - fits).words) <= 32_769
     assert fits == 10 or len(coarsen(tree, tree.depth - fits - 1).words) > 32_769
+
+
+def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(tmp_path):
+    core = {"Lanes": 2, "MaxDepth": 12, "BlockBits": 20, "MemoryForm": 2, "RayClocks": 1}
+    memories = {"octree": Memory(32768, 13, ())}
+    design = BaseDesign("ulx3s-85f-sdram", core, 75_000_000, 1, {}, {}, "", {}, memories)
+    board = PlacedBoard(design.board, "a board with SDRAM", None, "none", design, "")
+    package.build("examples/planet.glb", tmp_path, depth=8)
+    file = tmp_path / "planet.mem"
+    with pytest.raises(package.DoesNotFitError) as refusal:
+        read_memory(file, None, board)
+    assert "66,881 words and 8 levels, and ulx3s-85f-sdram starts from 32,769 words and 12 levels; " in str(
+        refusal.value
+    )
+    assert str(refusal.value).endswith(f"write it into the running board: voxrt upload {file} --to serial:PORT")
+
+
+@pytest.mark.parametrize(("reached", "said"), [(80.0, False), (53.1, True)])
+def test_a_clock_that_is_not_reached_is_told(reached, said):
+    clocks = {"system": reached, "pixel": 100.0, "bit": 300.0}
+    told = BitstreamResult(
+        *(
+            "house",
+            "bare",
+            "a board",
+            "house.bit",
+            9,
+            16_385,
+            4,
+            2,
+            75_000_000,
+            clocks,
+            {},
+            1,
+            (640, 480),
+            4.5,
+            None,
+            29.8,
+        )
+    )
+    rows = dict(summary_rows(told, Path("house.report.json")))
+    assert rows["cycles"].endswith("whole pictures are shown, however long they take")
+    assert ("place and route reach 53.1 of 75.0 MHz" in rows.get("clock", "")) == said

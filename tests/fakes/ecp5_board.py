@@ -17,18 +17,23 @@ if TYPE_CHECKING:
 KNOWN = {address for address, _ in REGISTERS.values()} | set(range(MATERIALS, MATERIALS + 1024, 4))
 CLOCK = 75_000_000
 BLOCK_BITS = 10
+SDRAM_BLOCK_BITS = 19
+PAGE = 1 << 21
 CONFIGURATION, FIELDS = REGISTERS["configuration"]
 
 
 class Board:
     """A serial port (`write`, `read`, `close`) with a board at it. Each request lets one vertical blanking pass."""
 
-    def __init__(self, faults: Iterable[str] = ()) -> None:
+    def __init__(self, faults: Iterable[str] = (), *, sdram: bool = False) -> None:
+        self.sdram = sdram
         self.core = import_verilated("the tests need it").Core("tiny")
-        self.words = 1 + (8 << BLOCK_BITS)
+        self.words = 1 + (8 << (SDRAM_BLOCK_BITS if sdram else BLOCK_BITS))
         self.table = np.zeros(4096, dtype=np.uint32)
         self.registers = dict.fromkeys(range(0x1000, 0x1030, 4), 0)
         self.registers |= {0x1000: 0x56584244, 0x1004: 0x0100, 0x102C: CLOCK}
+        if sdram:
+            self.registers |= {0x1030: 0, 0x1034: 1 << SDRAM_BLOCK_BITS}
         self.faults = iter(faults)
         self.pending = None
         self.unplugged = False
@@ -103,11 +108,12 @@ class Board:
         if 0x4000 <= address < 0x8000:
             return int(self.table[(address - 0x4000) // 4])
         if address >= 0x800000:
-            word = (address - 0x800000) // 4
+            word = (address - 0x800000) // 4 + PAGE * self.registers.get(0x1030, 0)
             return int(self.core.read_memory(word, 1)[0]) if word < self.words else 0
         value = int(self.core.read(address)) if address in KNOWN else None
         if address == CONFIGURATION:  # a board has less memory than the simulation
             value = value & ~(0x1F << FIELDS["block_bits"][0]) | BLOCK_BITS << FIELDS["block_bits"][0]
+            value |= self.sdram << FIELDS["cached"][0]
         return value
 
     def put(self, address: int, value: int) -> bool:
@@ -115,12 +121,12 @@ class Board:
             self.registers[address] = 1 << 31
             self.pending = value & 0xFFF
         elif address in self.registers:
-            if address in (0x1008, 0x100C):
+            if address in (0x1008, 0x100C, 0x1030):
                 self.registers[address] = value
         elif 0x4000 <= address < 0x8000:
             self.table[(address - 0x4000) // 4] = value
         elif address >= 0x800000:
-            word = (address - 0x800000) // 4
+            word = (address - 0x800000) // 4 + PAGE * self.registers.get(0x1030, 0)
             if word < self.words:
                 self.core.write_memory(word, np.array([value], dtype=np.uint32))
         elif address in KNOWN:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -60,7 +61,7 @@ def bitstream(
     reporting
         The form of the output.
     """
-    from voxrt.beam import SCREEN, fit_beam  # noqa: PLC0415
+    from voxrt.beam import SCREEN, fit_beam, fit_frames  # noqa: PLC0415
     from voxrt.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.orbit import orbit  # noqa: PLC0415
@@ -72,24 +73,23 @@ def bitstream(
     check_folder(output)
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
-    blob = _read(source, depth, placed)
+    blob = read_memory(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     roots = (0,) if blob.animation is None else blob.animation.roots
     cameras = orbit(blob.rom, SCREEN, roots=roots)
     with transfer_bar() as progress:
-        beam = fit_beam(
-            blob.rom,
-            cameras,
-            lighting,
-            design.tracer,
-            progress=lambda done, total: progress("count cycles", done, total),
-        )
+        told = partial(progress, "count cycles")
+        if design.frame_buffer:
+            small = orbit(blob.rom, (160, 120), roots=roots)
+            beam = fit_frames(blob.rom, small, lighting, design.tracer, progress=told)
+        else:
+            beam = fit_beam(blob.rom, cameras, lighting, design.tracer, progress=told)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
     file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file)
     _write(file, bits, report, result)
-    summarize(f"{source.name}:", _rows(result, report))
+    summarize(f"{source.name}:", summary_rows(result, report))
     if load:
         load_bitstream(placed, file)
         summarize(f"{file.name}:", [("loaded", placed.title)])
@@ -107,8 +107,8 @@ def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
         return rebuild_board(name, Path(folder), seed)
 
 
-def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
-    """Read a memory, or build an asset for the board's budget."""
+def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
+    """Read a memory, or build an asset for the board's budget; refuse what the bitstream cannot bring."""
     from voxrt.export import Blob  # noqa: PLC0415
     from voxrt.octree import coarsen  # noqa: PLC0415
     from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
@@ -130,9 +130,14 @@ def _read(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
         fits = next(
             n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, tree.depth - n).words) <= capacity
         )
+        remedy = f"build it with --depth {fits}, or give the asset"
+        verb = "holds"
+        if placed.design.frame_buffer and tree.depth <= most:
+            verb = "starts from"
+            remedy = f"write it into the running board: voxrt upload {source} --to serial:PORT"
         raise voxrt.DoesNotFitError(
-            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} holds {capacity:,} words "
-            f"and {most} levels; build it with --depth {fits}, or give the asset"
+            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} {verb} {capacity:,} words "
+            f"and {most} levels; {remedy}"
         )
     return blob
 
@@ -147,17 +152,23 @@ def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> No
         write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
 
 
-def _rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:
+    """Give the rows of the summary: names and values."""
     width, height = result.size
     squares = f", each pixel as {640 // width} x {640 // width}" if width < 640 else ""
     lanes = f"{result.lanes} lane{'' if result.lanes == 1 else 's'}"
     cycles = f"{result.cycles_per_pixel:.2f} per pixel in the slowest view; "
-    if result.lead_lines >= 0:
+    if result.lead_lines is None:
+        cycles += "whole pictures are shown, however long they take"
+    elif result.lead_lines >= 0:
         cycles += f"rows are complete {result.lead_lines:.1f} lines before they are shown, or earlier"
     else:
         cycles += "some rows are repeated, because the next ones are late"
+    reached, needed = result.fmax_mhz["system"], result.clock_hz / 1e6
+    clock = f"place and route reach {reached:.1f} of {needed:.1f} MHz: the board may fail; try another --seed"
     return [
         ("board", f"{result.title}, {lanes}, {result.clock_hz / 1e6:.1f} MHz"),
+        *([("clock", clock)] if reached < needed else []),
         ("scene", f"{result.words:,} of {result.capacity:,} words, depth {result.depth}"),
         ("picture", f"{width} x {height}{squares}, {result.frames_per_second:.1f} frames per second"),
         ("cycles", cycles),

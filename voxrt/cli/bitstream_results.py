@@ -40,8 +40,9 @@ class BitstreamResult(msgspec.Struct, frozen=True):
     """Columns and rows of the pictures; the screen has 640 x 480."""
     cycles_per_pixel: float
     """Of the slowest of eight views of the orbit."""
-    lead_lines: float
-    """How many lines of the screen each row is complete before it is shown, at least; negative: rows are repeated."""
+    lead_lines: float | None
+    """How many lines of the screen each row is complete before it is shown, at least; negative: rows are repeated; null
+    where whole pictures are shown from a frame buffer."""
     frames_per_second: float
     """New pictures; the screen repeats them at 59.5 Hz."""
 
@@ -64,6 +65,6 @@ def bitstream_result(rom: Rom, placed: PlacedBoard, beam: BeamFit, file: Path) -
         seed=design.seed,
         size=beam.size,
         cycles_per_pixel=round(beam.cycles_per_pixel, 4),
-        lead_lines=round(beam.lead, 2),
+        lead_lines=None if design.frame_buffer else round(beam.lead, 2),
         frames_per_second=round(beam.frames_per_second, 3),
     )

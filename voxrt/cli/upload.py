@@ -121,14 +121,18 @@ def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dr
             _write(scene, device, progress, dry_run=True)
             if not dry_run:
                 lighting = supported(scene.lighting or voxrt.Lighting(), device.identity.features)
-                beam = fit_beam(
-                    rom,
-                    orbit(rom, SCREEN),
-                    lighting,
-                    BoardTracer(device.lanes, device.ray_clocks, device.clock_hz, device.buffer_lines),
-                    progress=lambda done, total: progress("count cycles", done, total),
-                )
-                device.prepare_orbit(orbit(rom, beam.size), lighting, beam.scale)
+                size, scale = SCREEN, 0
+                if not device.frame_buffer:
+                    tracer = BoardTracer(device.lanes, device.ray_clocks, device.clock_hz, device.buffer_lines)
+                    beam = fit_beam(
+                        rom,
+                        orbit(rom, SCREEN),
+                        lighting,
+                        tracer,
+                        progress=lambda done, total: progress("count cycles", done, total),
+                    )
+                    size, scale = beam.size, beam.scale
+                device.prepare_orbit(orbit(rom, size), lighting, scale)
                 _write(scene, device, progress, dry_run=False, loaded=device.loaded())
         finally:
             device.close()

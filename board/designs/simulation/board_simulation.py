@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..build import TOP, list_sources, parameters
+from ..build import list_sources, parameters, top_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HERE = Path(__file__).resolve().parent
+_CELLS = {"ecp5_cells.sv", "ecp5_sdram_cells.sv"}
+_CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
+_CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ class Timing:
 
 
 def compile_sources(
-    board: Mapping[str, Any], folder: Path, *, extra: Sequence[Path] = (), top: str = TOP, **more: int
+    board: Mapping[str, Any], folder: Path, *, extra: Sequence[Path] = (), top: str | None = None, **more: int
 ) -> Path:
     """Compile the sources of a board's design; give the program.
 
@@ -64,14 +67,37 @@ def compile_sources(
         Where to; `octree.hex` and `table.hex` in the folder in which the program starts are what the memories hold.
     extra, top
         Of another design with the pins of a board: its own sources, and its top, without parameters but the files.
+        An SDRAM is at the pins of designs that have one.
     **more
         Parameters of the top that differ from the board's.
     """
-    numbers = {**parameters(board), **more} if top == TOP else more
+    numbers = {**parameters(board), **more} if top is None else more
     settings = [f"-G{name}={value}" for name, value in numbers.items()]
     settings += ['-GOctreeFile="octree.hex"', '-GTableFile="table.hex"']
-    sources = [_HERE / "ecp5_models.sv" if path.name == "ecp5_cells.sv" else path for path in list_sources()]
-    return compile_verilog([*sources, *extra], folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=top)
+    models = _HERE / "ecp5_models.sv"
+    sources = [models if path.name in _CELLS else path for path in list_sources(top_of(board))]
+    if top is None and top_of(board) in _CHIPS:
+        sources, top = [*sources, *_CHIP], _CHIP[-1].stem
+    return compile_verilog(
+        [*sources, *extra], folder, ["-DVOXRT_NARROW_MULTIPLIERS", *settings], top=top or top_of(board)
+    )
+
+
+def compile_placed(board: Mapping[str, Any], sources: Sequence[Path], folder: Path) -> Path:
+    """Compile the netlist of a board's design after place and route, whose top is `top`; give the program.
+
+    Parameters
+    ----------
+    board
+        As `read_board` gives it.
+    sources
+        The netlist and the models of its cells.
+    folder
+        Where to.
+    """
+    if top_of(board) in _CHIPS:
+        return compile_verilog([*sources, *_CHIP], folder, ["-DPLACED"], top=_CHIP[-1].stem, opt="-O1")
+    return compile_verilog(sources, folder, [], top="top", opt="-O1")
 
 
 def compile_verilog(

@@ -8,7 +8,9 @@ module EHXPLLL #(
   parameter int unsigned CLKOS_DIV     = 8,
   parameter int unsigned CLKOS_CPHASE  = 0,
   parameter int unsigned CLKOS2_DIV    = 8,
-  parameter int unsigned CLKOS2_CPHASE = 0
+  parameter int unsigned CLKOS2_CPHASE = 0,
+  parameter int unsigned CLKOS3_DIV    = 10,
+  parameter int unsigned CLKOS3_CPHASE = 9
 ) (
   input  logic CLKI,
   input  logic CLKFB,
@@ -24,11 +26,13 @@ module EHXPLLL #(
   output logic CLKOP,
   output logic CLKOS,
   output logic CLKOS2,
+  output logic CLKOS3,
   output logic LOCK
 );
-  int unsigned op = 0, os = 0, os2 = 0, ticks = 0;
+  int unsigned op = 0, os = 0, os2 = 0, os3 = 0, ticks = 0;
 
-  // Clocks are high in the first half of their period. Blocking: all clocks of a tick rise at once.
+  // Clocks are high in the first half of their period. Blocking: all clocks of a tick rise at once. The last one is later
+  // by its phase beyond CLKOS3_DIV - 1.
   always @(CLKI) begin
     ticks  = ticks + 1;
     op     = op + 1 == CLKOP_DIV ? 0 : op + 1;
@@ -36,7 +40,9 @@ module EHXPLLL #(
     os2    = os2 + 1 == CLKOS2_DIV ? 0 : os2 + 1;
     CLKOP  = op < CLKOP_DIV / 2;
     CLKOS  = os < CLKOS_DIV / 2;
+    os3    = (ticks + 2 * CLKOS3_DIV - 1 - CLKOS3_CPHASE) % CLKOS3_DIV;
     CLKOS2 = os2 < CLKOS2_DIV / 2;
+    CLKOS3 = os3 < CLKOS3_DIV / 2;
     LOCK   = ticks > 300;
   end
 endmodule
@@ -56,4 +62,24 @@ module ODDRX1F (
   end
 
   assign Q = SCLK ? first_q : second_q;
+endmodule
+
+module OFS1P3BX (
+  input  logic D,
+  input  logic PD,
+  input  logic SP,
+  input  logic SCLK,
+  output logic Q
+);
+  always_ff @(posedge SCLK) if (SP) Q <= D;
+endmodule
+
+module BB (
+  input  logic I,
+  input  logic T,
+  output logic O,
+  inout  wire  B
+);
+  assign B = T ? 1'bz : I;
+  assign O = B;
 endmodule

@@ -235,29 +235,50 @@ class _Writer:
 
     def pad(self, _number: int, cell: Mapping[str, Any]) -> None:
         place = self._pads[cell["connections"]["B"][0]]
-        direction = cell["parameters"]["DIR"].strip()
-        if direction == "INPUT":
-            self.drive(cell, "O", place)
-        elif direction == "OUTPUT":
-            source = "IOLDO" if cell["parameters"].get("DATAMUX_ODDR", "PADDO").strip() == "IOLDO" else "I"
-            self._lines.append(f"  assign {place} = {self.value(cell, source)};")
-        else:
+        parameters = cell["parameters"]
+        direction = parameters["DIR"].strip()
+        if direction not in {"INPUT", "OUTPUT", "BIDIR"}:
             raise UnknownCellError(f"{place}: a pin with direction {direction} is not known")
+        if direction != "OUTPUT":
+            self.drive(cell, "O", place)
+        if direction != "INPUT":
+            registered = "IOLDO" in {parameters.get(f"DATAMUX_{name}", "").strip() for name in ("ODDR", "OREG")}
+            source = self.value(cell, "IOLDO" if registered else "I")
+            if direction == "BIDIR":
+                release = "IOLTO" if parameters.get("TRIMUX_TSREG", "").strip() == "IOLTO" else "T"
+                source = f"{self.value(cell, release)} ? 1'bz : {source}"
+            self._lines.append(f"  assign {place} = {source};")
 
     def pad_register(self, number: int, cell: Mapping[str, Any]) -> None:
-        if cell["parameters"]["MODE"].strip() != "IDDRX1_ODDRX1":
-            raise UnknownCellError("a register at a pin that is no ODDRX1F is not known")
-        pins = {"D0": "TXDATA0", "D1": "TXDATA1", "SCLK": "CLK"}
-        inputs = ", ".join(f".{name}({self.value(cell, pin)})" for name, pin in pins.items())
-        self._lines.append(f"  ODDRX1F o{number} ({inputs}, .RST(1'b0), .Q({self.output(cell, 'IOLDO')}));")
+        parameters = cell["parameters"]
+        mode = parameters["MODE"].strip()
+        if mode == "IDDRX1_ODDRX1":
+            pins = {"D0": "TXDATA0", "D1": "TXDATA1", "SCLK": "CLK"}
+            inputs = ", ".join(f".{name}({self.value(cell, pin)})" for name, pin in pins.items())
+            self._lines.append(f"  ODDRX1F o{number} ({inputs}, .RST(1'b0), .Q({self.output(cell, 'IOLDO')}));")
+            return
+        if mode != "IREG_OREG" or self._constant(cell, "LSR") != 0 or self._constant(cell, "CE") != 1:
+            raise UnknownCellError("a register at a pin is neither an ODDRX1F nor a flip-flop without reset and enable")
+        for name, data, output in (("OUTREG", "TXDATA0", "IOLDO"), ("TSREG", "TSDATA0", "IOLTO")):
+            if parameters.get(f"{name}.OUTREGMODE", "").strip() == "FF":
+                value = 1 if parameters[f"{name}.REGSET"].strip() == "SET" else 0
+                register = f"{output.lower()}{number}"
+                self._declarations.append(f"  reg {register} = 1'b{value};")
+                self._lines.append(
+                    f"  always @(posedge {self.value(cell, 'CLK')}) {register} <= {self.value(cell, data)};"
+                )
+                self.drive(cell, output, register)
 
     def clock_gate(self, _number: int, cell: Mapping[str, Any]) -> None:
         self.drive(cell, "CLKO", self.value(cell, "CLKI"))
 
     def pll(self, number: int, cell: Mapping[str, Any]) -> None:
-        names = [f"{clock}_{what}" for clock in ("CLKOP", "CLKOS", "CLKOS2") for what in ("DIV", "CPHASE")]
+        clocks = ["CLKOP", "CLKOS", "CLKOS2"]
+        if isinstance(self.net(cell, "CLKOS3"), int):
+            clocks.append("CLKOS3")
+        names = [f"{clock}_{what}" for clock in clocks for what in ("DIV", "CPHASE")]
         settings = ", ".join(f".{name}({int(cell['parameters'][name], 2)})" for name in names)
-        outputs = ", ".join(f".{pin}({self.output(cell, pin)})" for pin in ("CLKOP", "CLKOS", "CLKOS2", "LOCK"))
+        outputs = ", ".join(f".{pin}({self.output(cell, pin)})" for pin in (*clocks, "LOCK"))
         self._lines.append(f"  EHXPLLL #({settings}) l{number} (.CLKI({self.value(cell, 'CLKI')}), {outputs});")
 
 

@@ -1,0 +1,49 @@
+// The clocks of an ECP5 board with SDRAM: those of board_pll, and the chip's, which is the system clock, but later by
+// ChipDelay periods of 750 MHz.
+module board_pll_sdram #(
+  parameter int unsigned InputDivider    = 1,
+  parameter int unsigned FeedbackDivider = 5,
+  parameter int unsigned SystemDivider   = 10,
+  parameter int unsigned ChipDelay       = 3
+) (
+  input  logic clk_i,
+  output logic bit_clk_o,
+  output logic pixel_clk_o,
+  output logic system_clk_o,
+  output logic chip_clk_o,
+  output logic locked_o
+);
+  localparam int unsigned BitDivider = 6;
+  localparam int unsigned PixelDivider = 30;
+
+  // A phase of "divider - 1" is none.
+  EHXPLLL #(
+    .CLKI_DIV     (InputDivider),
+    .CLKFB_DIV    (FeedbackDivider),
+    .CLKOP_DIV    (BitDivider),
+    .CLKOP_CPHASE (BitDivider - 1),
+    .CLKOS_DIV    (PixelDivider),
+    .CLKOS_CPHASE (PixelDivider - 1),
+    .CLKOS2_DIV   (SystemDivider),
+    .CLKOS2_CPHASE(SystemDivider - 1),
+    .CLKOS3_DIV   (SystemDivider),
+    .CLKOS3_CPHASE(SystemDivider - 1 + ChipDelay)
+  ) u_pll (
+    .CLKI        (clk_i),
+    .CLKFB       (bit_clk_o),
+    .RST         (1'b0),
+    .STDBY       (1'b0),
+    .PHASESEL0   (1'b0),
+    .PHASESEL1   (1'b0),
+    .PHASEDIR    (1'b0),
+    .PHASESTEP   (1'b0),
+    .PHASELOADREG(1'b0),
+    .PLLWAKESYNC (1'b0),
+    .ENCLKOP     (1'b0),
+    .CLKOP       (bit_clk_o),
+    .CLKOS       (pixel_clk_o),
+    .CLKOS2      (system_clk_o),
+    .CLKOS3      (chip_clk_o),
+    .LOCK        (locked_o)
+  );
+endmodule

@@ -1,0 +1,175 @@
+// The ray tracer on a board with a Lattice ECP5 and an SDR SDRAM of 32 MB, which holds the octree and two frames: a scene
+// on the DVI connector, no host needed.
+//
+// docs/ecp5_boards.md is the reference of the design; board/designs/NAME/board.json holds pins and parameters of a board.
+// System and pixel clock come from one PLL, but nothing relies on their phases.
+module ecp5_top_sdram #(
+  parameter int unsigned InputDivider    = 1,
+  parameter int unsigned FeedbackDivider = 5,
+  parameter int unsigned SystemDivider   = 10,
+  parameter int unsigned Lanes           = 4,
+  parameter int unsigned MaxDepth        = 12,
+  parameter int unsigned PositionBits    = 19,
+  parameter int unsigned BlockBits       = 20,
+  parameter int unsigned MemoryForm      = 2,
+  parameter int unsigned L1SetBits       = 5,
+  parameter int unsigned L2SetBits       = 9,
+  parameter bit          Light           = 1'b0,
+  parameter bit          Mirrors         = 1'b0,
+  parameter int unsigned RayClocks       = 1,
+  parameter int unsigned BootBlockBits   = 12,
+  parameter int unsigned PowerOnUs       = 200,
+  parameter int unsigned GapBits         = 22,
+  parameter bit          ButtonsLow      = 1'b0,
+  parameter int unsigned Leds            = 8,
+  parameter int unsigned Highs           = 1,
+  parameter string       OctreeFile      = "",
+  parameter string       TableFile       = ""
+) (
+  input  logic             clk,
+  input  logic             uart_rx,
+  output logic             uart_tx,
+  input  logic [      2:0] buttons,  // Pause, reverse, step.
+  output logic [ Leds-1:0] leds,
+  output logic [Highs-1:0] high,     // Always 1.
+  output logic [      3:0] dvi,      // Blue, green, red, clock.
+  output logic             sdram_clk,
+  output logic             sdram_cke,
+  output logic             sdram_csn,
+  output logic             sdram_rasn,
+  output logic             sdram_casn,
+  output logic             sdram_wen,
+  output logic [      1:0] sdram_ba,
+  output logic [     12:0] sdram_a,
+  output logic [      1:0] sdram_dqm,
+  inout  wire  [     15:0] sdram_d
+);
+  logic bit_clk, pixel_clk, system_clk, chip_clk, locked;
+
+  board_pll_sdram #(
+    .InputDivider   (InputDivider),
+    .FeedbackDivider(FeedbackDivider),
+    .SystemDivider  (SystemDivider)
+  ) u_pll (
+    .clk_i       (clk),
+    .bit_clk_o   (bit_clk),
+    .pixel_clk_o (pixel_clk),
+    .system_clk_o(system_clk),
+    .chip_clk_o  (chip_clk),
+    .locked_o    (locked)
+  );
+
+  // Reset: 16 clocks from the lock on. Flip-flops are 0 when the part is configured.
+  logic [3:0] system_count_q = '0, pixel_count_q = '0;
+  logic system_locked, pixel_locked, system_rst_nq = 1'b0, pixel_rst_nq = 1'b0;
+
+  board_synchronizer u_system_locked (
+    .clk_i(system_clk),
+    .bit_i(locked),
+    .bit_o(system_locked)
+  );
+
+  board_synchronizer u_pixel_locked (
+    .clk_i(pixel_clk),
+    .bit_i(locked),
+    .bit_o(pixel_locked)
+  );
+
+  always_ff @(posedge system_clk) begin
+    if (system_locked && !system_rst_nq) system_count_q <= system_count_q + 1'b1;
+    system_rst_nq <= system_rst_nq || system_count_q == '1;
+  end
+
+  always_ff @(posedge pixel_clk) begin
+    if (pixel_locked && !pixel_rst_nq) pixel_count_q <= pixel_count_q + 1'b1;
+    pixel_rst_nq <= pixel_rst_nq || pixel_count_q == '1;
+  end
+
+  logic [2:0][9:0] words;
+  logic [7:0] all_leds;
+
+  // As board_sdram_pins has them.
+  logic        cke, cs_n, ras_n, cas_n, we_n, dq_oe;
+  logic [ 1:0] ba, dqm;
+  logic [12:0] a;
+  logic [15:0] dq_out, dq_in;
+
+  board_system_sdram #(
+    .Lanes        (Lanes),
+    .MaxDepth     (MaxDepth),
+    .PositionBits (PositionBits),
+    .BlockBits    (BlockBits),
+    .MemoryForm   (MemoryForm),
+    .L1SetBits    (L1SetBits),
+    .L2SetBits    (L2SetBits),
+    .Light        (Light),
+    .Mirrors      (Mirrors),
+    .RayClocks    (RayClocks),
+    .BootBlockBits(BootBlockBits),
+    .ClockHz      (750_000_000 / SystemDivider),
+    .PowerOnUs    (PowerOnUs),
+    .GapBits      (GapBits),
+    .ButtonsLow   (ButtonsLow),
+    .OctreeFile   (OctreeFile),
+    .TableFile    (TableFile)
+  ) u_system (
+    .clk_i        (system_clk),
+    .rst_ni       (system_rst_nq),
+    .rx_i         (uart_rx),
+    .tx_o         (uart_tx),
+    .buttons_i    (buttons),
+    .leds_o       (all_leds),
+    .sdram_cke_o  (cke),
+    .sdram_cs_no  (cs_n),
+    .sdram_ras_no (ras_n),
+    .sdram_cas_no (cas_n),
+    .sdram_we_no  (we_n),
+    .sdram_ba_o   (ba),
+    .sdram_a_o    (a),
+    .sdram_dqm_o  (dqm),
+    .sdram_dq_oe_o(dq_oe),
+    .sdram_dq_o   (dq_out),
+    .sdram_dq_i   (dq_in),
+    .pixel_clk_i  (pixel_clk),
+    .pixel_rst_ni (pixel_rst_nq),
+    .words_o      (words)
+  );
+
+  board_sdram_pins u_sdram_pins (
+    .clk_i     (system_clk),
+    .chip_clk_i(chip_clk),
+    .cke_i     (cke),
+    .cs_ni     (cs_n),
+    .ras_ni    (ras_n),
+    .cas_ni    (cas_n),
+    .we_ni     (we_n),
+    .ba_i      (ba),
+    .a_i       (a),
+    .dqm_i     (dqm),
+    .dq_oe_i   (dq_oe),
+    .dq_i      (dq_out),
+    .dq_o      (dq_in),
+    .sdram_clk,
+    .sdram_cke,
+    .sdram_csn,
+    .sdram_rasn,
+    .sdram_casn,
+    .sdram_wen,
+    .sdram_ba,
+    .sdram_a,
+    .sdram_dqm,
+    .sdram_d
+  );
+
+  assign leds = all_leds[Leds-1:0];
+  assign high = '1;
+
+  // DVI: the clock channel is five ones and five zeros.
+  board_serializer u_dvi (
+    .pixel_clk_i (pixel_clk),
+    .pixel_rst_ni(pixel_rst_nq),
+    .bit_clk_i   (bit_clk),
+    .words_i     ({10'b0000011111, words}),
+    .pins_o      (dvi)
+  );
+endmodule
