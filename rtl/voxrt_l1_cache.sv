@@ -130,16 +130,18 @@ module voxrt_l1_cache
     allocates  = (wants ? !taken1 : prefetches) && outstanding_q != CountBits'(Outstanding) && !walks_q;
   end
 
-  // The least recently used way.
-  always_comb begin
-    victim = '0;
+  // The least recently used way of a set, from its order.
+  function automatic logic [WayBits-1:0] oldest_way(logic [OrderBits-1:0] order);
+    oldest_way = '0;
     for (int unsigned w = 0; w < Ways; w++) begin
       automatic logic oldest = 1'b1;
-      for (int unsigned a = 0; a < w; a++) oldest &= order_q[new_set][w*(w-1)/2+a];
-      for (int unsigned b = w + 1; b < Ways; b++) oldest &= !order_q[new_set][b*(b-1)/2+w];
-      if (oldest) victim |= WayBits'(w);
+      for (int unsigned a = 0; a < w; a++) oldest &= order[w*(w-1)/2+a];
+      for (int unsigned b = w + 1; b < Ways; b++) oldest &= !order[b*(b-1)/2+w];
+      if (oldest) oldest_way |= WayBits'(w);
     end
-  end
+  endfunction
+
+  assign victim = wants ? oldest_way(order_q[set1]) : oldest_way(order_q[prefetch_set]);
 
   // Sets whose line has come, for a turn. The way is readable: the last two words are read after they are written.
   typedef struct packed {
@@ -161,29 +163,24 @@ module voxrt_l1_cache
     for (int unsigned t = 1; t < TurnClocks; t++) come_q[t] <= come_q[t-1];
   end
 
-  // One set's order is written at a clock.
+  // A hit counts as use. A line that comes is used by the ray that waits for it, before its set asks for another.
   logic [OrderBits-1:0] order;
-  logic [  SetBits-1:0] touched_set, order_row;
-  logic [  WayBits-1:0] touched;
   logic                 asked;
 
-  assign touched_set = hit ? set1 : new_set;
-  assign touched     = hit ? hit_way : victim;
-  assign order_row   = walks_q ? walk_set : touched_set;
-  assign asked       = !walks_q && !free_set_q[new_set];
+  assign asked = !walks_q && !free_set_q[new_set];
 
   always_comb begin
-    order = order_q[touched_set];
+    order = order_q[set1];
     for (int unsigned b = 1; b < Ways; b++) begin
       for (int unsigned a = 0; a < b; a++) begin
-        if (touched == WayBits'(a)) order[b*(b-1)/2+a] = 1'b1;
-        if (touched == WayBits'(b)) order[b*(b-1)/2+a] = 1'b0;
+        if (hit_way == WayBits'(a)) order[b*(b-1)/2+a] = 1'b1;
+        if (hit_way == WayBits'(b)) order[b*(b-1)/2+a] = 1'b0;
       end
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (walks_q || hit || allocates) order_q[order_row] <= walks_q ? '0 : order;
+    if (walks_q || hit) order_q[walks_q ? walk_set : set1] <= walks_q ? '0 : order;
     if (walks_q || allocates) asked_set_q[new_row] <= asked;
     if (walks_q || come.valid) come_set_q[walks_q ? walk_set : come.set] <= !walks_q && come.asked;
     if (walks_q || turn.valid) free_set_q[walks_q ? walk_set : turn.set] <= !walks_q && turn.asked;
