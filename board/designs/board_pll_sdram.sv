@@ -4,7 +4,7 @@ module board_pll_sdram #(
   parameter int unsigned InputDivider    = 1,
   parameter int unsigned FeedbackDivider = 5,
   parameter int unsigned SystemDivider   = 10,
-  parameter int unsigned ChipDelay       = 3
+  parameter int unsigned ChipDelay       = 4
 ) (
   input  logic clk_i,
   output logic bit_clk_o,
