@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 SCREEN = (640, 480)
 SCREEN_HZ = 25_000_000 / (800 * 525)
-_SMALL = (160, 120)
+SMALL = (160, 120)
+"""Columns and rows of the pictures that `fit_frames` counts cycles in."""
 _VIEWS = 8
 _CACHED = 2  # rtl/voxrt_pkg.sv
 SDRAM_CLOCKS = (40, 30)
@@ -141,7 +142,7 @@ def fit_frames(
     rom
         The scene.
     cameras
-        Of the orbit, for pictures of 160 x 120 pixels.
+        Of the orbit, for pictures of the size SMALL.
     lighting
         Of the pictures.
     tracer
@@ -162,9 +163,9 @@ def fit_frames(
     for number, camera in enumerate(cameras[:: len(cameras) // _VIEWS]):
         progress(number, _VIEWS)
         frame = sim.render(
-            rom, camera, _SMALL, engine="rtl", config=config.name, lighting=lighting, dram=sim.Dram(*SDRAM_CLOCKS)
+            rom, camera, SMALL, engine="rtl", config=config.name, lighting=lighting, dram=sim.Dram(*SDRAM_CLOCKS)
         )
-        most = max(most, (frame.cost.cycles or 0) / (_SMALL[0] * _SMALL[1]))
+        most = max(most, (frame.cost.cycles or 0) / (SMALL[0] * SMALL[1]))
     cycles = most * config.parameters["Lanes"] / tracer.lanes
     # A frame starts at a vertical blanking.
     screens = math.ceil(cycles * SCREEN[0] * SCREEN[1] * SCREEN_HZ / tracer.clock_hz)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside, allow_outside=True"
+ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (in Python: allow_outside=True)"
 """How to fix a reference to a file outside the asset's folder."""
 
 

@@ -61,7 +61,7 @@ def bitstream(
     reporting
         The form of the output.
     """
-    from voxrt.beam import SCREEN, fit_beam, fit_frames  # noqa: PLC0415
+    from voxrt.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
     from voxrt.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.orbit import orbit  # noqa: PLC0415
@@ -77,14 +77,10 @@ def bitstream(
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     roots = (0,) if blob.animation is None else blob.animation.roots
-    cameras = orbit(blob.rom, SCREEN, roots=roots)
+    fit, size = (fit_frames, SMALL) if design.frame_buffer else (fit_beam, SCREEN)
     with transfer_bar() as progress:
         told = partial(progress, "count cycles")
-        if design.frame_buffer:
-            small = orbit(blob.rom, (160, 120), roots=roots)
-            beam = fit_frames(blob.rom, small, lighting, design.tracer, progress=told)
-        else:
-            beam = fit_beam(blob.rom, cameras, lighting, design.tracer, progress=told)
+        beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=told)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
     file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
     result = bitstream_result(blob.rom, placed, beam, file)

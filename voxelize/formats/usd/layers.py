@@ -47,7 +47,7 @@ def open_layers(path: Path, external_files: ExternalFiles, allowance: Allowance)
                 continue
             seen.add(file)
             if not external_files.allows(found):
-                place = "" if Path(layer.realPath) == path.resolve() else Path(layer.realPath).name
+                place = "" if Path(layer.realPath).resolve() == path.resolve() else Path(layer.realPath).name
                 raise AssetError(path, f"layer {asset!r} is outside the file's folder", place=place, fix=ALLOW_OUTSIDE)
             allowance.add(found.stat().st_size)
             try:

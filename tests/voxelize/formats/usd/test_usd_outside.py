@@ -31,6 +31,18 @@ def test_layers_outside_the_folder_are_not_opened(tmp_path):
         assert len(load_usd(path, allow_outside=True).objects) == 1
 
 
+def test_a_file_reached_by_a_link_is_named_once(tmp_path):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (inner / "stage.usda").write_text("#usda 1.0\n(subLayers = [@../shared.usda@])\n")
+    (tmp_path / "shared.usda").write_text("#usda 1.0\n")
+    linked = tmp_path / "linked"
+    linked.symlink_to(inner)
+    with pytest.raises(AssetError) as caught:
+        load_usd(linked / "stage.usda")
+    assert caught.value.place == ""
+
+
 def test_textures_outside_the_folder_are_not_opened(tmp_path):
     Image.fromarray(np.zeros((2, 2, 3), np.uint8)).save(tmp_path / "map.png")
     (tmp_path / "inner").mkdir()
