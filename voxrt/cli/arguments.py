@@ -16,7 +16,7 @@ from voxrt.backgrounds import read_background
 from voxrt.cli.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from cyclopts import Token
 
@@ -175,13 +175,24 @@ def choice(kind: Any, tokens: Sequence[Token]) -> str:  # noqa: ANN401 - a Liter
 
 
 def board_name(_type: type, tokens: Sequence[Token]) -> str:
-    """Read the name of a board, however it is spelled."""
+    """Read the name of a board with a budget, however it is spelled."""
     from voxrt.octree import BOARDS  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
-    for name in BOARDS:
+    return _board_of(tokens, BOARDS)
+
+
+def design_name(_type: type, tokens: Sequence[Token]) -> str:
+    """Read the name of a board with a design, however it is spelled."""
+    from voxrt.bitstream import board_names  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+
+    return _board_of(tokens, board_names())
+
+
+def _board_of(tokens: Sequence[Token], names: Iterable[str]) -> str:
+    for name in names:
         if _plain(name) == _plain(tokens[0].value):
             return name
-    raise ValueError(f"no board {tokens[0].value!r}; there are {', '.join(sorted(BOARDS))}")
+    raise ValueError(f"no board {tokens[0].value!r}; there are {', '.join(sorted(names))}")
 
 
 def _plain(name: str) -> str:

@@ -11,7 +11,7 @@ import msgspec
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.cli.arguments import Reporting, board_name, levels, whole
+from voxrt.cli.arguments import Reporting, design_name, levels, whole
 from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
 from voxrt.cli.errors import UsageError
 from voxrt.cli.lighting import supported
@@ -29,7 +29,7 @@ def bitstream(
     source: Annotated[Path, Parameter(metavar="ASSET|ROM")],
     /,
     *,
-    board: Annotated[str, Parameter(converter=board_name, metavar="NAME")],
+    board: Annotated[str, Parameter(converter=design_name, metavar="NAME")],
     output: Annotated[Path, Parameter(("--output", "-o"), metavar="DIR")] = Path(),
     depth: Annotated[int | None, Parameter(converter=levels, metavar="N")] = None,
     load: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
@@ -62,12 +62,10 @@ def bitstream(
         The form of the output.
     """
     from voxrt.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
-    from voxrt.bitstream import board_names, load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.bitstream import load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
     from voxrt.board_scenes import board_scene  # noqa: PLC0415
     from voxrt.orbit import orbit  # noqa: PLC0415
 
-    if board not in board_names():
-        raise UsageError(f"no board {board!r} with a design; there are {', '.join(board_names())}")
     if seed is not None and not rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")
     check_folder(output)
