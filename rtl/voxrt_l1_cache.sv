@@ -111,13 +111,15 @@ module voxrt_l1_cache
 
   logic [     Ways-1:0] hit_ways;
   logic [  WayBits-1:0] hit_way;
-  logic                 pending1, taken1, prefetch_taken, hit, wants, prefetches;
+  logic                 pending1, taken1, prefetch_taken, free1, prefetch_free, hit, wants, prefetches;
   logic [CountBits-1:0] outstanding_q;
 
   always_comb begin
     pending1       = asked_set_q[set1] != come_set_q[set1];
-    taken1         = asked_set_q[set1] != free_set_q[set1];
-    prefetch_taken = asked_set_q[prefetch_set] != free_set_q[prefetch_set];
+    free1          = free_set_q[set1];
+    prefetch_free  = free_set_q[prefetch_set];
+    taken1         = asked_set_q[set1] != free1;
+    prefetch_taken = asked_set_q[prefetch_set] != prefetch_free;
     hit_way        = '0;
     for (int unsigned w = 0; w < Ways; w++) begin
       hit_ways[w] = same1[w] && !(pending1 && new_way_q[set1] == WayBits'(w));
@@ -167,7 +169,8 @@ module voxrt_l1_cache
   logic [OrderBits-1:0] order;
   logic                 asked;
 
-  assign asked = !walks_q && !free_set_q[new_set];
+  // Both sets are read before it is known which one asks.
+  assign asked = !walks_q && !(wants ? free1 : prefetch_free);
 
   always_comb begin
     order = order_q[set1];

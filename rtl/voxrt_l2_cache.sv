@@ -9,7 +9,8 @@
 // sees of tags, list and data is always of one order, that of stage 0.
 //
 // A line replaces one of its set: an empty way, or one that was not used lately, by a tree of three bits. Of two lookups at
-// a clock, one counts as use.
+// a clock, one counts as use. The bits are read a clock before a lookup is known to miss, and written a clock after it:
+// paths are short, and lookups of a set that follow each other so closely are seldom.
 module voxrt_l2_cache
   import voxrt_pkg::*;
 #(
@@ -169,13 +170,21 @@ module voxrt_l2_cache
 
   // Use: bit 0 is the half used last, bits 1 and 2 the way used last of each half. All orders are legal: no reset.
   logic [2:0] used_q[2**SetBits];
+  logic [1:0] older_q[Pipes];
+  line_t      line2[Pipes];
+
+  always_comb for (int unsigned p = 0; p < Pipes; p++) line2[p] = line_q[p][2];
+
+  always_ff @(posedge clk_i) begin
+    for (int unsigned p = 0; p < Pipes; p++) older_q[p] <= older_way(used_q[line2[p][SetBits-1:0]]);
+  end
 
   always_comb begin
     decided = '0;
     for (int unsigned p = 0; p < Pipes; p++) begin
       line3[p]   = line_q[p][3];
       hit_way[p] = '0;
-      new_way[p] = older_way(used_q[line_q[p][3][SetBits-1:0]]);
+      new_way[p] = older_q[p];
       for (int unsigned w = 0; w < Ways; w++) begin
         same[p][w]  = tag[p][w] == {1'b1, line_q[p][3][LineBits-1:SetBits]};
         empty[p][w] = !tag[p][w][StoredBits];
@@ -200,25 +209,26 @@ module voxrt_l2_cache
     end
   end
 
-  logic       second_first_q, counts_second;
-  logic [SetBits-1:0] used_set;
-  logic [1:0] used_way;
+  logic               second_first_q, counts_second, uses_q;
+  logic [SetBits-1:0] used_set_q;
+  logic [        1:0] used_way_q;
 
   function automatic logic [1:0] older_way(logic [2:0] used);
     return {!used[0], used[0] ? !used[1] : !used[2]};
   endfunction
 
   assign counts_second = Pipes == 2 && lanes_q[Pipes-1][3] != '0 && (second_first_q || lanes_q[0][3] == '0);
-  assign used_set      = line3[counts_second?Pipes-1 : 0][SetBits-1:0];
-  assign used_way      = counts_second ? (hit[Pipes-1] ? hit_way[Pipes-1] : new_way[Pipes-1]) :
-      hit[0] ? hit_way[0] : new_way[0];
 
   always_ff @(posedge clk_i) begin
     second_first_q <= !second_first_q;
-    if (counts_second ? hit[Pipes-1] || missed[Pipes-1] : hit[0] || missed[0]) begin
-      used_q[used_set][0] <= used_way[1];
-      if (used_way[1]) used_q[used_set][2] <= used_way[0];
-      else used_q[used_set][1] <= used_way[0];
+    uses_q         <= counts_second ? hit[Pipes-1] || missed[Pipes-1] : hit[0] || missed[0];
+    used_set_q     <= line3[counts_second?Pipes-1 : 0][SetBits-1:0];
+    used_way_q     <= counts_second ? (hit[Pipes-1] ? hit_way[Pipes-1] : new_way[Pipes-1]) :
+        hit[0] ? hit_way[0] : new_way[0];
+    if (uses_q) begin
+      used_q[used_set_q][0] <= used_way_q[1];
+      if (used_way_q[1]) used_q[used_set_q][2] <= used_way_q[0];
+      else used_q[used_set_q][1] <= used_way_q[0];
     end
     if (!rst_ni) second_first_q <= 1'b0;
   end
@@ -236,6 +246,7 @@ module voxrt_l2_cache
     .rst_ni,
     .empty_o      (list_empty),
     .miss_i       (misses),
+    .next_line_i  (line2),
     .line_i       (line3),
     .lanes_i      (lanes3),
     .way_i        (new_way),

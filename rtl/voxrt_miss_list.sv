@@ -1,7 +1,8 @@
 // The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come; and which lanes want each.
 //
 // A miss, per pipe, joins the entry of its line, or gets one: at most one new entry per clock, for which the pipes take
-// turns. An entry stays until free_i, when its line is in the tags for all lookups that come after. A lane asks once for a
+// turns. The lines of all entries are compared a clock before the miss is known, which makes a long path shorter. An entry
+// stays until free_i, when its line is in the tags for all lookups that come after. A lane asks once for a
 // line, until it comes.
 //
 // Who waits is in memories: a lane waits for an entry when its bits in joined_q and answered_q differ. The first is
@@ -17,6 +18,7 @@ module voxrt_miss_list #(
   output logic                 empty_o,
   // Misses.
   input  logic [    Pipes-1:0] miss_i,
+  input  logic [ LineBits-1:0] next_line_i  [Pipes],  // line_i of the next clock.
   input  logic [ LineBits-1:0] line_i       [Pipes],
   input  logic [PipeLanes-1:0] lanes_i      [Pipes],  // One-hot.
   input  logic [          1:0] way_i        [Pipes],  // Where its line will go.
@@ -43,10 +45,10 @@ module voxrt_miss_list #(
   index_t               tail_q, fetch_q, come_q, free_q, walk_q;
   logic                 walks_q;
 
-  logic [Entries-1:0] same[Pipes];
+  logic [Entries-1:0] same_q[Pipes];
   index_t             entry[Pipes];  // Joined or entered.
   logic [  Pipes-1:0] joins, enters;
-  logic               full, second_first_q, enters_second;
+  logic               full, second_first_q, enters_second, both_same_q;
 
   assign full = valid_q[tail_q] || walks_q;
 
@@ -54,17 +56,16 @@ module voxrt_miss_list #(
     for (int unsigned p = 0; p < Pipes; p++) begin
       entry[p] = '0;
       for (int unsigned e = 0; e < Entries; e++) begin
-        same[p][e] = valid_q[e] && line_q[e] == line_i[p];
-        if (same[p][e]) entry[p] |= index_t'(e);
+        if (same_q[p][e]) entry[p] |= index_t'(e);
       end
-      if (same[p] == '0) entry[p] = tail_q;
-      joins[p]  = miss_i[p] && same[p] != '0;
-      enters[p] = miss_i[p] && same[p] == '0 && !full;
+      if (same_q[p] == '0) entry[p] = tail_q;
+      joins[p]  = miss_i[p] && same_q[p] != '0;
+      enters[p] = miss_i[p] && same_q[p] == '0 && !full;
     end
     // Of two, one enters; the other joins it if it wants the same line.
     enters_second = Pipes == 2 && enters[Pipes-1] && (second_first_q || !enters[0]);
     accepted_o    = joins | enters;
-    if (enters == '1 && Pipes == 2 && line_i[0] != line_i[Pipes-1]) begin
+    if (enters == '1 && Pipes == 2 && !both_same_q) begin
       accepted_o[0]       = joins[0] || !enters_second;
       accepted_o[Pipes-1] = joins[Pipes-1] || enters_second;
     end
@@ -73,6 +74,18 @@ module voxrt_miss_list #(
   logic [LineBits-1:0] new_line;
 
   assign new_line = line_i[enters_second?Pipes-1 : 0];
+
+  // An entry that ends now counts, too: what misses in the next clock does not want its line, which is in the tags.
+  always_ff @(posedge clk_i) begin
+    both_same_q <= next_line_i[0] == next_line_i[Pipes-1];
+    for (int unsigned p = 0; p < Pipes; p++) begin
+      for (int unsigned e = 0; e < Entries; e++) begin
+        same_q[p][e] <= (valid_q[e] && line_q[e] == next_line_i[p]) ||
+            (enters != '0 && tail_q == index_t'(e) && new_line == next_line_i[p]);
+      end
+    end
+    if (!rst_ni) for (int unsigned p = 0; p < Pipes; p++) same_q[p] <= '0;
+  end
 
   always_ff @(posedge clk_i) begin
     if (enters != '0) begin
@@ -142,7 +155,7 @@ module voxrt_miss_list #(
 
   always_ff @(posedge clk_i) begin
     if (rst_ni && reset_seen_q) begin
-      for (int unsigned p = 0; p < Pipes; p++) assert ($onehot0(same[p])) else $error("a line has two entries");
+      for (int unsigned p = 0; p < Pipes; p++) assert ($onehot0(same_q[p]) || !miss_i[p]) else $error("a line has two entries");
       assert (!come_i || valid_q[come_q]) else $error("a line comes that nobody waits for");
       assert (!free_i || valid_q[free_q]) else $error("no entry ends");
     end

@@ -1,6 +1,6 @@
 // Reads the frame that is shown from the SDRAM, a row ahead of the beam: while a row is shown, the next one comes.
 //
-// A row has 2400 clocks of 75 MHz for 60 lines. Requests are urgent in the second half of that time.
+// A row has 2000 clocks of 62.5 MHz for 60 lines. Requests are urgent in the second half of that time.
 module board_frame_reader
   import board_pkg::*;
 (

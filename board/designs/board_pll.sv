@@ -1,21 +1,28 @@
 // The clocks of an ECP5 board: 750 MHz inside; bit clock 125 MHz, pixel clock 25 MHz, system clock 750 MHz / SystemDivider.
+// The clock of an SDRAM chip is the system clock, but later by ChipDelay periods of 750 MHz.
 //
 // The oscillator must give 125 MHz x InputDivider / FeedbackDivider.
 module board_pll #(
   parameter int unsigned InputDivider    = 1,
   parameter int unsigned FeedbackDivider = 5,
-  parameter int unsigned SystemDivider   = 10
+  parameter int unsigned SystemDivider   = 10,
+  parameter int unsigned ChipDelay       = 0    // 0: there is no such chip, and no clock for it.
 ) (
   input  logic clk_i,
   output logic bit_clk_o,
   output logic pixel_clk_o,
   output logic system_clk_o,
+  output logic chip_clk_o,
   output logic locked_o
 );
   localparam int unsigned BitDivider = 6;
   localparam int unsigned PixelDivider = 30;
 
-  // A phase of "divider - 1" is none: all clocks rise together.
+  if (ChipDelay >= SystemDivider) begin : gen_bad_delay
+    $error("board_pll: ChipDelay must be less than SystemDivider");
+  end
+
+  // A phase of "divider - 1" is none: these clocks rise together.
   EHXPLLL #(
     .CLKI_DIV     (InputDivider),
     .CLKFB_DIV    (FeedbackDivider),
@@ -24,7 +31,10 @@ module board_pll #(
     .CLKOS_DIV    (PixelDivider),
     .CLKOS_CPHASE (PixelDivider - 1),
     .CLKOS2_DIV   (SystemDivider),
-    .CLKOS2_CPHASE(SystemDivider - 1)
+    .CLKOS2_CPHASE(SystemDivider - 1),
+    .CLKOS3_ENABLE(ChipDelay == 0 ? "DISABLED" : "ENABLED"),
+    .CLKOS3_DIV   (SystemDivider),
+    .CLKOS3_CPHASE(SystemDivider - 1 + ChipDelay)
   ) u_pll (
     .CLKI        (clk_i),
     .CLKFB       (bit_clk_o),
@@ -40,6 +50,7 @@ module board_pll #(
     .CLKOP       (bit_clk_o),
     .CLKOS       (pixel_clk_o),
     .CLKOS2      (system_clk_o),
+    .CLKOS3      (chip_clk_o),
     .LOCK        (locked_o)
   );
 endmodule

@@ -6,7 +6,7 @@ module board_system
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryForm       = 0,
+  parameter int unsigned MemoryForm   = 0,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter int unsigned RayClocks    = 1,
@@ -32,19 +32,10 @@ module board_system
 );
   localparam int unsigned AccessClocks = voxrt_pkg::access_clocks(MemoryForm);
 
-  // Master 0 is the player, and between lists the frames; master 1 the serial line.
   logic    [ 1:0] bus_valid, bus_done;
   access_t [ 1:0] bus_access;
   logic    [31:0] bus_data;
   logic           bus_refused;
-
-  logic player_valid, frames_valid, playing, play, play_camera, new_frame, drain;
-  access_t player_access, frames_access;
-  logic [TableBits-1:0] play_word;
-  count_events_t events;
-
-  assign bus_valid[0]  = playing ? player_valid : frames_valid;
-  assign bus_access[0] = playing ? player_access : frames_access;
 
   // Core.
   logic        awvalid, awready, wvalid, wready, bvalid, arvalid, arready, rvalid;
@@ -129,11 +120,48 @@ module board_system
     .m_axis_tlast  (stream_last)
   );
 
-  // Bus.
-  logic                 register_en, register_write, table_write;
+  // Control.
+  logic                 register_en, register_write, table_write, row_event, drain, new_frame;
   logic [          3:0] register_number;
   logic [         31:0] register_data, register_read, table_data, table_read;
   logic [TableBits-1:0] table_word;
+  row_event_t           row;
+  logic [          1:0] scale;
+
+  board_control #(
+    .ClockHz   (ClockHz),
+    .LineBits  (LineBits),
+    .GapBits   (GapBits),
+    .ButtonsLow(ButtonsLow),
+    .TableFile (TableFile)
+  ) u_control (
+    .clk_i,
+    .rst_ni,
+    .rx_i,
+    .tx_o,
+    .buttons_i,
+    .leds_o,
+    .valid_o         (bus_valid),
+    .access_o        (bus_access),
+    .done_i          (bus_done),
+    .data_i          ({2{bus_data}}),
+    .refused_i       ({2{bus_refused}}),
+    .register_en_i   (register_en),
+    .register_write_i(register_write),
+    .register_i      (register_number),
+    .register_data_i (register_data),
+    .register_data_o (register_read),
+    .table_write_i   (table_write),
+    .table_word_i    (table_word),
+    .table_data_i    (table_data),
+    .table_data_o    (table_read),
+    .flush_i         (1'b0),
+    .row_event_i     (row_event),
+    .row_i           (row),
+    .drain_o         (drain),
+    .new_frame_o     (new_frame),
+    .scale_o         (scale)
+  );
 
   board_bus #(
     .MemoryClocks(AccessClocks)
@@ -175,109 +203,13 @@ module board_system
     .table_data_i    (table_read)
   );
 
-  board_table #(
-    .File(TableFile)
-  ) u_table (
-    .clk_i,
-    .write_i(table_write),
-    .word_i (table_word),
-    .data_i (table_data),
-    .data_o (table_read)
-  );
-
-  board_player u_player (
-    .clk_i,
-    .rst_ni,
-    .start_i  (play),
-    .word_i   (play_word),
-    .camera_i (play_camera),
-    .busy_o   (playing),
-    .refused_o(events.write_refused),
-    .valid_o  (player_valid),
-    .access_o (player_access),
-    .done_i   (bus_done[0] && playing),
-    .data_i   (bus_data),
-    .refused_i(bus_refused)
-  );
-
-  // Serial line.
-  logic       rx_valid, rx_broken, tx_valid, tx_ready;
-  logic [7:0] rx_byte, tx_byte;
-
-  board_uart #(
-    .ClockHz(ClockHz)
-  ) u_uart (
-    .clk_i,
-    .rst_ni,
-    .rx_i,
-    .valid_o (rx_valid),
-    .broken_o(rx_broken),
-    .byte_o  (rx_byte),
-    .valid_i (tx_valid),
-    .ready_o (tx_ready),
-    .byte_i  (tx_byte),
-    .tx_o
-  );
-
-  board_requests #(
-    .GapBits(GapBits)
-  ) u_requests (
-    .clk_i,
-    .rst_ni,
-    .valid_i       (rx_valid),
-    .broken_i      (rx_broken),
-    .byte_i        (rx_byte),
-    .valid_o       (tx_valid),
-    .ready_i       (tx_ready),
-    .byte_o        (tx_byte),
-    .access_valid_o(bus_valid[1]),
-    .access_o      (bus_access[1]),
-    .done_i        (bus_done[1]),
-    .data_i        (bus_data),
-    .refused_i     (bus_refused),
-    .request_done_o(events.request_done),
-    .request_bad_o (events.request_bad)
-  );
-
-  // Frames.
-  logic             row_event, row_begin;
-  row_event_t       row;
-  logic [1:0]       scale, pixel_scale;
+  // Pixels.
+  logic             row_begin;
+  logic [1:0]       pixel_scale;
   logic [9:0]       beam_row, beam_column;
   logic [23:0]      pixel, beam_pixel;
   logic             pixel_valid, pixel_ready, line_end;
 
-  board_frames #(
-    .ClockHz   (ClockHz),
-    .LineBits  (LineBits),
-    .ButtonsLow(ButtonsLow)
-  ) u_frames (
-    .clk_i,
-    .rst_ni,
-    .register_en_i   (register_en),
-    .register_write_i(register_write),
-    .register_i      (register_number),
-    .register_data_i (register_data),
-    .register_data_o (register_read),
-    .play_o          (play),
-    .play_word_o     (play_word),
-    .play_camera_o   (play_camera),
-    .playing_i       (playing),
-    .valid_o         (frames_valid),
-    .access_o        (frames_access),
-    .done_i          (bus_done[0] && !playing),
-    .data_i          (bus_data),
-    .row_event_i     (row_event),
-    .row_i           (row),
-    .drain_o         (drain),
-    .new_frame_o     (new_frame),
-    .scale_o         (scale),
-    .events_i        (events),
-    .buttons_i,
-    .leds_o
-  );
-
-  // Pixels.
   board_unpacker u_unpacker (
     .clk_i,
     .rst_ni,

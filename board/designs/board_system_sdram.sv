@@ -7,7 +7,7 @@ module board_system_sdram
   import board_pkg::*;
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Lanes         = 4,
+  parameter int unsigned Lanes         = 2,
   parameter int unsigned MaxDepth      = 12,
   parameter int unsigned PositionBits  = 19,
   parameter int unsigned BlockBits     = 20,
@@ -18,7 +18,7 @@ module board_system_sdram
   parameter bit          Mirrors       = 1'b0,
   parameter int unsigned RayClocks     = 1,
   parameter int unsigned BootBlockBits = 12,
-  parameter int unsigned ClockHz       = 75_000_000,
+  parameter int unsigned ClockHz       = 62_500_000,
   parameter int unsigned PowerOnUs     = 200,
   parameter int unsigned GapBits       = 22,
   parameter bit          ButtonsLow    = 1'b0,
@@ -171,9 +171,19 @@ module board_system_sdram
   end
 
   // Control. No frame starts before the boot scene is in the SDRAM.
-  logic       row_event, new_frame, booting;
-  row_event_t row;
-  logic [1:0] scale;
+  logic                 register_en, register_write, table_write, row_event, new_frame, booting, written, written_q;
+  logic                 unused_drain;
+  logic [          3:0] register_number;
+  logic [         31:0] register_data, register_read, table_data, table_read;
+  logic [TableBits-1:0] table_word;
+  row_event_t           row;
+  logic [          1:0] scale;
+
+  logic    [1:0]       master_valid, master_done, master_refused, bus_valid, bus_done;
+  access_t [1:0]       master_access;
+  logic    [1:0][31:0] master_data;
+  logic    [31:0]      bus_data;
+  logic                bus_refused;
 
   board_control #(
     .ClockHz   (ClockHz),
@@ -187,32 +197,95 @@ module board_system_sdram
     .tx_o,
     .buttons_i,
     .leds_o,
-    .m_axil_awvalid(awvalid),
-    .m_axil_awready(awready),
-    .m_axil_awaddr (awaddr),
-    .m_axil_wvalid (wvalid),
-    .m_axil_wready (wready),
-    .m_axil_wdata  (wdata),
-    .m_axil_bvalid (bvalid),
-    .m_axil_bresp  (bresp),
-    .m_axil_arvalid(arvalid),
-    .m_axil_arready(arready),
-    .m_axil_araddr (araddr),
-    .m_axil_rvalid (rvalid),
-    .m_axil_rdata  (rdata),
-    .m_axil_rresp  (rresp),
-    .line_valid_o  (valid[Words]),
-    .line_ready_i  (ready[Words]),
-    .line_write_o  (writes[Words]),
-    .line_o        (lines[Words]),
-    .line_mask_o   (masks[Words]),
-    .line_data_o   (data[Words]),
-    .line_done_i   (done[Words]),
-    .line_data_i   (read_data),
-    .row_event_i   (row_event && !booting),
-    .row_i         (row),
-    .new_frame_o   (new_frame),
-    .scale_o       (scale)
+    .valid_o         (master_valid),
+    .access_o        (master_access),
+    .done_i          (master_done),
+    .data_i          (master_data),
+    .refused_i       (master_refused),
+    .register_en_i   (register_en),
+    .register_write_i(register_write),
+    .register_i      (register_number),
+    .register_data_i (register_data),
+    .register_data_o (register_read),
+    .table_write_i   (table_write),
+    .table_word_i    (table_word),
+    .table_data_i    (table_data),
+    .table_data_o    (table_read),
+    .flush_i         (written_q),
+    .row_event_i     (row_event && !booting),
+    .row_i           (row),
+    .drain_o         (unused_drain),
+    .new_frame_o     (new_frame),
+    .scale_o         (scale)
+  );
+
+  // What was written since the last frame started may be in the core's caches as it was before.
+  always_ff @(posedge clk_i) begin
+    if (new_frame) written_q <= 1'b0;
+    if (written) written_q <= 1'b1;
+    if (!rst_ni) written_q <= 1'b0;
+  end
+
+  board_memory_port u_memory (
+    .clk_i,
+    .rst_ni,
+    .valid_i      (master_valid),
+    .access_i     (master_access),
+    .done_o       (master_done),
+    .data_o       (master_data),
+    .refused_o    (master_refused),
+    .written_o    (written),
+    .bus_valid_o  (bus_valid),
+    .bus_done_i   (bus_done),
+    .bus_data_i   (bus_data),
+    .bus_refused_i(bus_refused),
+    .valid_o      (valid[Words]),
+    .ready_i      (ready[Words]),
+    .write_o      (writes[Words]),
+    .line_o       (lines[Words]),
+    .mask_o       (masks[Words]),
+    .line_data_o  (data[Words]),
+    .done_i       (done[Words]),
+    .line_data_i  (read_data)
+  );
+
+  board_bus u_bus (
+    .clk_i,
+    .rst_ni,
+    .valid_i         (bus_valid),
+    .access_i        (master_access),
+    .done_o          (bus_done),
+    .data_o          (bus_data),
+    .refused_o       (bus_refused),
+    .m_axil_awvalid  (awvalid),
+    .m_axil_awready  (awready),
+    .m_axil_awaddr   (awaddr),
+    .m_axil_wvalid   (wvalid),
+    .m_axil_wready   (wready),
+    .m_axil_wdata    (wdata),
+    .m_axil_bvalid   (bvalid),
+    .m_axil_bresp    (bresp),
+    .m_axil_arvalid  (arvalid),
+    .m_axil_arready  (arready),
+    .m_axil_araddr   (araddr),
+    .m_axil_rvalid   (rvalid),
+    .m_axil_rdata    (rdata),
+    .m_axil_rresp    (rresp),
+    // board_memory_port has it.
+    .memory_en_o     (),
+    .memory_write_o  (),
+    .memory_address_o(),
+    .memory_data_o   (),
+    .memory_data_i   ('0),
+    .register_en_o   (register_en),
+    .register_write_o(register_write),
+    .register_o      (register_number),
+    .register_data_o (register_data),
+    .register_data_i (register_read),
+    .table_write_o   (table_write),
+    .table_word_o    (table_word),
+    .table_data_o    (table_data),
+    .table_data_i    (table_read)
   );
 
   board_boot_copy #(

@@ -4,6 +4,7 @@ ecp5_cells.sv
 board_synchronizer.sv
 board_event.sv
 board_pll.sv
+board_reset.sv
 board_table.sv
 board_bus.sv
 board_player.sv
@@ -16,5 +17,6 @@ board_serializer.sv
 board_crc32.sv
 board_uart.sv
 board_requests.sv
+board_control.sv
 board_system.sv
 ecp5_top.sv

@@ -12,6 +12,7 @@ module EHXPLLL #(
   parameter string       CLKOP_ENABLE     = "ENABLED",
   parameter string       CLKOS_ENABLE     = "ENABLED",
   parameter string       CLKOS2_ENABLE    = "ENABLED",
+  parameter string       CLKOS3_ENABLE    = "DISABLED",
   parameter string       FEEDBK_PATH      = "CLKOP",
   parameter int unsigned CLKI_DIV         = 1,
   parameter int unsigned CLKFB_DIV        = 1,
@@ -23,7 +24,10 @@ module EHXPLLL #(
   parameter int unsigned CLKOS_FPHASE     = 0,
   parameter int unsigned CLKOS2_DIV       = 8,
   parameter int unsigned CLKOS2_CPHASE    = 0,
-  parameter int unsigned CLKOS2_FPHASE    = 0
+  parameter int unsigned CLKOS2_FPHASE    = 0,
+  parameter int unsigned CLKOS3_DIV       = 8,
+  parameter int unsigned CLKOS3_CPHASE    = 0,
+  parameter int unsigned CLKOS3_FPHASE    = 0
 ) (
   input  logic CLKI,
   input  logic CLKFB,
@@ -39,6 +43,7 @@ module EHXPLLL #(
   output logic CLKOP,
   output logic CLKOS,
   output logic CLKOS2,
+  output logic CLKOS3,
   output logic LOCK
 );
 endmodule
@@ -50,5 +55,26 @@ module ODDRX1F (
   input  logic SCLK,
   input  logic RST,
   output logic Q
+);
+endmodule
+
+// A flip-flop at a pin.
+(* blackbox *)
+module OFS1P3BX (
+  input  logic D,
+  input  logic PD,
+  input  logic SP,
+  input  logic SCLK,
+  output logic Q
+);
+endmodule
+
+// A pin in both directions, driven while T is 0.
+(* blackbox *)
+module BB (
+  input  logic I,
+  input  logic T,
+  output logic O,
+  inout  wire  B
 );
 endmodule

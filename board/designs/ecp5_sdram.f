@@ -1,9 +1,10 @@
 // Sources of the ECP5 designs with SDRAM, in the order in which tools must read them, after those of rtl/voxrt.f.
 board_pkg.sv
-ecp5_sdram_cells.sv
+ecp5_cells.sv
 board_synchronizer.sv
 board_event.sv
-board_pll_sdram.sv
+board_pll.sv
+board_reset.sv
 board_table.sv
 board_bus.sv
 board_player.sv

@@ -10,7 +10,7 @@ module ecp5_top #(
   parameter int unsigned MaxDepth        = 10,
   parameter int unsigned PositionBits    = 17,
   parameter int unsigned BlockBits       = 12,
-  parameter int unsigned MemoryForm          = 0,
+  parameter int unsigned MemoryForm      = 0,
   parameter bit          Light           = 1'b0,
   parameter bit          Mirrors         = 1'b0,
   parameter int unsigned RayClocks       = 1,
@@ -30,7 +30,7 @@ module ecp5_top #(
   output logic [Highs-1:0] high,     // Always 1.
   output logic [      3:0] dvi       // Blue, green, red, clock.
 );
-  logic bit_clk, pixel_clk, system_clk, locked;
+  logic bit_clk, pixel_clk, system_clk, unused_chip_clk, locked;
 
   board_pll #(
     .InputDivider   (InputDivider),
@@ -41,34 +41,23 @@ module ecp5_top #(
     .bit_clk_o   (bit_clk),
     .pixel_clk_o (pixel_clk),
     .system_clk_o(system_clk),
+    .chip_clk_o  (unused_chip_clk),
     .locked_o    (locked)
   );
 
-  // Reset: 16 clocks from the lock on. Flip-flops are 0 when the part is configured.
-  logic [3:0] system_count_q = '0, pixel_count_q = '0;
-  logic system_locked, pixel_locked, system_rst_nq = 1'b0, pixel_rst_nq = 1'b0;
+  logic system_rst_n, pixel_rst_n;
 
-  board_synchronizer u_system_locked (
-    .clk_i(system_clk),
-    .bit_i(locked),
-    .bit_o(system_locked)
+  board_reset u_system_reset (
+    .clk_i   (system_clk),
+    .locked_i(locked),
+    .rst_no  (system_rst_n)
   );
 
-  board_synchronizer u_pixel_locked (
-    .clk_i(pixel_clk),
-    .bit_i(locked),
-    .bit_o(pixel_locked)
+  board_reset u_pixel_reset (
+    .clk_i   (pixel_clk),
+    .locked_i(locked),
+    .rst_no  (pixel_rst_n)
   );
-
-  always_ff @(posedge system_clk) begin
-    if (system_locked && !system_rst_nq) system_count_q <= system_count_q + 1'b1;
-    system_rst_nq <= system_rst_nq || system_count_q == '1;
-  end
-
-  always_ff @(posedge pixel_clk) begin
-    if (pixel_locked && !pixel_rst_nq) pixel_count_q <= pixel_count_q + 1'b1;
-    pixel_rst_nq <= pixel_rst_nq || pixel_count_q == '1;
-  end
 
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
@@ -90,13 +79,13 @@ module ecp5_top #(
     .TableFile   (TableFile)
   ) u_system (
     .clk_i       (system_clk),
-    .rst_ni      (system_rst_nq),
+    .rst_ni      (system_rst_n),
     .rx_i        (uart_rx),
     .tx_o        (uart_tx),
     .buttons_i   (buttons),
     .leds_o      (all_leds),
     .pixel_clk_i (pixel_clk),
-    .pixel_rst_ni(pixel_rst_nq),
+    .pixel_rst_ni(pixel_rst_n),
     .words_o     (words)
   );
 
@@ -106,7 +95,7 @@ module ecp5_top #(
   // DVI: the clock channel is five ones and five zeros.
   board_serializer u_dvi (
     .pixel_clk_i (pixel_clk),
-    .pixel_rst_ni(pixel_rst_nq),
+    .pixel_rst_ni(pixel_rst_n),
     .bit_clk_i   (bit_clk),
     .words_i     ({10'b0000011111, words}),
     .pins_o      (dvi)

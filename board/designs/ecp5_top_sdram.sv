@@ -6,8 +6,9 @@
 module ecp5_top_sdram #(
   parameter int unsigned InputDivider    = 1,
   parameter int unsigned FeedbackDivider = 5,
-  parameter int unsigned SystemDivider   = 10,
-  parameter int unsigned Lanes           = 4,
+  parameter int unsigned SystemDivider   = 12,
+  parameter int unsigned ChipDelay       = 4,
+  parameter int unsigned Lanes           = 2,
   parameter int unsigned MaxDepth        = 12,
   parameter int unsigned PositionBits    = 19,
   parameter int unsigned BlockBits       = 20,
@@ -46,10 +47,11 @@ module ecp5_top_sdram #(
 );
   logic bit_clk, pixel_clk, system_clk, chip_clk, locked;
 
-  board_pll_sdram #(
+  board_pll #(
     .InputDivider   (InputDivider),
     .FeedbackDivider(FeedbackDivider),
-    .SystemDivider  (SystemDivider)
+    .SystemDivider  (SystemDivider),
+    .ChipDelay      (ChipDelay)
   ) u_pll (
     .clk_i       (clk),
     .bit_clk_o   (bit_clk),
@@ -59,31 +61,19 @@ module ecp5_top_sdram #(
     .locked_o    (locked)
   );
 
-  // Reset: 16 clocks from the lock on. Flip-flops are 0 when the part is configured.
-  logic [3:0] system_count_q = '0, pixel_count_q = '0;
-  logic system_locked, pixel_locked, system_rst_nq = 1'b0, pixel_rst_nq = 1'b0;
+  logic system_rst_n, pixel_rst_n;
 
-  board_synchronizer u_system_locked (
-    .clk_i(system_clk),
-    .bit_i(locked),
-    .bit_o(system_locked)
+  board_reset u_system_reset (
+    .clk_i   (system_clk),
+    .locked_i(locked),
+    .rst_no  (system_rst_n)
   );
 
-  board_synchronizer u_pixel_locked (
-    .clk_i(pixel_clk),
-    .bit_i(locked),
-    .bit_o(pixel_locked)
+  board_reset u_pixel_reset (
+    .clk_i   (pixel_clk),
+    .locked_i(locked),
+    .rst_no  (pixel_rst_n)
   );
-
-  always_ff @(posedge system_clk) begin
-    if (system_locked && !system_rst_nq) system_count_q <= system_count_q + 1'b1;
-    system_rst_nq <= system_rst_nq || system_count_q == '1;
-  end
-
-  always_ff @(posedge pixel_clk) begin
-    if (pixel_locked && !pixel_rst_nq) pixel_count_q <= pixel_count_q + 1'b1;
-    pixel_rst_nq <= pixel_rst_nq || pixel_count_q == '1;
-  end
 
   logic [2:0][9:0] words;
   logic [7:0] all_leds;
@@ -114,7 +104,7 @@ module ecp5_top_sdram #(
     .TableFile    (TableFile)
   ) u_system (
     .clk_i        (system_clk),
-    .rst_ni       (system_rst_nq),
+    .rst_ni       (system_rst_n),
     .rx_i         (uart_rx),
     .tx_o         (uart_tx),
     .buttons_i    (buttons),
@@ -131,7 +121,7 @@ module ecp5_top_sdram #(
     .sdram_dq_o   (dq_out),
     .sdram_dq_i   (dq_in),
     .pixel_clk_i  (pixel_clk),
-    .pixel_rst_ni (pixel_rst_nq),
+    .pixel_rst_ni (pixel_rst_n),
     .words_o      (words)
   );
 
@@ -167,7 +157,7 @@ module ecp5_top_sdram #(
   // DVI: the clock channel is five ones and five zeros.
   board_serializer u_dvi (
     .pixel_clk_i (pixel_clk),
-    .pixel_rst_ni(pixel_rst_nq),
+    .pixel_rst_ni(pixel_rst_n),
     .bit_clk_i   (bit_clk),
     .words_i     ({10'b0000011111, words}),
     .pins_o      (dvi)

@@ -1,5 +1,6 @@
 // Every lane whose miss is accepted gets its line once, when its entry ends; none else gets it. A line that is waited for
-// is fetched once. The environment has one lane per pipe; it does not ask for a line that it waits for.
+// is fetched once. The environment has one lane per pipe; it does not ask for a line that it waits for, or that has come in
+// the clock before.
 module voxrt_miss_list_properties #(
   parameter int unsigned LineBits = 2,
   parameter int unsigned Entries  = 2
@@ -7,24 +8,26 @@ module voxrt_miss_list_properties #(
   input logic                clk_i,
   input logic                rst_ni,
   input logic [         1:0] miss_i,
-  input logic [LineBits-1:0] line0_i,
-  input logic [LineBits-1:0] line1_i,
+  input logic [LineBits-1:0] next_line0_i,
+  input logic [LineBits-1:0] next_line1_i,
   input logic                fetch_ready_i,
   input logic                come_i
 );
   logic                empty_o, fetch_valid_o;
   logic [         1:0] accepted_o, come_way_o;
-  logic [LineBits-1:0] fetch_line_o, come_line_o, line[2];
+  logic [LineBits-1:0] fetch_line_o, come_line_o, next_line[2], line[2];
   logic [         0:0] lanes[2], free_lanes_o[2];
   logic [         1:0] way[2];
 
   // A line is freed two clocks after it comes.
-  logic [         2:1] come_q;
-  logic [LineBits-1:0] come_line_q[1:2];
+  logic [         3:1] come_q;
+  logic [LineBits-1:0] come_line_q[1:3];
 
-  assign line  = '{line0_i, line1_i};
-  assign lanes = '{1'b1, 1'b1};
-  assign way   = '{2'd0, 2'd0};
+  assign next_line = '{next_line0_i, next_line1_i};
+  assign lanes     = '{1'b1, 1'b1};
+  assign way       = '{2'd0, 2'd0};
+
+  always_ff @(posedge clk_i) line <= next_line;
 
   voxrt_miss_list #(
     .Pipes    (2),
@@ -36,6 +39,7 @@ module voxrt_miss_list_properties #(
     .rst_ni,
     .empty_o,
     .miss_i,
+    .next_line_i  (next_line),
     .line_i       (line),
     .lanes_i      (lanes),
     .way_i        (way),
@@ -59,8 +63,8 @@ module voxrt_miss_list_properties #(
 
   always_ff @(posedge clk_i) begin
     fetched_q   <= fetched_q + ($bits(fetched_q))'(fetch_valid_o && fetch_ready_i) - ($bits(fetched_q))'(come_i);
-    come_q      <= {come_q[1], come_i};
-    come_line_q <= '{come_line_o, come_line_q[1]};
+    come_q      <= {come_q[2:1], come_i};
+    come_line_q <= '{come_line_o, come_line_q[1], come_line_q[2]};
     if (!rst_ni) begin
       fetched_q <= '0;
       come_q    <= '0;
@@ -71,6 +75,7 @@ module voxrt_miss_list_properties #(
     if (come_i) assume (fetched_q != '0);
     // The pipes have no lookup beside a line.
     if (come_q[2]) assume (miss_i == '0);
+    for (int unsigned p = 0; p < 2; p++) if (come_q[3] && come_line_q[3] == line[p]) assume (!miss_i[p]);
   end
 
   // Lanes that wait for the line that is followed.

@@ -21,16 +21,17 @@ module small_design
     .bit_clk_o   (bit_clk),
     .pixel_clk_o (pixel_clk),
     .system_clk_o(system_clk),
+    .chip_clk_o  (),
     .locked_o    (locked)
   );
 
-  logic [3:0] count_q = '0;
-  logic rst_nq = 1'b0;
+  logic rst_n;
 
-  always_ff @(posedge system_clk) begin
-    if (locked && !rst_nq) count_q <= count_q + 1'b1;
-    rst_nq <= rst_nq || count_q == '1;
-  end
+  board_reset u_reset (
+    .clk_i   (system_clk),
+    .locked_i(locked),
+    .rst_no  (rst_n)
+  );
 
   logic rx_valid, rx_broken, tx_valid, tx_ready, valid, refused, done_event, bad_event;
   logic [7:0] rx_byte, tx_byte;
@@ -40,7 +41,7 @@ module small_design
 
   board_uart u_uart (
     .clk_i(system_clk),
-    .rst_ni(rst_nq),
+    .rst_ni(rst_n),
     .rx_i(uart_rx),
     .valid_o(rx_valid),
     .broken_o(rx_broken),
@@ -53,7 +54,7 @@ module small_design
 
   board_requests u_requests (
     .clk_i(system_clk),
-    .rst_ni(rst_nq),
+    .rst_ni(rst_n),
     .valid_i(rx_valid),
     .broken_i(rx_broken),
     .byte_i(rx_byte),
@@ -77,7 +78,7 @@ module small_design
 
   board_bus u_bus (
     .clk_i(system_clk),
-    .rst_ni(rst_nq),
+    .rst_ni(rst_n),
     .valid_i({valid, 1'b0}),
     .access_i({access, access_t'('0)}),
     .done_o(done),
@@ -153,14 +154,14 @@ module small_design
     product_q    <= a_q * b_q;
     scratch_read <= scratch[register_number] + product_q[31:0];
     if (done_event || bad_event) leds <= leds + 8'(done_event) + {3'd0, bad_event, 4'd0} + 8'(buttons);
-    if (!rst_nq) leds <= '0;
+    if (!rst_n) leds <= '0;
   end
 
   assign high = '1;
 
   board_serializer u_dvi (
     .pixel_clk_i(pixel_clk),
-    .pixel_rst_ni(rst_nq),
+    .pixel_rst_ni(rst_n),
     .bit_clk_i(bit_clk),
     .words_i({10'b0000011111, product_q[29:0]}),
     .pins_o(dvi)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HERE = Path(__file__).resolve().parent
-_CELLS = {"ecp5_cells.sv", "ecp5_sdram_cells.sv"}
+_CELLS = {"ecp5_cells.sv"}
 _CHIPS = {"ecp5_top_sdram"}  # Tops whose pins need an SDRAM ...
 _CHIP = (_HERE / "sdram_model.sv", _HERE / "sdram_board.sv")  # ... as here.
 

@@ -9,6 +9,7 @@ module EHXPLLL #(
   parameter int unsigned CLKOS_CPHASE  = 0,
   parameter int unsigned CLKOS2_DIV    = 8,
   parameter int unsigned CLKOS2_CPHASE = 0,
+  parameter string       CLKOS3_ENABLE = "DISABLED",
   parameter int unsigned CLKOS3_DIV    = 10,
   parameter int unsigned CLKOS3_CPHASE = 9
 ) (
