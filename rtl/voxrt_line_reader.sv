@@ -29,7 +29,7 @@ module voxrt_line_reader
   input  axi_read_response_t                    axi_i           [BusPorts]
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
-  localparam int unsigned UnderWay = 8;
+  localparam int unsigned UnderWay = 16;
 
   logic [BusPorts-1:0] ready, valid, failed, bus_error, bus_timeout;
   logic [       255:0] line [BusPorts];

@@ -69,7 +69,7 @@ class AxiMemory:
                 wait = self.latency + (self.chance.randrange(self.jitter + 1) if self.jitter else 0)
                 lines.append([address, self.now + wait, 0, self.response])
                 self.addresses.append(address)
-                assert len(lines) <= 8, "more than 8 bursts of a port are under way"
+                assert len(lines) <= 16, "more than 16 bursts of a port are under way"
             self.under_way = max(self.under_way, sum(map(len, self.lines)))
         self.now += 1
 
