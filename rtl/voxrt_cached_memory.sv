@@ -43,20 +43,22 @@ module voxrt_cached_memory
   // Frames.
   logic             waits_q, flushing_q, flush_needed_q, clears;
   logic [Lanes-1:0] l1_idle;
-  logic             l2_idle, idle;
+  logic             l2_idle, idle_q;
   logic             bus_error, bus_timeout;
 
-  assign idle    = l1_idle == '1 && l2_idle;
-  assign clears  = waits_q && idle && flush_needed_q && !flushing_q;
-  assign ready_o = waits_q && idle && !flush_needed_q && !clears;
+  // No lane reads between start_i and ready_o: caches that are idle stay so, until they are emptied.
+  assign clears  = waits_q && idle_q && flush_needed_q && !flushing_q;
+  assign ready_o = waits_q && idle_q && !flush_needed_q && !flushing_q;
 
   always_ff @(posedge clk_i) begin
+    idle_q <= l1_idle == '1 && l2_idle;
     if (start_i) waits_q <= 1'b1;
     if (ready_o) waits_q <= 1'b0;
     flushing_q <= clears;
     if (clears) flush_needed_q <= 1'b0;
     if (flush_i || bus_error || bus_timeout) flush_needed_q <= 1'b1;
     if (!rst_ni) begin
+      idle_q         <= 1'b0;
       waits_q        <= 1'b0;
       flushing_q     <= 1'b0;
       flush_needed_q <= 1'b1;

@@ -111,7 +111,7 @@ module voxrt_l1_cache
 
   logic [     Ways-1:0] hit_ways;
   logic [  WayBits-1:0] hit_way;
-  logic                 pending1, taken1, prefetch_taken, free1, prefetch_free, hit, wants, prefetches;
+  logic                 pending1, taken1, prefetch_taken, free1, prefetch_free, hit, asks, prefetches;
   logic [CountBits-1:0] outstanding_q;
 
   always_comb begin
@@ -126,10 +126,11 @@ module voxrt_l1_cache
       if (same1[w]) hit_way |= WayBits'(w);
     end
     hit        = read1_q && hit_ways != '0;
-    wants      = read1_q && hit_ways == '0;
+    // A set that takes a line waits for none: what is in its tags is there.
+    asks       = read1_q && same1 == '0 && !taken1;
     prefetches = prefetch && prefetch_same == '0 && !prefetch_taken;
-    new_line   = wants ? line1_q : prefetch_line_q;
-    allocates  = (wants ? !taken1 : prefetches) && outstanding_q != CountBits'(Outstanding) && !walks_q;
+    new_line   = asks ? line1_q : prefetch_line_q;
+    allocates  = (asks || prefetches) && outstanding_q != CountBits'(Outstanding) && !walks_q;
   end
 
   // The least recently used way of a set, from its order.
@@ -143,7 +144,7 @@ module voxrt_l1_cache
     end
   endfunction
 
-  assign victim = wants ? oldest_way(order_q[set1]) : oldest_way(order_q[prefetch_set]);
+  assign victim = asks ? oldest_way(order_q[set1]) : oldest_way(order_q[prefetch_set]);
 
   // Sets whose line has come, for a turn. The way is readable: the last two words are read after they are written.
   typedef struct packed {
@@ -170,7 +171,7 @@ module voxrt_l1_cache
   logic                 asked;
 
   // Both sets are read before it is known which one asks.
-  assign asked = !walks_q && !(wants ? free1 : prefetch_free);
+  assign asked = !walks_q && !(asks ? free1 : prefetch_free);
 
   always_comb begin
     order = order_q[set1];
