@@ -1,9 +1,9 @@
 // The lines that voxrt_l2_cache waits for, in the order in which they are fetched and come; and which lanes want each.
 //
 // A miss, per pipe, joins the entry of its line, or gets one: at most one new entry per clock, for which the pipes take
-// turns. The lines of all entries are compared a clock before the miss is known, which makes a long path shorter. An entry
-// stays until free_i, when its line is in the tags for all lookups that come after. A lane asks once for a
-// line, until it comes.
+// turns. The lines of all entries are compared a clock before the miss is known, which makes a long path shorter. An
+// entry stays until free_i, when its line is in the tags for all lookups that come after. A lane asks once for a line,
+// until it comes.
 //
 // Who waits is in memories: a lane waits for an entry when its bits in joined_q and answered_q differ. The first is
 // written by misses, the second when the entry ends. Both are cleared after a reset; until then nothing is accepted.
