@@ -122,7 +122,9 @@ module sdram_bench
   always_ff @(posedge clk_i) outer_q <= inner;
   always_ff @(negedge clk_i) from_chip_q <= from_chip;
 
+  // A clock of the bench has ten ticks of 750 MHz.
   board_sdram #(
+    .ClockHz  (75_000_000),
     .PowerOnUs(2)
   ) u_sdram (
     .clk_i,
