@@ -1,6 +1,6 @@
 // Reads the frame that is shown from the SDRAM, a row ahead of the beam: while a row is shown, the next one comes.
 //
-// A row has 2000 clocks of 62.5 MHz for 60 lines. Requests are urgent in the second half of that time.
+// A row has 1846 clocks of 57.7 MHz for 60 lines of at most 22 clocks. Requests are urgent after 512 clocks of it.
 module board_frame_reader
   import board_pkg::*;
 (
@@ -29,7 +29,7 @@ module board_frame_reader
   output logic [ 23:0] pixel_o        // Three clocks after column_i.
 );
   localparam int unsigned LinesPerRow = 60;
-  localparam int unsigned UrgentBit = 10;
+  localparam int unsigned UrgentBit = 9;
 
   // The row that comes.
   logic       row_event, busy_q, missed_q, reading_q, asks_q, first_q;

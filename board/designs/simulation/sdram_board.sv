@@ -1,4 +1,5 @@
-// A board's design with the model of an SDRAM at its pins: the sources, or with PLACED a netlist, whose top is called top.
+// A board's design with the model of an SDRAM at its pins: the sources, or with PLACED a netlist, whose top is called top
+// and of which SystemDivider must be given.
 module sdram_board #(
   parameter int unsigned InputDivider    = 1,
   parameter int unsigned FeedbackDivider = 5,
@@ -85,6 +86,7 @@ module sdram_board #(
 
   // Who drives when cannot be seen here: tests/board/sdram_bench.sv looks at it.
   sdram_model #(
+    .PeriodPs     (SystemDivider * 4000 / 3),
     .PowerOnPs    (1_000_000 * PowerOnUs),
     .ChecksDrivers(1'b0)
   ) u_chip (

@@ -3,9 +3,9 @@
 // Rules: what is done first after power-on, tRCD, tRP, tRC, tRAS, tRFC, tMRD, tWR, the time between refreshes, a bank
 // that is open or not, and both sides driving the data. Times are of speed -7 parts, in picoseconds. Bursts of 8 only.
 //
-// Time runs in ticks, a tenth of a period each: every change of tick_i. What is read is there AnswerTicks after the clock
-// edge that CAS latency counts from, and stays HoldTicks beyond the next: between, it is noise. These have the way of the
-// clock to the chip, and the data's way back, in them.
+// Times of rules are counted in clocks of PeriodPs. Data are timed by ticks, every change of tick_i: 1.333 ns on a board.
+// What is read is there AnswerTicks after the clock edge that CAS latency counts from, and stays HoldTicks beyond the next:
+// between, it is noise. These have the way of the clock to the chip, and the data's way back, in them.
 module sdram_model #(
   parameter int unsigned PeriodPs = 13_333,
   parameter int unsigned PowerOnPs = 200_000_000,
