@@ -126,7 +126,7 @@ def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[
             if number:
                 continue
             new = scenes["planet.glb"]
-            base = -(-(len(scene.words) - 1) // 8) * 8
+            base = -(-len(scene.words) // 8) * 8
             control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
             swap = [*scene_writes(new, Lighting(), SIZE, base), *camera_writes(orbit(new)[9]), control]
             done = send(simulation, OCTREE_MEMORY + 4 * base, relocate(new.words, base).tolist())
