@@ -214,11 +214,12 @@ def test_buttons_pause_step_and_reverse(program, scenes, tmp_path):
     with BoardSimulation(program, tmp_path, contents_of(scenes[0], cameras, control=RUN | TURN)) as board:
         host = Host(board)
 
+        # The board looks at its buttons once per frame, of 420,000 clocks.
         def press(buttons):
             board.press(buttons)
-            board.run(2 * 420_000)
+            board.run(450_000)
             board.press(0)
-            board.run(2 * 420_000)
+            board.run(450_000)
 
         board.run(2 * 420_000)
         press(0b001)  # pause
