@@ -45,7 +45,7 @@ class Build(NamedTuple):
 
 BUILDS = {
     "lit": Build(CORE, CONFIGURATIONS["lit"], ("bench_core", "bench_registers", "bench_waveforms")),
-    "quad-narrow": Build(CORE, CONFIGURATIONS["quad"], ("bench_core",), narrow=True, repeats=True),
+    "octo-narrow": Build(CORE, CONFIGURATIONS["octo"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(
         CORE,
         {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
