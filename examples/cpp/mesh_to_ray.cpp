@@ -29,10 +29,10 @@ int main() {
     const std::vector<voxelize::PartView> parts = {{voxelize::PartKind::mesh, &mesh, frame, 0, 0}};
 
     const voxelize::SparseVoxels voxels = voxelize::voxelize(depth, parts, 1, voxelize::Fill::solid, 0);
-    std::printf("%lld voxels, inside told by mode '%s'\n", static_cast<long long>(voxels.object_voxels.data[0]),
-                voxelize::kObjectModeNames[voxels.object_modes.data[0]]);
+    std::printf("%lld voxels, inside told by mode '%s'\n", static_cast<long long>(voxels.object_voxels[0]),
+                voxelize::kObjectModeNames[voxels.object_modes[0]]);
 
-    const std::vector<octree::Word> words = octree::build(voxels.view(), 0);
+    const octree::Words words = octree::build(voxels.view(), 0);
     std::printf("%zu words\n", words.size());
 
     // A ray from outside the world towards the slanted face; its origin is in 1/16 voxel.

@@ -38,7 +38,7 @@ std::vector<std::uint8_t> ball() {
 } // namespace
 
 int main() {
-    const std::vector<octree::Word> words = octree::build_dense(ball().data(), kSide, kSide, kSide, kDepth);
+    const octree::Words words = octree::build_dense(ball().data(), kSide, kSide, kSide, kDepth);
     const octree::Memory memory{words.data(), words.size(), kDepth};
     if (octree::validate(words.data(), words.size(), kDepth).fault != octree::Fault::none)
         return EXIT_FAILURE;
@@ -50,8 +50,8 @@ int main() {
         std::printf("solid from %lld to %lld along x\n", static_cast<long long>(bounds->low[0]),
                     static_cast<long long>(bounds->high[0]));
 
-    const std::vector<octree::Word> hidden = octree::hidden_voxels(memory);
-    const std::vector<octree::Word> shared = octree::share_hidden(memory, {hidden.data(), hidden.size(), kDepth});
+    const octree::Words hidden = octree::hidden_voxels(memory);
+    const octree::Words shared = octree::share_hidden(memory, {hidden.data(), hidden.size(), kDepth});
     const octree::Difference difference = octree::diff(memory, {shared.data(), shared.size(), kDepth});
     std::printf("%zu words once hidden voxels may be anything: %llu are of another material\n", shared.size(),
                 static_cast<unsigned long long>(difference.recoloured));

@@ -11,6 +11,6 @@ void Assembly::add(const Word* words, std::size_t size) {
     root_ = part.join(root_, memory.root(), depth_);
 }
 
-std::vector<Word> Assembly::words() const { return breadth_first_words(pool_, root_); }
+Words Assembly::words() const { return breadth_first_words(pool_, root_); }
 
 } // namespace voxrt::octree

@@ -3,7 +3,7 @@
 //     Assembly whole(depth);
 //     for (const VoxelsView& part : parts)       // disjoint, such as the blocks of voxelize_in_blocks()
 //         whole.add(build(part, threads));
-//     const std::vector<Word> words = whole.words(); // the same bytes as of all voxels at once
+//     const Words words = whole.words(); // the same bytes as of all voxels at once
 //
 // Equal blocks are stored once whichever part they come from, so memory grows with what is new in each part. The parts
 // meet in few octants, high up; all below is taken over block by block, each once per part.
@@ -26,7 +26,7 @@ public:
     void add(const Word* words, std::size_t size);
 
     /// The words of the world so far, breadth-first.
-    std::vector<Word> words() const;
+    Words words() const;
 
 private:
     BlockPool pool_;

@@ -21,7 +21,7 @@ template <typename T, int Columns>
 using Rows = nanobind::ndarray<const T, nanobind::shape<-1, Columns>, nanobind::c_contig, nanobind::device::cpu>;
 
 // A read-only array.
-inline nanobind::object words_to_numpy(std::vector<Word>&& words) {
+inline nanobind::object words_to_numpy(Words&& words) {
     words.shrink_to_fit();
     const std::size_t size = words.size();
     return python::to_read_only_numpy(std::move(words), {size});

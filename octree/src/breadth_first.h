@@ -12,6 +12,6 @@ namespace voxrt::octree {
 ///
 /// `Pool`: BlockPool or SharedBlockPool. `threads` write the words: 0 takes as many as the machine has. Throws
 /// std::length_error where 31-bit addresses cannot reach all blocks.
-template <typename Pool> std::vector<Word> breadth_first_words(const Pool& pool, Node root, int threads = 1);
+template <typename Pool> Words breadth_first_words(const Pool& pool, Node root, int threads = 1);
 
 } // namespace voxrt::octree

@@ -38,12 +38,12 @@ public:
     }
 
     /// A memory of at most `words` words; none where uniform bricks alone take more.
-    std::optional<std::vector<Word>> fit(std::size_t words) {
-        std::vector<Word> best = build_words();
+    std::optional<Words> fit(std::size_t words) {
+        Words best = build_words();
         if (best.size() > words)
             return std::nullopt;
         const auto fits = [&] {
-            std::vector<Word> found = build_words();
+            Words found = build_words();
             if (found.size() > words)
                 return false;
             best = std::move(found);
@@ -182,7 +182,7 @@ private:
         return changed;
     }
 
-    std::vector<Word> build_words() {
+    Words build_words() {
         nodes_.clear();
         return breadth_first_words(representatives_.pool(), node(base_.root(), base_.depth));
     }
@@ -214,13 +214,13 @@ private:
 
 } // namespace
 
-std::vector<std::vector<Word>> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest,
-                                          const AppearanceCosts& costs, std::size_t words) {
+std::vector<Words> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest, const AppearanceCosts& costs,
+                              std::size_t words) {
     const unsigned level = finest + 3;
     if (base.depth < level || is_leaf(base.root()))
         return {};
     Representatives representatives(base, hidden, finest, costs);
-    std::vector<std::vector<Word>> result;
+    std::vector<Words> result;
     for (const bool unfilled : {true, false})
         for (const std::uint32_t sharing : {1u, 3u})
             if (auto found = Selection(base, level, representatives, unfilled, sharing).fit(words))

@@ -14,7 +14,7 @@ namespace voxrt::octree {
 ///
 /// Nothing in `base` may be finer than 2**finest. `hidden` are its hidden voxels (hidden.h). Takes all threads of the
 /// machine; the result does not depend on their number. Cost: seconds for tens of thousands of different bricks.
-std::vector<std::vector<Word>> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest,
-                                          const AppearanceCosts& costs, std::size_t words);
+std::vector<Words> fit_bricks(const Memory& base, const Memory& hidden, unsigned finest, const AppearanceCosts& costs,
+                              std::size_t words);
 
 } // namespace voxrt::octree

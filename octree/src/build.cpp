@@ -249,11 +249,11 @@ struct Scratch {
 
 } // namespace
 
-std::vector<Word> build(const VoxelsView& voxels, int threads) {
+Words build(const VoxelsView& voxels, int threads) {
     const std::vector<Chunk> chunks = cut_into_chunks(voxels);
     const unsigned top = std::min(voxels.depth, kChunkLevel);
     const voxelize::Workers workers(threads);
-    SharedBlockPool pool;
+    SharedBlockPool pool(voxels.bricks);
     std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(workers.threads()));
     std::vector<std::vector<Part>> parts(chunks.size());
     workers.run(chunks.size(), [&](std::size_t i, int thread) {
@@ -281,8 +281,7 @@ std::vector<Word> build(const VoxelsView& voxels, int threads) {
     return breadth_first_words(pool, root, threads);
 }
 
-std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
-                               unsigned depth) {
+Words build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count, unsigned depth) {
     BlockPool pool;
     Node root = kEmpty;
     OctreeBuilder octree(pool, depth, [&](unsigned, std::uint64_t, Node node) { root = node; });

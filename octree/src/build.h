@@ -19,11 +19,10 @@ namespace voxrt::octree {
 /// Cost: bricks and octants, never volume. Memory: the blocks that differ, once.
 /// Throws std::invalid_argument, naming the brick or octant, where the arrays break their contract (sparse_voxels.h);
 /// std::length_error where the octree has more blocks than 31-bit addresses can reach.
-std::vector<Word> build(const voxelize::VoxelsView& voxels, int threads);
+Words build(const voxelize::VoxelsView& voxels, int threads);
 
 /// The memory of a world of side 2**depth whose solid voxels are given one by one: `count` Morton codes, strictly
 /// ascending, and a material each. Linear in `count`. Throws as above.
-std::vector<Word> build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count,
-                               unsigned depth);
+Words build_points(const std::uint64_t* codes, const std::uint8_t* materials, std::size_t count, unsigned depth);
 
 } // namespace voxrt::octree

@@ -46,7 +46,7 @@ constexpr unsigned bit_within(unsigned octant) { return (octant & 1) + 4 * (octa
 // Counts a graph: downwards where its nodes stand, upwards which are mirrors of one another.
 class DagCounts {
 public:
-    DagCounts(const std::vector<Word>& words, unsigned depth)
+    DagCounts(const Words& words, unsigned depth)
         : words_(words), levels_(depth + 1), level_(words.size()), places_(words.size()) {}
 
     std::vector<DagLevel> levels() {
@@ -128,7 +128,7 @@ private:
         return first;
     }
 
-    const std::vector<Word>& words_;
+    const Words& words_;
     std::vector<DagLevel> levels_;
     std::vector<unsigned> level_;       // of the node at an address
     std::vector<std::uint64_t> places_; // where it stands in the tree without sharing
@@ -140,7 +140,7 @@ private:
 } // namespace
 
 std::vector<DagLevel> dag_levels(const Memory& memory) {
-    const std::vector<Word> words = occupancy_dag(memory);
+    const Words words = occupancy_dag(memory);
     return words.empty() ? std::vector<DagLevel>(memory.depth + 1) : DagCounts(words, memory.depth).levels();
 }
 

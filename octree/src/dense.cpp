@@ -19,7 +19,7 @@ public:
                 spread_[i] |= ((i >> axis) & 1u) << (3 * axis);
     }
 
-    std::vector<Word> build(unsigned depth) {
+    Words build(unsigned depth) {
         const Node root = octant(0, 0, 0, depth);
         return breadth_first_words(pool_, root);
     }
@@ -71,8 +71,8 @@ private:
 
 } // namespace
 
-std::vector<Word> build_dense(const std::uint8_t* cells, std::size_t size_x, std::size_t size_y, std::size_t size_z,
-                              unsigned depth) {
+Words build_dense(const std::uint8_t* cells, std::size_t size_x, std::size_t size_y, std::size_t size_z,
+                  unsigned depth) {
     return DenseBuilder(cells, size_x, size_y, size_z).build(depth);
 }
 

@@ -86,7 +86,7 @@ nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::s
     nb::list result;
     std::string problem;
     try {
-        for (std::vector<Word>& fit : run([&] { return fit_candidates(memory, limit, *costs); }))
+        for (Words& fit : run([&] { return fit_candidates(memory, limit, *costs); }))
             result.append(words_to_numpy(std::move(fit)));
     } catch (const DoesNotFit& failure) {
         problem = failure.what();

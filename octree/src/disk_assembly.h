@@ -1,7 +1,7 @@
 // Assembly (assembly.h) for octrees that do not fit the memory: blocks are in a file, and so is the result.
 //
 //     DiskAssembly whole(16, "out/yard.tiles", std::size_t{1} << 30);
-//     for (const std::vector<Word>& part : parts)
+//     for (const Words& part : parts)
 //         whole.add(part.data(), part.size());
 //     whole.write("out/yard.tiles/words"); // the bytes of Assembly::words(), as they stand in memory
 //

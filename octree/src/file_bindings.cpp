@@ -32,7 +32,7 @@ std::uint32_t bind_mem_text_crc32(const Vector<Word>& words, std::uint32_t befor
 nb::object bind_read_mem_text(const nb::bytes& text) {
     if (text.size() % kMemLine != 0)
         return nb::none();
-    std::vector<Word> words(text.size() / kMemLine);
+    Words words(text.size() / kMemLine);
     if (!run([&] { return read_mem_text(text.c_str(), words.size(), words.data(), 0); }))
         return nb::none();
     const std::size_t count = words.size();

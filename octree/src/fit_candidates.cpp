@@ -17,7 +17,7 @@ constexpr unsigned kLevelsKept = 3;
 /// With fewer blocks there is time to start from a world four times as fine as what fits, not twice.
 constexpr std::size_t kManyBlocks = 30'000;
 
-std::vector<Word> coarsened(const Memory& memory, unsigned level) {
+Words coarsened(const Memory& memory, unsigned level) {
     BlockPool pool;
     const Node root = coarsen(memory, level, pool);
     return breadth_first_words(pool, root);
@@ -25,8 +25,8 @@ std::vector<Word> coarsened(const Memory& memory, unsigned level) {
 
 } // namespace
 
-std::vector<std::vector<Word>> fit_candidates(const Memory& shared, std::size_t words, const AppearanceCosts& costs) {
-    std::vector<std::vector<Word>> worlds{{shared.words, shared.words + shared.size}};
+std::vector<Words> fit_candidates(const Memory& shared, std::size_t words, const AppearanceCosts& costs) {
+    std::vector<Words> worlds{{shared.words, shared.words + shared.size}};
     while (worlds.back().size() > words && worlds.size() + kLevelsKept <= shared.depth)
         worlds.push_back(coarsened(shared, static_cast<unsigned>(worlds.size())));
     if (const std::size_t least = worlds.back().size(); least > words)
@@ -36,9 +36,8 @@ std::vector<std::vector<Word>> fit_candidates(const Memory& shared, std::size_t 
     const std::size_t finer = (shared.size - 1) / 8 > kManyBlocks ? 2 : 3;
     const auto finest = static_cast<unsigned>(worlds.size() > finer ? worlds.size() - finer : 0);
     const Memory world{worlds[finest].data(), worlds[finest].size(), shared.depth};
-    const std::vector<Word> hidden = hidden_voxels(world);
-    std::vector<std::vector<Word>> found =
-        fit_bricks(world, {hidden.data(), hidden.size(), shared.depth}, finest, costs, words);
+    const Words hidden = hidden_voxels(world);
+    std::vector<Words> found = fit_bricks(world, {hidden.data(), hidden.size(), shared.depth}, finest, costs, words);
     found.insert(found.begin(), worlds.back());
     return found;
 }

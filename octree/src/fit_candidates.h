@@ -16,6 +16,6 @@ struct DoesNotFit : std::runtime_error {
 
 /// Memories of at most `words` words: the finest plain coarser world, and finer ones with fewer different bricks
 /// (budget.h). `shared`: a canonical memory with more words. Throws DoesNotFit.
-std::vector<std::vector<Word>> fit_candidates(const Memory& shared, std::size_t words, const AppearanceCosts& costs);
+std::vector<Words> fit_candidates(const Memory& shared, std::size_t words, const AppearanceCosts& costs);
 
 } // namespace voxrt::octree

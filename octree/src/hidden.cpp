@@ -126,7 +126,7 @@ public:
         : solid_(solid), wanted_(around), cache_bits_(cache_bits(solid.size())), cache_(std::size_t{1} << cache_bits_) {
     }
 
-    std::vector<Word> words(Node root, unsigned depth) {
+    Words words(Node root, unsigned depth) {
         Neighbourhood world;
         world.fill(kEmpty);
         world[kCentre] = root;
@@ -220,7 +220,7 @@ private:
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 
-std::vector<Word> voxels_within(const Memory& memory, Around around) {
+Words voxels_within(const Memory& memory, Around around) {
     BlockPool solid;
     const Node root = Solidity(memory, solid).node(memory.root(), memory.depth);
     return HiddenFinder(solid, around).words(root, memory.depth);
@@ -228,9 +228,9 @@ std::vector<Word> voxels_within(const Memory& memory, Around around) {
 
 } // namespace
 
-std::vector<Word> hidden_voxels(const Memory& memory) { return voxels_within(memory, Around::all); }
+Words hidden_voxels(const Memory& memory) { return voxels_within(memory, Around::all); }
 
-std::vector<Word> covered_voxels(const Memory& memory) { return voxels_within(memory, Around::faces); }
+Words covered_voxels(const Memory& memory) { return voxels_within(memory, Around::faces); }
 
 std::unordered_map<Word, std::uint64_t> hidden_octants(const Memory& memory, const Memory& hidden, unsigned level) {
     std::unordered_map<std::uint64_t, std::uint64_t> pairs{{std::uint64_t{memory.root()} << 32 | hidden.root(), 1}};

@@ -16,11 +16,11 @@ namespace voxrt::octree {
 ///
 /// Cost: octants at the surface, and blocks; never volume. Neighbourhoods met before are looked up in a cache of
 /// bounded size. Throws std::invalid_argument where the words are no octree.
-std::vector<Word> hidden_voxels(const Memory& memory);
+Words hidden_voxels(const Memory& memory);
 
 /// The memory of the covered voxels, of material 1. A voxel is covered where it is solid and so are the six voxels that
 /// share a face with it: nothing is seen of it. Cost and errors as of hidden_voxels().
-std::vector<Word> covered_voxels(const Memory& memory);
+Words covered_voxels(const Memory& memory);
 
 /// How many octants of side 2**level hold a block all of whose voxels are solid in `hidden`, by block. Linear in the
 /// pairs of blocks that lie in one place.

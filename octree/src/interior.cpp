@@ -87,19 +87,19 @@ Node commonest(const Memory& memory) {
 
 } // namespace
 
-std::vector<Word> fill_hidden(const Memory& memory, const Memory& hidden, std::uint8_t material) {
+Words fill_hidden(const Memory& memory, const Memory& hidden, std::uint8_t material) {
     BlockPool pool;
     const Octants none;
     const Node root = HiddenReplacement(memory, hidden, leaf(material), pool, none, 0).root();
     return breadth_first_words(pool, root);
 }
 
-std::vector<Word> share_hidden(const Memory& memory, const Memory& hidden) {
+Words share_hidden(const Memory& memory, const Memory& hidden) {
     BlockPool canonical;
-    std::vector<Word> best = breadth_first_words(canonical, coarsen(memory, 0, canonical));
-    const std::vector<Word> words = best;
+    Words best = breadth_first_words(canonical, coarsen(memory, 0, canonical));
+    const Words words = best;
     const Memory whole{words.data(), words.size(), memory.depth};
-    const auto keep_smaller = [&](std::vector<Word> other) {
+    const auto keep_smaller = [&](Words other) {
         if (other.size() < best.size())
             best = std::move(other);
     };

@@ -179,7 +179,7 @@ bool is_sparse(const Look& look) {
 } // namespace
 
 std::vector<std::uint8_t> mean_materials(const Memory& memory, const std::vector<LinearLight>& light) {
-    const std::vector<Word> words = covered_voxels(memory);
+    const Words words = covered_voxels(memory);
     const Looks looks(memory, {words.data(), words.size(), memory.depth}, light);
     std::vector<MeanLight> sums((memory.size - 1) / 8);
     std::vector<std::uint8_t> sparse(sums.size());

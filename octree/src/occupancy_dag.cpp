@@ -24,7 +24,7 @@ class Encoding {
 public:
     explicit Encoding(const Memory& memory) : memory_(memory) {}
 
-    std::vector<Word> words() {
+    Words words() {
         const Node root = node(memory_.root(), memory_.depth);
         if (is_leaf(root))
             return {};
@@ -46,7 +46,7 @@ public:
                 order_.push_back(child);
             }
         }
-        std::vector<Word> words;
+        Words words;
         words.reserve(end);
         for (const Node each : order_)
             write(pool_[each], words);
@@ -102,7 +102,7 @@ private:
         return mask;
     }
 
-    void write(const Block& block, std::vector<Word>& words) const {
+    void write(const Block& block, Words& words) const {
         if (block[0] == kBitmap) {
             words.insert(words.end(), {block[1], block[2]});
             return;
@@ -192,7 +192,7 @@ void require_depth(unsigned depth) {
 
 } // namespace
 
-std::vector<Word> occupancy_dag(const Memory& memory) {
+Words occupancy_dag(const Memory& memory) {
     require_depth(memory.depth);
     return Encoding(memory).words();
 }

@@ -24,7 +24,7 @@ constexpr unsigned kBitmapLevel = 2;
 
 /// The graph of `memory`, whose depth is 2 or more. Linear in blocks times the levels at which they stand. Throws
 /// std::invalid_argument where the words are no octree, std::length_error where 32-bit addresses do not reach.
-std::vector<Word> occupancy_dag(const Memory& memory);
+Words occupancy_dag(const Memory& memory);
 
 /// The root, in `pool`, of the octree of a graph of `size` words, of `depth` levels. Solid voxels have material 1.
 /// Linear in words times levels. Throws std::invalid_argument, with the address of the word, where the words are no

@@ -79,7 +79,7 @@ private:
 SurfaceChange surface_change(const Memory& first, const Memory& second) {
     if (first.depth != second.depth)
         throw std::invalid_argument("octrees of different depths cannot be compared voxel by voxel");
-    const std::vector<Word> words = hidden_voxels(first);
+    const Words words = hidden_voxels(first);
     const Memory hidden{words.data(), words.size(), first.depth};
     SurfaceComparison comparison(first, hidden, second);
     comparison.visit(first.root(), hidden.root(), first.depth, {0, 0, 0});

@@ -5,6 +5,8 @@
 // block is {z, y, x}, x in bit 0. An octant of level n has 2**n voxels per side.
 #pragma once
 
+#include <voxrt/voxelize/large_vector.h>
+
 #include <array>
 #include <cstdint>
 
@@ -12,6 +14,9 @@ namespace voxrt::octree {
 
 using Word = std::uint32_t;
 using Block = std::array<Word, 8>;
+
+/// The words of a memory that was made.
+using Words = voxelize::LargeVector<Word>;
 
 constexpr unsigned kMaxDepth = 16;
 constexpr Word kTag = 0xFFFFFF00u;

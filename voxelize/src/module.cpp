@@ -16,6 +16,7 @@ namespace nb = nanobind;
 using namespace voxrt::voxelize;
 using voxrt::python::LongCall;
 using voxrt::python::NamedTuple;
+using voxrt::python::rows_to_numpy;
 using voxrt::python::to_numpy;
 
 namespace {
@@ -81,11 +82,12 @@ MeshView view_mesh(const MeshArrays& arrays, const std::vector<int64_t>& starts)
         {{sizes.data(), sizes.size()}, {coordinates.data(), coordinates.size()}, {cells.data(), cells.size()}, starts}};
 }
 
-template <typename T> nb::object take(SparseVoxels::Array<T>& array) {
-    return to_numpy(std::move(array.data), {array.size});
+template <typename T> nb::object take(LargeVector<T>& values) {
+    const size_t size = values.size();
+    return to_numpy(std::move(values), {size});
 }
-template <typename T, size_t N> nb::object take(SparseVoxels::Array<std::array<T, N>>& array) {
-    return to_numpy(std::move(array.data), array.size);
+template <typename T, size_t N> nb::object take(LargeVector<std::array<T, N>>& rows) {
+    return rows_to_numpy(std::move(rows));
 }
 
 NamedTuple voxelized, voxel_block;
@@ -256,17 +258,15 @@ nb::object hull_of(InputOf<double> positions, InputOf<double> frame) {
     require(frame.size() == 12, "frame must have shape (3, 4)");
     const MeshView view{{positions.data(), positions.size()}, {}, {}};
     const PartView part{PartKind::mesh, &view, frame.data(), 1, 0};
-    SparseVoxels::Array<std::array<int32_t, 3>> out;
+    std::vector<std::array<int32_t, 3>> triangles;
     {
         const LongCall call;
         std::vector<Vertex> points(view.vertex_count());
         for (size_t v = 0; v < points.size(); ++v)
             points[v] = snap_vertex(part, v);
-        const auto triangles = convex_hull(points);
-        out.allocate(triangles.size());
-        std::copy(triangles.begin(), triangles.end(), out.data.get());
+        triangles = convex_hull(points);
     }
-    return take(out);
+    return rows_to_numpy(std::move(triangles));
 }
 
 constexpr auto kVoxelizeManual = R"(Voxelize P parts; where they compete, the first keeps the voxel.

@@ -25,28 +25,30 @@ template <typename T> nb::object to_numpy(std::unique_ptr<T[]> data, std::initia
     return nb::cast(nb::ndarray<nb::numpy, T>(raw, shape, owner));
 }
 
-/// The same for rows of N elements.
-template <typename T, std::size_t N> nb::object to_numpy(std::unique_ptr<std::array<T, N>[]> data, std::size_t rows) {
-    std::array<T, N>* raw = data.get();
-    nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<std::array<T, N>*>(p); });
-    data.release();
-    return nb::cast(nb::ndarray<nb::numpy, T>(raw, {rows, N}, owner));
-}
-
 /// The same for a vector, without a copy. `Element`: T, or const T for a read-only array.
-template <typename Element, typename T>
-nb::object array_of(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
-    auto held = std::make_unique<std::vector<T>>(std::move(values));
-    Element* raw = held->data();
-    nb::capsule owner(held.get(), [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+template <typename Element, typename T, typename Allocator>
+nb::object array_of(std::vector<T, Allocator>&& values, std::initializer_list<std::size_t> shape) {
+    using Held = std::vector<T, Allocator>;
+    auto held = std::make_unique<Held>(std::move(values));
+    Element* raw = reinterpret_cast<Element*>(held->data());
+    nb::capsule owner(held.get(), [](void* p) noexcept { delete static_cast<Held*>(p); });
     held.release();
     return nb::cast(nb::ndarray<nb::numpy, Element>(raw, shape, owner));
 }
-template <typename T> nb::object to_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
+template <typename T, typename Allocator>
+nb::object to_numpy(std::vector<T, Allocator>&& values, std::initializer_list<std::size_t> shape) {
     return array_of<T>(std::move(values), shape);
 }
-template <typename T> nb::object to_read_only_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
+template <typename T, typename Allocator>
+nb::object to_read_only_numpy(std::vector<T, Allocator>&& values, std::initializer_list<std::size_t> shape) {
     return array_of<const T>(std::move(values), shape);
+}
+
+/// The same for rows of N elements.
+template <typename T, std::size_t N, typename Allocator>
+nb::object rows_to_numpy(std::vector<std::array<T, N>, Allocator>&& rows) {
+    const std::size_t count = rows.size();
+    return array_of<T>(std::move(rows), {count, N});
 }
 
 /// A named tuple type of a module: what its functions return. Kept in a static variable, which lives as long as Python.

@@ -104,7 +104,7 @@ private:
         while (k < object.height()) {
             const ShellBrick* brick = object.find(column, k);
             if (brick == nullptr) {
-                const int end = k > highest ? object.height() : next_brick(object, column, k, highest);
+                const int end = k > highest ? object.height() : object.next_brick(column, k, highest);
                 claim_run(tile, column, k, end, winding.inside(), interior, result);
                 k = end;
                 continue;
@@ -120,12 +120,6 @@ private:
             ++k;
         }
         result.simple = result.simple && winding.simple();
-    }
-
-    static int next_brick(TileSurface& object, int column, int k, int highest) {
-        while (k <= highest && object.find(column, k) == nullptr)
-            ++k;
-        return k;
     }
 
     void claim_run(TileVoxels& tile, int column, int from, int to, uint64_t inside, uint8_t interior, Claim& result) {

@@ -5,12 +5,12 @@
 // holds is empty. So the size grows with the surface, not with the volume.
 #pragma once
 
+#include "large_vector.h"
 #include "stage_seconds.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 namespace voxrt::voxelize {
 
@@ -33,57 +33,47 @@ struct VoxelsView {
 
 /// The voxels of a scene, and what became of each of its objects.
 struct SparseVoxels {
-    template <typename T> struct Array {
-        std::unique_ptr<T[]> data;
-        std::size_t size = 0;
-
-        /// Makes room for `n` elements, which have no value yet.
-        void allocate(std::size_t n) {
-            data = std::make_unique_for_overwrite<T[]>(n);
-            size = n;
-        }
-    };
     unsigned depth = 0;
-    Array<std::uint64_t> brick_codes;
-    Array<std::array<std::uint64_t, 8>> brick_masks;
-    Array<std::uint8_t> brick_materials;
-    Array<std::int32_t> brick_rows;
-    Array<std::array<std::uint8_t, 512>> cells;
-    Array<std::uint64_t> octant_codes;
-    Array<std::uint8_t> octant_levels;
-    Array<std::uint8_t> octant_materials;
-    Array<std::int64_t> object_voxels;        // by object: voxels that belong to it
-    Array<std::uint8_t> object_modes;         // by object: ObjectMode
-    Array<std::int64_t> object_flipped;       // by object: connected components that were flipped
-    Array<std::uint8_t> object_mostly_filled; // by object: its open parts have more inside than shell
+    LargeVector<std::uint64_t> brick_codes;
+    LargeVector<std::array<std::uint64_t, 8>> brick_masks;
+    LargeVector<std::uint8_t> brick_materials;
+    LargeVector<std::int32_t> brick_rows;
+    LargeVector<std::array<std::uint8_t, 512>> cells;
+    LargeVector<std::uint64_t> octant_codes;
+    LargeVector<std::uint8_t> octant_levels;
+    LargeVector<std::uint8_t> octant_materials;
+    LargeVector<std::int64_t> object_voxels;        // by object: voxels that belong to it
+    LargeVector<std::uint8_t> object_modes;         // by object: ObjectMode
+    LargeVector<std::int64_t> object_flipped;       // by object: connected components that were flipped
+    LargeVector<std::uint8_t> object_mostly_filled; // by object: its open parts have more inside than shell
     StageSeconds seconds;
 
     /// Makes all lists of voxels empty.
     void clear() {
-        brick_codes.allocate(0);
-        brick_masks.allocate(0);
-        brick_materials.allocate(0);
-        brick_rows.allocate(0);
-        cells.allocate(0);
-        octant_codes.allocate(0);
-        octant_levels.allocate(0);
-        octant_materials.allocate(0);
+        brick_codes.clear();
+        brick_masks.clear();
+        brick_materials.clear();
+        brick_rows.clear();
+        cells.clear();
+        octant_codes.clear();
+        octant_levels.clear();
+        octant_materials.clear();
     }
 
     /// Borrows the voxels: valid as long as this is.
     VoxelsView view() const {
         return {depth,
-                brick_codes.size,
-                brick_codes.data.get(),
-                reinterpret_cast<const std::uint64_t*>(brick_masks.data.get()),
-                brick_materials.data.get(),
-                brick_rows.data.get(),
-                cells.size,
-                reinterpret_cast<const std::uint8_t*>(cells.data.get()),
-                octant_codes.size,
-                octant_codes.data.get(),
-                octant_levels.data.get(),
-                octant_materials.data.get()};
+                brick_codes.size(),
+                brick_codes.data(),
+                reinterpret_cast<const std::uint64_t*>(brick_masks.data()),
+                brick_materials.data(),
+                brick_rows.data(),
+                cells.size(),
+                reinterpret_cast<const std::uint8_t*>(cells.data()),
+                octant_codes.size(),
+                octant_codes.data(),
+                octant_levels.data(),
+                octant_materials.data()};
     }
 };
 

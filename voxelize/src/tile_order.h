@@ -8,11 +8,14 @@
 
 namespace voxrt::voxelize {
 
+inline constexpr uint8_t kCubeLevel = 6; // log2 of a cube's side in voxels
+
 /// A run of one tile's bricks and octants that make up a cube.
 struct CubeRun {
     uint64_t code; // Morton code of the cube's corner / 64
     uint32_t tile;
     uint32_t bricks_from, bricks_to, octants_from, octants_to;
+    uint32_t rows; // of cells, which its bricks have
 };
 
 /// The content of one tile.
@@ -31,14 +34,20 @@ class TileSorter {
 public:
     /// Appends the content of a tile (number `index`, at (tile_x, tile_y) in tiles) to `out`.
     void sort(const TileVoxels& tile, uint32_t index, int tile_x, int tile_y, TileResult& out) {
+        const size_t bricks = out.brick_codes.size() + tile.bricks();
+        out.brick_codes.reserve(bricks);
+        out.brick_masks.reserve(bricks);
+        out.brick_materials.reserve(bricks);
+        out.brick_rows.reserve(bricks);
         for (int cube = 0; cube * kTileBricks < tile.height(); ++cube) {
             CubeRun run{morton(tile_x, tile_y, cube),      index, uint32_t(out.brick_codes.size()), 0,
-                        uint32_t(out.octant_codes.size()), 0};
+                        uint32_t(out.octant_codes.size()), 0,     uint32_t(out.cells.size())};
             if (!read_cube(tile, cube * kTileBricks))
                 continue;
             emit(tile, 3, 0, run.code, out);
             run.bricks_to = uint32_t(out.brick_codes.size());
             run.octants_to = uint32_t(out.octant_codes.size());
+            run.rows = uint32_t(out.cells.size()) - run.rows;
             out.runs.push_back(run);
         }
     }
@@ -47,6 +56,8 @@ private:
     /// Reads the slots of a cube in Morton order; false where it is empty.
     bool read_cube(const TileVoxels& tile, int k) {
         const int levels = std::min(kTileBricks, tile.height() - k);
+        if (levels == kTileBricks && read_uniform_cube(tile, k))
+            return slots_[3][0] != 0;
         uint32_t any = 0;
         slots_[0].fill(0);
         for (int column = 0; column < kTileColumns; ++column) {
@@ -71,6 +82,23 @@ private:
                     differ |= children[c] ^ children[0];
                 slots_[level][i] = differ == 0 ? children[0] : kMixed;
             }
+        return true;
+    }
+
+    /// Reads a cube whose slots are all the same, as are most of a solid; false where they are not.
+    bool read_uniform_cube(const TileVoxels& tile, int k) {
+        const uint32_t first = *tile.slots(0, k);
+        if (first >= TileVoxels::kFirstBrick)
+            return false;
+        for (int column = 0; column < kTileColumns; ++column) {
+            const uint32_t* slots = tile.slots(column, k);
+            uint32_t differ = 0;
+            for (int z = 0; z < kTileBricks; ++z)
+                differ |= slots[z] ^ first;
+            if (differ != 0)
+                return false;
+        }
+        slots_[3][0] = first;
         return true;
     }
 

@@ -123,7 +123,23 @@ public:
         return index == kNone ? nullptr : &bricks_[index];
     }
 
-    /// The same brick, made where there is none.
+    /// The first k of `from` ... `to` - 1 where the column has a brick, or `to`.
+    int next_brick(int column, int from, int to) const {
+        const uint32_t* slots = &table_[size_t(column) * height_];
+        constexpr int kSlots = 16; // that are looked at together
+        for (; from + kSlots <= to; from += kSlots) {
+            uint32_t all = kNone;
+            for (int i = 0; i < kSlots; ++i)
+                all &= slots[from + i];
+            if (all != kNone)
+                break;
+        }
+        while (from < to && slots[from] == kNone)
+            ++from;
+        return from;
+    }
+
+    /// Brick `k` of a brick column, made where there is none.
     ShellBrick& at(int column, int k) {
         uint32_t& index = table_[size_t(column) * height_ + k];
         if (index == kNone) {

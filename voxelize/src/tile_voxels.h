@@ -86,6 +86,7 @@ public:
     /// number of a brick.
     const uint32_t* slots(int column, int k) const { return &table_[size_t(column) * height_ + k]; }
     const VoxelBrick& brick(uint32_t slot) const { return bricks_[slot - kFirstBrick]; }
+    size_t bricks() const { return bricks_.size(); }
 
     static constexpr uint32_t kFirstBrick = 256;
 

@@ -7,9 +7,11 @@
 namespace voxrt::voxelize {
 namespace {
 
-/// Eight equal octants in a row that share a parent become the parent.
-void push_octant(std::vector<uint64_t>& codes, std::vector<uint8_t>& levels, std::vector<uint8_t>& materials,
-                 uint64_t code, uint8_t level, uint8_t material) {
+/// Adds the octant of a whole cube. Eight equal octants in a row that share a parent become the parent.
+void push_cube(SparseVoxels& out, uint64_t code, uint8_t level, uint8_t material) {
+    auto& codes = out.octant_codes;
+    auto& levels = out.octant_levels;
+    auto& materials = out.octant_materials;
     codes.push_back(code);
     levels.push_back(level);
     materials.push_back(material);
@@ -26,59 +28,67 @@ void push_octant(std::vector<uint64_t>& codes, std::vector<uint8_t>& levels, std
     }
 }
 
-template <typename T> void copy(SparseVoxels::Array<T>& to, const std::vector<T>& from) {
-    to.allocate(from.size());
-    std::copy(from.begin(), from.end(), to.data.get());
+/// Appends the octants of all runs. Those of a cube are joined already.
+void gather_octants(const std::vector<TileResult>& tiles, const std::vector<CubeRun>& runs, SparseVoxels& out) {
+    size_t most = 0;
+    for (const CubeRun& run : runs)
+        most += run.octants_to - run.octants_from;
+    out.octant_codes.reserve(most);
+    out.octant_levels.reserve(most);
+    out.octant_materials.reserve(most);
+    const auto append = [](auto& to, const auto& from, const CubeRun& run) {
+        to.insert(to.end(), from.begin() + run.octants_from, from.begin() + run.octants_to);
+    };
+    for (const CubeRun& run : runs) {
+        const TileResult& tile = tiles[run.tile];
+        const uint32_t i = run.octants_from;
+        if (i + 1 == run.octants_to && tile.octant_levels[i] == kCubeLevel) {
+            push_cube(out, tile.octant_codes[i], kCubeLevel, tile.octant_materials[i]);
+        } else {
+            append(out.octant_codes, tile.octant_codes, run);
+            append(out.octant_levels, tile.octant_levels, run);
+            append(out.octant_materials, tile.octant_materials, run);
+        }
+    }
 }
 
 /// Lays the bricks and octants of all tiles out one after another.
-void gather(std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
+void gather(const std::vector<TileResult>& tiles, SparseVoxels& out, const Workers& workers) {
     std::vector<CubeRun> runs;
     for (const TileResult& tile : tiles)
         runs.insert(runs.end(), tile.runs.begin(), tile.runs.end());
     std::sort(runs.begin(), runs.end(), [](const CubeRun& a, const CubeRun& b) { return a.code < b.code; });
+    gather_octants(tiles, runs, out);
 
-    std::vector<size_t> brick_starts;
-    size_t bricks = 0;
-    std::vector<uint64_t> octant_codes;
-    std::vector<uint8_t> octant_levels, octant_materials;
+    // Rows keep the order of their bricks.
+    std::vector<size_t> brick_starts, row_starts;
+    size_t bricks = 0, rows = 0;
     for (const CubeRun& run : runs) {
         brick_starts.push_back(bricks);
-        bricks += run.bricks_to - run.bricks_from;
-        const TileResult& tile = tiles[run.tile];
-        for (uint32_t i = run.octants_from; i < run.octants_to; ++i)
-            push_octant(octant_codes, octant_levels, octant_materials, tile.octant_codes[i], tile.octant_levels[i],
-                        tile.octant_materials[i]);
-    }
-    copy(out.octant_codes, octant_codes);
-    copy(out.octant_levels, octant_levels);
-    copy(out.octant_materials, octant_materials);
-
-    out.brick_codes.allocate(bricks);
-    out.brick_masks.allocate(bricks);
-    out.brick_materials.allocate(bricks);
-    out.brick_rows.allocate(bricks);
-    // Rows keep the order of their bricks.
-    std::vector<size_t> row_starts;
-    size_t rows = 0;
-    for (const CubeRun& run : runs) {
         row_starts.push_back(rows);
-        for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i)
-            rows += tiles[run.tile].brick_rows[i] >= 0;
+        bricks += run.bricks_to - run.bricks_from;
+        rows += run.rows;
     }
-    out.cells.allocate(rows);
-    workers.run(runs.size(), [&](size_t r, int) {
-        const CubeRun& run = runs[r];
-        const TileResult& tile = tiles[run.tile];
-        size_t to = brick_starts[r], row = row_starts[r];
-        for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i, ++to) {
-            out.brick_codes.data[to] = tile.brick_codes[i];
-            out.brick_masks.data[to] = tile.brick_masks[i];
-            out.brick_materials.data[to] = tile.brick_materials[i];
-            out.brick_rows.data[to] = -1;
-            if (tile.brick_rows[i] >= 0) {
-                out.brick_rows.data[to] = int32_t(row);
-                out.cells.data[row++] = tile.cells[tile.brick_rows[i]];
+    out.brick_codes.resize(bricks);
+    out.brick_masks.resize(bricks);
+    out.brick_materials.resize(bricks);
+    out.brick_rows.resize(bricks);
+    out.cells.resize(rows);
+    constexpr size_t kRuns = 64; // per job
+    workers.run((runs.size() + kRuns - 1) / kRuns, [&](size_t job, int) {
+        for (size_t r = job * kRuns; r < std::min(runs.size(), (job + 1) * kRuns); ++r) {
+            const CubeRun& run = runs[r];
+            const TileResult& tile = tiles[run.tile];
+            size_t to = brick_starts[r], row = row_starts[r];
+            for (uint32_t i = run.bricks_from; i < run.bricks_to; ++i, ++to) {
+                out.brick_codes[to] = tile.brick_codes[i];
+                out.brick_masks[to] = tile.brick_masks[i];
+                out.brick_materials[to] = tile.brick_materials[i];
+                out.brick_rows[to] = -1;
+                if (tile.brick_rows[i] >= 0) {
+                    out.brick_rows[to] = int32_t(row);
+                    out.cells[row++] = tile.cells[tile.brick_rows[i]];
+                }
             }
         }
     });
@@ -113,14 +123,13 @@ void tally_objects(const std::vector<PartView>& parts, std::vector<std::unique_p
 void report_objects(const std::vector<PartView>& parts, Fill fill, const TriangleBins& bins,
                     const std::vector<ObjectTally>& tallies, SparseVoxels& out) {
     const size_t objects = tallies.size();
-    out.object_voxels.allocate(objects);
-    out.object_modes.allocate(objects);
-    out.object_flipped.allocate(objects);
-    out.object_mostly_filled.allocate(objects);
-    std::fill_n(out.object_flipped.data.get(), objects, 0);
+    out.object_voxels.resize(objects);
+    out.object_modes.resize(objects);
+    out.object_flipped.assign(objects, 0);
+    out.object_mostly_filled.resize(objects);
     std::vector<ObjectFindings> found(objects);
     for (size_t i = 0; i < objects; ++i) {
-        out.object_voxels.data[i] = tallies[i].voxels;
+        out.object_voxels[i] = tallies[i].voxels;
         found[i].overlaps_itself = tallies[i].overlaps_itself != 0;
     }
     for (size_t p = 0; p < parts.size(); ++p) {
@@ -130,12 +139,12 @@ void report_objects(const std::vector<PartView>& parts, Fill fill, const Triangl
         object.has_open_enclosure |= mesh.hole_caps && mesh.hole_caps->has_open_enclosure;
         if (mesh.flipped) {
             object.has_flipped_components |= mesh.closed;
-            out.object_flipped.data[parts[p].object] += mesh.flipped->count;
+            out.object_flipped[parts[p].object] += mesh.flipped->count;
         }
     }
     for (size_t i = 0; i < objects; ++i) {
-        out.object_modes.data[i] = uint8_t(object_mode(fill, found[i]));
-        out.object_mostly_filled.data[i] = tallies[i].inside_of_open > tallies[i].shell_of_open;
+        out.object_modes[i] = uint8_t(object_mode(fill, found[i]));
+        out.object_mostly_filled[i] = tallies[i].inside_of_open > tallies[i].shell_of_open;
     }
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 using namespace voxrt;
 using namespace voxrt::web;
-using Words = std::vector<octree::Word>;
+using octree::Words;
 
 // Colours that are tried where baked light does not fit with all of them, and the default picture: voxrt/baking.py.
 constexpr int kPalettes[] = {sim::kMostBakedColours, 64, 16};

@@ -44,7 +44,7 @@ struct Shading {
     sim::Shading shading{materials, mirrors, 0, false, {}, {}};
 };
 
-std::vector<octree::Word> memory_words;
+octree::Words memory_words;
 std::optional<octree::VerifiedMemory> memory;
 Shading shading;
 Frame frame;
@@ -116,7 +116,7 @@ EXPORT(vx_outline) int vx_outline() {
         const unsigned depth = loaded().depth();
         octree::BlockPool pool;
         const octree::Node root = octree::coarsen(loaded().memory(), depth > 6 ? depth - 6 : 0, pool);
-        const std::vector<octree::Word> words = octree::breadth_first_words(pool, root);
+        const octree::Words words = octree::breadth_first_words(pool, root);
         const int64_t side = int64_t{1} << depth;
         octree::LeafWalk walk({words.data(), words.size(), depth}, {{0, 0, 0}, {side, side, side}}, true);
         outline.clear();

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace {
-std::vector<voxrt::octree::Word> words;
+voxrt::octree::Words words;
 }
 
 /// Builds the octree of voxels: x, y, z from 0 up to 2^depth, and a material each. Where a place repeats, the first

@@ -63,7 +63,7 @@ struct Scene {
 };
 
 struct Result {
-    std::vector<octree::Word> words;
+    octree::Words words;
     voxelize::FittedGrid grid;
     std::vector<voxelize::TableMaterial> materials;
     std::vector<int64_t> object_voxels;

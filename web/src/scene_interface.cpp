@@ -104,16 +104,16 @@ voxelize::Coloured coloured(double voxel_size, int colours, std::vector<int>& ma
 
 void report(const voxelize::SparseVoxels& voxels) {
     const size_t count = scene.objects.size();
-    result.object_voxels.assign(voxels.object_voxels.data.get(), voxels.object_voxels.data.get() + count);
-    result.object_modes.assign(voxels.object_modes.data.get(), voxels.object_modes.data.get() + count);
+    result.object_voxels.assign(voxels.object_voxels.data(), voxels.object_voxels.data() + count);
+    result.object_modes.assign(voxels.object_modes.data(), voxels.object_modes.data() + count);
     std::vector<std::string> names;
     for (const Object& object : scene.objects)
         names.push_back(object.name);
     const std::vector<uint8_t> reported(count, 1);
     result.warnings = voxelize::object_warnings({result.object_voxels,
                                                  result.object_modes,
-                                                 {voxels.object_flipped.data.get(), count},
-                                                 {voxels.object_mostly_filled.data.get(), count},
+                                                 {voxels.object_flipped.data(), count},
+                                                 {voxels.object_mostly_filled.data(), count},
                                                  names,
                                                  reported});
 }

@@ -45,7 +45,7 @@ LitVoxels light_voxels(std::span<const std::uint64_t> points, std::span<const st
 
 // A memory of the surface's bricks and octants, with the colours of `lit` in it.
 struct BakedMemory {
-    std::vector<octree::Word> words;
+    octree::Words words;
     std::vector<voxelize::TableMaterial> materials;
 };
 

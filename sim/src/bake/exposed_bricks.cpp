@@ -90,7 +90,7 @@ void fill_brick(const octree::Memory& memory, const Corner& corner, std::uint8_t
 
 ExposedBricks exposed_bricks(const octree::VerifiedMemory& verified, int threads) {
     const octree::Memory& memory = verified.memory();
-    const std::vector<Word> hidden = octree::hidden_voxels(memory);
+    const octree::Words hidden = octree::hidden_voxels(memory);
     ExposedBricks out;
     std::vector<Corner> bricks;
     const octree::Memory hidden_memory{hidden.data(), hidden.size(), memory.depth};

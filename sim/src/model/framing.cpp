@@ -117,7 +117,7 @@ std::vector<Point> outline_points(const octree::VerifiedMemory& memory) {
     octree::BlockPool pool;
     const octree::Node root =
         octree::coarsen(memory.memory(), depth > kOutlineLevels ? depth - kOutlineLevels : 0, pool);
-    const std::vector<octree::Word> words = octree::breadth_first_words(pool, root);
+    const octree::Words words = octree::breadth_first_words(pool, root);
     const int64_t side = int64_t{1} << depth;
     std::vector<Point> points;
     const auto add = [&points](const auto& corner, double size) {

@@ -17,8 +17,8 @@ using namespace voxrt::octree;
 
 namespace {
 
-std::vector<Word> words_of(FuzzBytes& bytes) {
-    std::vector<Word> words;
+Words words_of(FuzzBytes& bytes) {
+    Words words;
     const unsigned blocks = bytes.upto(24);
     for (unsigned i = 0; i < 1 + 8 * blocks; ++i) {
         const unsigned kind = bytes.upto(15);
@@ -50,7 +50,7 @@ void read_all(const Memory& memory, const Memory& other) {
     diff(memory, other);
     surface_change(memory, other);
     differing_regions(memory, other);
-    const std::vector<Word> hidden = hidden_voxels(memory);
+    const Words hidden = hidden_voxels(memory);
     const Memory unseen{hidden.data(), hidden.size(), memory.depth};
     fill_hidden(memory, unseen, 2);
     share_hidden(memory, unseen);
@@ -68,7 +68,7 @@ std::vector<uint8_t> fuzz_seed() {
 void fuzz_one(std::span<const uint8_t> data) {
     FuzzBytes bytes(data);
     const unsigned kind = bytes.upto(31), depth = kind == 0 ? 5 : 1 + kind % 4; // most grids are small, for speed
-    const std::vector<Word> first = words_of(bytes), second = words_of(bytes);
+    const Words first = words_of(bytes), second = words_of(bytes);
     const Memory memory{first.data(), first.size(), depth}, other{second.data(), second.size(), depth};
     const bool sound = validate(first.data(), first.size(), depth).fault == Fault::none;
     const bool both = sound && validate(second.data(), second.size(), depth).fault == Fault::none;
@@ -76,7 +76,7 @@ void fuzz_one(std::span<const uint8_t> data) {
         read_all(memory, both ? other : memory);
         const std::vector<uint8_t> cells = cells_of(memory);
         const size_t side = size_t{1} << depth;
-        const std::vector<Word> built = build_dense(cells.data(), side, side, side, depth);
+        const Words built = build_dense(cells.data(), side, side, side, depth);
         if (validate(built.data(), built.size(), depth).fault != Fault::none)
             fuzz_fail("a memory that was built is no octree");
         if (cells_of(Memory{built.data(), built.size(), depth}) != cells)

@@ -81,8 +81,8 @@ std::array<double, 12> frame(FuzzBytes& bytes, PartKind kind) {
 uint64_t fingerprint(const SparseVoxels& voxels) {
     uint64_t hash = 0xCBF2'9CE4'8422'2325; // FNV-1a
     auto add = [&hash](const auto& array) {
-        const auto* bytes = reinterpret_cast<const unsigned char*>(array.data.get());
-        for (size_t i = 0; i < array.size * sizeof(array.data[0]); ++i)
+        const auto* bytes = reinterpret_cast<const unsigned char*>(array.data());
+        for (size_t i = 0; i < array.size() * sizeof(array[0]); ++i)
             hash = (hash ^ bytes[i]) * 0x100'0000'01B3;
     };
     add(voxels.brick_codes);

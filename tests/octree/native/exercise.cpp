@@ -68,9 +68,9 @@ Cells random_cells(Random& random, unsigned depth) {
     return cells;
 }
 
-Memory memory_of(const std::vector<Word>& words, unsigned depth) { return {words.data(), words.size(), depth}; }
+Memory memory_of(const Words& words, unsigned depth) { return {words.data(), words.size(), depth}; }
 
-Cells cells_of(const std::vector<Word>& words, unsigned depth) {
+Cells cells_of(const Words& words, unsigned depth) {
     const std::int64_t side = std::int64_t{1} << depth;
     Cells cells(std::size_t{1} << (3 * depth));
     fill_region(memory_of(words, depth), {{0, 0, 0}, {side, side, side}}, cells.data());
@@ -87,12 +87,12 @@ bool enclosed(const Cells& cells, std::int64_t x, std::int64_t y, std::int64_t z
     return true;
 }
 
-void exercise_interior(const Cells& cells, const Memory& memory, const std::vector<Word>& hidden) {
+void exercise_interior(const Cells& cells, const Memory& memory, const Words& hidden) {
     const unsigned depth = memory.depth;
     const std::int64_t side = std::int64_t{1} << depth;
     const Cells found = cells_of(hidden, depth);
     const Cells filled = cells_of(fill_hidden(memory, memory_of(hidden, depth), 9), depth);
-    const std::vector<Word> words = share_hidden(memory, memory_of(hidden, depth));
+    const Words words = share_hidden(memory, memory_of(hidden, depth));
     const Cells shared = cells_of(words, depth);
     bool right = words.size() <= memory.size;
     for (std::int64_t x = 0; x < side; ++x)
@@ -110,8 +110,8 @@ void exercise_grid(Random& random, unsigned depth) {
     const Cells cells = random_cells(random, depth), others = random_cells(random, depth);
     const std::size_t side = std::size_t{1} << depth;
     const auto end = static_cast<std::int64_t>(side);
-    const std::vector<Word> words = build_dense(cells.data(), side, side, side, depth);
-    const std::vector<Word> other_words = build_dense(others.data(), side, side, side, depth);
+    const Words words = build_dense(cells.data(), side, side, side, depth);
+    const Words other_words = build_dense(others.data(), side, side, side, depth);
     const Memory memory = memory_of(words, depth), other = memory_of(other_words, depth);
     expect(validate(words.data(), words.size(), depth).fault == Fault::none, "validation", depth);
     expect(cells_of(words, depth) == cells, "a region", depth);
@@ -143,7 +143,7 @@ void exercise_grid(Random& random, unsigned depth) {
             volume += voxels_at(leaf.level);
     expect(volume == cells.size(), "leaves", depth);
 
-    const std::vector<Word> hidden = hidden_voxels(memory);
+    const Words hidden = hidden_voxels(memory);
     exercise_interior(cells, memory, hidden);
     expect(surface_change(memory, memory).changed == 0, "a surface", depth);
     surface_change(memory, other);
@@ -158,7 +158,7 @@ void exercise_grid(Random& random, unsigned depth) {
     for (auto& row : costs->other_axis)
         row.fill(256);
     costs->occlusion.fill(128);
-    for (const std::vector<Word>& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size / 2))
+    for (const Words& fit : fit_bricks(memory, memory_of(hidden, depth), 0, *costs, memory.size / 2))
         expect(validate(fit.data(), fit.size(), depth).fault == Fault::none, "fitted bricks", depth);
 }
 
@@ -207,7 +207,7 @@ void exercise_threads(Random& random, unsigned depth) {
 /// Words of any kind: most are no octree, and no read may leave the memory.
 void exercise_words(Random& random) {
     for (int i = 0; i < 2000; ++i) {
-        std::vector<Word> words(1 + 8 * (random() % 6));
+        Words words(1 + 8 * (random() % 6));
         for (Word& word : words)
             word = random() % 3 == 0   ? leaf(static_cast<std::uint8_t>(random()))
                    : random() % 9 == 0 ? static_cast<Word>(random())
@@ -215,7 +215,7 @@ void exercise_words(Random& random) {
         const unsigned depth = 1 + i % 4;
         const bool sound = validate(words.data(), words.size(), depth).fault == Fault::none;
         try {
-            const std::vector<Word> hidden = hidden_voxels(memory_of(words, depth));
+            const Words hidden = hidden_voxels(memory_of(words, depth));
             share_hidden(memory_of(words, depth), memory_of(hidden, depth));
             cells_of(words, depth);
             VerifiedMemory(memory_of(words, depth));

@@ -102,7 +102,7 @@ Light receive_in_all_ways(const octree::VerifiedMemory& memory, const sim::Surfa
 }
 
 void exercise_bake(Random& random, unsigned depth) {
-    const std::vector<octree::Word> words = world(random, depth, kMaterials);
+    const octree::Words words = world(random, depth, kMaterials);
     const octree::VerifiedMemory memory({words.data(), words.size(), depth});
     std::vector<voxelize::TableMaterial> materials{{"empty", {0, 0, 0}, false, true}};
     for (int i = 1; i < kMaterials; ++i)

@@ -27,7 +27,7 @@ using namespace exercise;
 namespace {
 
 constexpr int kMaterials = 6;
-using Words = std::vector<octree::Word>;
+using octree::Words;
 
 octree::VerifiedMemory verified(const Words& words, unsigned depth) {
     return octree::VerifiedMemory({words.data(), words.size(), depth});

@@ -25,7 +25,7 @@ inline void check(bool holds, const char* what) {
 inline int upto(Random& random, int most) { return std::uniform_int_distribution<int>(0, most)(random); }
 
 /// The words of boxes, some of them empty again, and a few stray voxels; seldom of an empty world or a full one.
-inline std::vector<voxrt::octree::Word> world(Random& random, unsigned depth, int materials) {
+inline voxrt::octree::Words world(Random& random, unsigned depth, int materials) {
     const int side = 1 << depth;
     std::vector<uint8_t> cells(size_t{1} << (3 * depth), static_cast<uint8_t>(upto(random, 19) == 0 ? 1 : 0));
     for (int boxes = upto(random, 6); boxes > 0; --boxes) {
