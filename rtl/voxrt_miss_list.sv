@@ -75,13 +75,24 @@ module voxrt_miss_list #(
 
   assign new_line = line_i[enters_second?Pipes-1 : 0];
 
+  // Whether the line that enters is the next one. Which enters is known late: both are compared before.
+  logic [Pipes-1:0] same_as_first, same_as_last, same_as_new;
+
+  always_comb begin
+    for (int unsigned p = 0; p < Pipes; p++) begin
+      same_as_first[p] = line_i[0] == next_line_i[p];
+      same_as_last[p]  = line_i[Pipes-1] == next_line_i[p];
+    end
+    same_as_new = enters_second ? same_as_last : same_as_first;
+  end
+
   // An entry that ends now counts, too: what misses in the next clock does not want its line, which is in the tags.
   always_ff @(posedge clk_i) begin
     both_same_q <= next_line_i[0] == next_line_i[Pipes-1];
     for (int unsigned p = 0; p < Pipes; p++) begin
       for (int unsigned e = 0; e < Entries; e++) begin
         same_q[p][e] <= (valid_q[e] && line_q[e] == next_line_i[p]) ||
-            (enters != '0 && tail_q == index_t'(e) && new_line == next_line_i[p]);
+            (enters != '0 && tail_q == index_t'(e) && same_as_new[p]);
       end
     end
     if (!rst_ni) for (int unsigned p = 0; p < Pipes; p++) same_q[p] <= '0;

@@ -135,7 +135,7 @@ def fit_frames(
     """Estimate how many pictures a board with a frame buffer shows per second, from all around a scene.
 
     The cycles are counted by the verilated ray tracer with caches that has as many lanes, or the next fewer, in small
-    pictures of eight of the views; a board with more lanes takes as many times fewer.
+    pictures of eight of the views, from cold caches. A board with more lanes than that is faster than this tells.
 
     Parameters
     ----------
@@ -159,14 +159,13 @@ def fit_frames(
     config = max(
         (each for each in cached if each.parameters["Lanes"] <= tracer.lanes), key=lambda each: each.parameters["Lanes"]
     )
-    most = 0.0
+    cycles = 0.0
     for number, camera in enumerate(cameras[:: len(cameras) // _VIEWS]):
         progress(number, _VIEWS)
         frame = sim.render(
             rom, camera, SMALL, engine="rtl", config=config.name, lighting=lighting, dram=sim.Dram(*SDRAM_CLOCKS)
         )
-        most = max(most, (frame.cost.cycles or 0) / (SMALL[0] * SMALL[1]))
-    cycles = most * config.parameters["Lanes"] / tracer.lanes
+        cycles = max(cycles, (frame.cost.cycles or 0) / (SMALL[0] * SMALL[1]))
     # A frame starts at a vertical blanking.
     screens = math.ceil(cycles * SCREEN[0] * SCREEN[1] * SCREEN_HZ / tracer.clock_hz)
     return BeamFit(0, cycles, 0.0, SCREEN_HZ / max(1, screens))

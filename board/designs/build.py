@@ -36,9 +36,19 @@ TABLE_WORDS = 4096
 OCTREE_WORDS = 1 + 8 * 983_039
 """Words of the octree memory of a board with SDRAM: 30 of its 32 MB."""
 _VCO_MHZ = 750
-# Bytes of text: the four bits that tell letters from digits decide what comes next, and no byte's place does.
+# Bytes of text: the four bits that tell letters from digits decide what comes next, and no byte's place does. Trees of
+# three bytes find longer matches in it than those of four, which are the preset's.
 _TEXT_FILTERS = [
-    {"id": lzma.FILTER_LZMA2, "preset": 9 | lzma.PRESET_EXTREME, "lc": 4, "lp": 0, "pb": 0, "nice_len": 273}
+    {
+        "id": lzma.FILTER_LZMA2,
+        "preset": 9 | lzma.PRESET_EXTREME,
+        "lc": 4,
+        "lp": 0,
+        "pb": 0,
+        "nice_len": 273,
+        "mf": lzma.MF_BT3,
+        "depth": 1000,
+    }
 ]
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
 

@@ -7,7 +7,7 @@ module ecp5_top_sdram #(
   parameter int unsigned InputDivider    = 1,
   parameter int unsigned FeedbackDivider = 5,
   parameter int unsigned SystemDivider   = 12,
-  parameter int unsigned ChipDelay       = 4,
+  parameter int unsigned ChipDelay       = 5,
   parameter int unsigned Lanes           = 2,
   parameter int unsigned MaxDepth        = 12,
   parameter int unsigned PositionBits    = 19,
