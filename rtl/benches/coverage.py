@@ -8,6 +8,7 @@ bench/results/coverage.md.
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import sys
 import time
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 Bin = tuple[int, ...]
 
+RESULTS = RTL.parent / "bench" / "results" / "coverage.md"
 DEPTH = BUILDS["traversal"].parameters["MaxDepth"]
 LEVELS = range(DEPTH)
 AXES = range(3)
@@ -168,10 +170,15 @@ def lines_covered() -> list[str]:
 
 def main() -> int:
     """Run, report; give the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument("--quick", action="store_true", help="leave out the builds that repeat the benches of others")
+    either.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    options = parser.parse_args()
     prepare()
     times = {}
     for name, build in BUILDS.items():
-        if build.repeats and "--quick" in sys.argv:
+        if build.repeats and options.quick:
             continue
         start = time.monotonic()
         run(name)
@@ -204,8 +211,8 @@ def main() -> int:
     )
     print(report)
     print(", ".join(f"{name} {seconds:.0f} s" for name, seconds in times.items()))
-    if "--write" in sys.argv:
-        (RTL.parent / "bench" / "results" / "coverage.md").write_text(report)
+    if options.write:
+        RESULTS.write_text(report)
     return not complete
 
 
