@@ -420,12 +420,13 @@ package voxrt_pkg;
     return 3'(strip_bits(lanes) - (width <= SizeBits'(1024) ? 10 : width <= SizeBits'(2048) ? 11 : 12));
   endfunction
 
-  // A pixel's place in a strip.
+  // A pixel's place in a strip, in the order of voxrt_strip_place.
   typedef struct packed {
     logic                  last_line;     // Of the strip.
-    logic                  first_column;
-    logic                  last_column;
+    logic                  last_of_half;  // The last column of its half of the picture.
+    logic                  last_column;   // The last one of the strip, or of the line.
     logic                  last_strip;    // Of the frame.
+    logic                  leftwards;     // The next column of the half is the one to the left.
     logic [StripLimit-1:0] address;
   } strip_place_t;
 

@@ -41,19 +41,18 @@ module voxrt_strip_buffer
     .width_i,
     .height_i,
     .advances_i(writes),
-    .by_lines_i(1'b0),
     .place_o   (to)
   );
 
   voxrt_strip_place #(
-    .Lanes(Lanes)
+    .Lanes  (Lanes),
+    .ByLines(1'b1)
   ) u_from (
     .clk_i,
     .start_i,
     .width_i,
     .height_i,
     .advances_i(reads),
-    .by_lines_i(1'b1),
     .place_o   (from)
   );
 

@@ -1,8 +1,10 @@
-// Directions of a frame's pixels in strips, by additions alone: strips of 16 lines or fewer (voxrt_pkg::strip_line_bits)
-// from the top; in each, columns from the left, from the top down. The last strip may have fewer lines. Neighbours in
-// this order are neighbours in the picture, and read the same parts of the octree.
+// Directions of a frame's pixels in strips, by additions alone, in the order of voxrt_strip_place: strips of 16 lines or
+// fewer (voxrt_pkg::strip_line_bits), in columns, of which those of the right and of the left half take turns. Columns
+// that come after each other in a half are neighbours in the picture, and read the same parts of the octree. Halves take
+// turns because what is shown stands in the middle: while the columns of one half cross it, those of the other cross
+// what is beside it, which takes less time. So lanes and external memory have work all the time.
 //
-// It is used as voxrt_ray_generator is.
+// It is used as voxrt_ray_generator is, but the first direction comes width / 2 clocks later.
 module voxrt_strip_generator
   import voxrt_pkg::*;
 #(
@@ -15,57 +17,73 @@ module voxrt_strip_generator
   input  logic                       ready_i,
   output logic signed [ScanBits-1:0] direction_o[3]
 );
-  logic                       corner_q, valid_q, advances, column_end, last_column;
-  logic signed [ScanBits-1:0] direction_q[3], top_q[3], strip_q[3], down[3], beside[3];
-  logic                       new_column, new_strip, last;
+  logic                       valid_q, advances;
+  logic signed [ScanBits-1:0] direction_q[3], top_q[3], right[3], down[3], beside[3];
+  logic signed [ScanBits-1:0] other_q[3];  // The top of the other half's next column.
   strip_place_t               place;
+
+  assign advances = valid_q && ready_i;
 
   voxrt_strip_place #(
     .Lanes(Lanes)
   ) u_place (
     .clk_i,
-    .start_i     (raster_i.start),
-    .width_i     (raster_i.width),
-    .height_i    (raster_i.height),
-    .advances_i  (valid_q && ready_i),
-    .by_lines_i  (1'b0),
-    .place_o     (place)
+    .start_i   (raster_i.start),
+    .width_i   (raster_i.width),
+    .height_i  (raster_i.height),
+    .advances_i(advances),
+    .place_o   (place)
   );
-
-  assign advances    = valid_q && ready_i;
-  assign column_end  = place.last_line;
-  assign last_column = place.last_column;
-  assign new_strip   = column_end && last_column;
-  assign new_column  = column_end && !last_column;
-  assign last        = new_strip && place.last_strip;
 
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) begin
+      right[a]  = ScanBits'($signed(raster_i.right[a]));
       down[a]   = direction_q[a] + $signed(raster_i.line_step[a]);
-      beside[a] = top_q[a] + ScanBits'($signed(raster_i.right[a]));
+      beside[a] = place.leftwards ? top_q[a] - right[a] : top_q[a] + right[a];
     end
   end
 
+  // The right half begins so many columns beside the corner.
+  logic                walks_q;
+  logic [SizeBits-2:0] columns_q;
+
   always_ff @(posedge clk_i) begin
-    if (advances) begin
-      direction_q <= new_strip ? (place.first_column ? down : strip_q) : new_column ? beside : down;
-      if (new_strip) top_q <= place.first_column ? down : strip_q;
-      if (new_column) top_q <= beside;
-      // Below the first column begins the next strip.
-      if (place.first_column) strip_q <= down;
-      if (last) valid_q <= 1'b0;
-    end
-    if (raster_i.corner) begin
-      // The first direction is line_step.
-      for (int unsigned a = 0; a < 3; a++) begin
-        direction_q[a] <= $signed(raster_i.line_step[a]);
-        top_q[a]       <= $signed(raster_i.line_step[a]);
+    if (walks_q) begin
+      top_q     <= columns_q == '0 ? top_q : beside;
+      columns_q <= columns_q - 1'b1;
+      if (columns_q == '0) begin
+        direction_q <= top_q;
+        valid_q     <= 1'b1;
+        walks_q     <= 1'b0;
       end
     end
-    // Line_step is the step of lines from here on.
-    corner_q <= raster_i.corner && rst_ni;
-    if (corner_q) valid_q <= 1'b1;
-    if (!rst_ni || raster_i.start) valid_q <= 1'b0;
+    if (advances) begin
+      direction_q <= down;
+      if (place.last_line) begin
+        if (place.last_column) begin
+          // The next strip begins below.
+          top_q <= down;
+          if (place.last_strip) valid_q <= 1'b0;
+        end else begin
+          direction_q <= other_q;
+          top_q       <= other_q;
+          other_q     <= place.last_of_half ? down : beside;
+        end
+      end
+    end
+    if (raster_i.corner) begin
+      // Line_step is the corner's direction, and the step of lines from two clocks later on.
+      for (int unsigned a = 0; a < 3; a++) begin
+        top_q[a]   <= $signed(raster_i.line_step[a]);
+        other_q[a] <= $signed(raster_i.line_step[a]);
+      end
+      columns_q <= raster_i.width[SizeBits-1:1];
+      walks_q   <= 1'b1;
+    end
+    if (!rst_ni || raster_i.start) begin
+      walks_q <= 1'b0;
+      valid_q <= 1'b0;
+    end
   end
 
   assign valid_o     = valid_q;

@@ -5,21 +5,9 @@ import random
 import cocotb
 from cocotb.triggers import RisingEdge
 from streams import PACES, drive, exchange, start
+from strip_order import in_strips
 
-STRIP_LINES, STRIP_WIDTH = 16, 1024
-
-
-def in_strips(width, height):
-    """Give a frame's places, column by column of each strip."""
-    lines = STRIP_LINES
-    while width > STRIP_WIDTH * STRIP_LINES // lines:
-        lines //= 2
-    return [
-        (line, column)
-        for top in range(0, height, lines)
-        for column in range(width)
-        for line in range(top, min(top + lines, height))
-    ]
+LANES = 16
 
 
 async def frame(dut, width, height, sending, taking):
@@ -27,7 +15,7 @@ async def frame(dut, width, height, sending, taking):
     drive(dut, start_i=1, width_i=width, height_i=height)
     await RisingEdge(dut.clk_i)
     drive(dut, start_i=0)
-    items = [{"pixel_i": line << 12 | column} for line, column in in_strips(width, height)]
+    items = [{"pixel_i": line << 12 | column} for line, column in in_strips(LANES, width, height)]
     got = await exchange(dut, items, lambda: int(dut.pixel_o.value), sending, taking)
     assert got == [line << 12 | column for line in range(height) for column in range(width)]
 

@@ -150,6 +150,7 @@ BUILDS = {
         repeats=True,
         wrapper=(RTL / "vivado" / "voxrt_zynq_cached.v",),
     ),
+    "strip_generator": Build("voxrt_strip_generator", {"Lanes": 1}, ("bench_strip_generator",)),
     "strip_buffer": Build("voxrt_strip_buffer", {"Lanes": 16, "Width": 24}, ("bench_strip_buffer",)),
     "traversal": Build(
         CORE,
