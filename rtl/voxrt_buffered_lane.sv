@@ -35,7 +35,6 @@ module voxrt_buffered_lane
   output logic            [BlockBits+2:0]                mem_address_o,
   input  logic                                           mem_ack_i,
   input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
-  output logic                                           mem_stops_o,
   // To voxrt_light.
   output logic                                           hit_point_claim_o,
   output logic                                           hit_point_valid_o,
@@ -241,7 +240,6 @@ module voxrt_buffered_lane
     .mem_address_o,
     .mem_ack_i,
     .mem_word_i,
-    .mem_stops_o,
     .allocate_o      (allocate),
     .allocate_ready_i(allocate_ready),
     .allocate_tag_i  (allocate_tag),

@@ -32,7 +32,6 @@ module voxrt_cached_memory
   input  logic [BlockBits+3:0]             address_i        [Lanes],
   output logic [Lanes-1:0]                 ack_o,
   output logic [payload_bits(BlockBits, Lod):0] word_o      [Lanes],
-  input  logic [Lanes-1:0]                 stops_i,                // As voxrt_l1_cache has it.
   // External memory.
   output axi_read_request_t                axi_o            [BusPorts],
   input  axi_read_response_t               axi_i            [BusPorts],
@@ -116,7 +115,6 @@ module voxrt_cached_memory
       .address_i       (address_i[i]),
       .ack_o           (ack_o[i]),
       .word_o          (word_o[i]),
-      .stops_i         (stops_i[i]),
       .request_valid_o (request_valid[i]),
       .request_ready_i (request_ready[i]),
       .request_line_o  (request_line[i]),

@@ -62,7 +62,6 @@ module voxrt_lane
   output logic            [BlockBits+2:0]                 mem_address_o,      // {block, octant}
   input  logic                                            mem_ack_i,
   input  logic            [payload_bits(BlockBits, Lod):0] mem_word_i,
-  output logic                                            mem_stops_o,        // Lod: stage 5, the ray hits its pointer.
   // Reorder buffer. Results of entries that were allocated before, or at this clock.
   output logic                                            allocate_o,         // Only with allocate_ready_i.
   input  logic                                            allocate_ready_i,
@@ -248,8 +247,6 @@ module voxrt_lane
     assign stops5 = 1'b0;
     assign mean5  = '0;
   end
-
-  assign mem_stops_o = stops5;
 
   logic [KeyBits-1:0] key_time6_q;
   face_e              key_face6_q;

@@ -39,7 +39,6 @@ module voxrt_octree_memory
   // Lod: the dialect of the words that are written or, cached, read in a frame; and, cached, which lanes' rays hit the
   // cells of the pointers that they read three clocks ago.
   input  logic                             lod_words_i,
-  input  logic [Lanes-1:0]                 stops_i,
   // Cached: see voxrt_cached_memory.
   input  logic                             bus_rst_ni,
   input  logic                             start_i,
@@ -83,7 +82,6 @@ module voxrt_octree_memory
       .address_i,
       .ack_o,
       .word_o,
-      .stops_i,
       .axi_o,
       .axi_i,
       .events_o
@@ -93,7 +91,7 @@ module voxrt_octree_memory
     logic                   unused_external;
 
     always_comb begin
-      unused_external = &{bus_rst_ni, flush_i, base_i, stops_i};
+      unused_external = &{bus_rst_ni, flush_i, base_i};
       for (int unsigned p = 0; p < BusPorts; p++) unused_external &= ^axi_i[p];
       for (int unsigned i = 0; i < Lanes; i++) begin
         address[i]       = address_i[i][AddressBits-1:0];

@@ -93,7 +93,7 @@ module voxrt_rtu
   );
 
   // Octree memory. Lane 0's read port finds the root before the frame's rays start.
-  logic [      Lanes-1:0] lane_read, memory_read, word_valid, lane_stops;
+  logic [      Lanes-1:0] lane_read, memory_read, word_valid;
   logic [AddressBits-1:0] lane_address[Lanes];
   logic [  AddressBits:0] memory_address[Lanes], root_address;
   logic                   memory_ready;
@@ -133,7 +133,6 @@ module voxrt_rtu
     .ack_o       (word_valid),
     .word_o      (word),
     .lod_words_i (MemoryForm == CachedForm ? frame.lod_words : frame_i.lod_words),
-    .stops_i     (lane_stops),
     .bus_rst_ni,
     .start_i     (start),
     .ready_o     (memory_ready),
@@ -312,7 +311,6 @@ module voxrt_rtu
       .mem_address_o    (lane_address[i]),
       .mem_ack_i        (word_valid[i]),
       .mem_word_i       (word[i]),
-      .mem_stops_o      (lane_stops[i]),
       .hit_point_claim_o(hit_point_claim[i]),
       .hit_point_valid_o(hit_point_valid[i]),
       .hit_point_ready_i(hit_point_ready[i]),

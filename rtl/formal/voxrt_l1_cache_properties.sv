@@ -68,7 +68,6 @@ module voxrt_l1_cache_properties
     .address_i      (address),
     .ack_o,
     .word_o,
-    .stops_i        (1'b0),
     .request_valid_o,
     .request_ready_i,
     .request_line_o,
