@@ -149,6 +149,24 @@ module voxrt_cached_memory
     .fill_words_i   (fill_words)
   );
 
+  // The list of misses and the ports of the bus are far apart: neither waits for the other within a clock.
+  logic               next_valid, next_ready;
+  logic [BlockBits:0] next_line;
+
+  voxrt_fifo #(
+    .Width(BlockBits + 1),
+    .Depth(2)
+  ) u_fetches (
+    .clk_i,
+    .rst_ni,
+    .valid_i(fetch_valid),
+    .ready_o(fetch_ready),
+    .data_i (fetch_line),
+    .valid_o(next_valid),
+    .ready_i(next_ready),
+    .data_o (next_line)
+  );
+
   voxrt_line_reader #(
     .BlockBits  (BlockBits),
     .Lod        (Lod),
@@ -160,9 +178,9 @@ module voxrt_cached_memory
     .recover_i      (clears),
     .base_i,
     .lod_words_i,
-    .request_valid_i(fetch_valid),
-    .request_ready_o(fetch_ready),
-    .request_line_i (fetch_line),
+    .request_valid_i(next_valid),
+    .request_ready_o(next_ready),
+    .request_line_i (next_line),
     .answer_valid_o (fill_valid),
     .answer_ready_i (fill_ready),
     .answer_words_o (fill_words),
