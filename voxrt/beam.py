@@ -135,7 +135,8 @@ def fit_frames(
     """Estimate how many pictures a board with a frame buffer shows per second, from all around a scene.
 
     The cycles are counted by the verilated ray tracer with caches that has as many lanes, or the next fewer, in small
-    pictures of eight of the views, from cold caches. A board with more lanes than that is faster than this tells.
+    pictures of eight of the views, from cold caches. A board with more lanes than that, or with a larger L2, is faster
+    than this tells.
 
     Parameters
     ----------
