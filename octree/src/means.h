@@ -16,9 +16,9 @@ using LinearLight = std::array<std::uint16_t, 3>;
 ///
 /// The mean is that of the visible voxels, which share a face with an empty one or with the outside, in all places
 /// where the block stands. Its material is the nearest in linear light by the sum of squared differences; of equals,
-/// the one with the lowest id. A block has 0 where nothing of it is visible, or where its mean coverage along the axes
-/// is less than half: the part of its square that is not seen through, 0 of empty space, 1 of another leaf, of a block
-/// the mean of its four columns, each of which lets through what both octants do.
+/// the one with the lowest id. A block has 0 where nothing of it is visible, or where its coverage along one of the
+/// axes is less than 11/16: the part of its square that is not seen through, 0 of empty space, 1 of another leaf, of a
+/// block the mean of its four columns, each of which lets through what both octants do.
 ///
 /// Cost: that of covered_voxels() (hidden.h), and linear in the pairs of blocks of the two memories that lie in one
 /// place. Blocks that are not reached from word 0 have 0. Throws std::invalid_argument where the words are no octree.

@@ -74,6 +74,21 @@ def test_the_mean_is_that_of_linear_light():
     assert means[0] == 4
 
 
+@pytest.mark.parametrize("axis", range(3))
+def test_one_axis_with_less_coverage_than_eleven_sixteenths_is_enough(axis):
+    # Along the axis: two columns of 1, one of two halves, 3/4, and an empty one. Along the others: 1. With one row of
+    # voxels less the third column is a half and a quarter, 5/8.
+    dense = np.zeros((4,) * 3, np.uint8)
+    dense[:, :2] = 1
+    dense[:, 2:, 0] = 1
+    less = dense.copy()
+    less[:2, 3, 0] = 0
+    for voxels, mean in ((dense, 1), (less, 0)):
+        means = with_means(Rom("corner", from_dense(np.moveaxis(voxels, 0, axis)), TABLE[:2])).octree.means
+        assert means is not None
+        assert means[0] == mean
+
+
 def test_words_of_the_dialect():
     tree = from_points([[0, 0, 0], [3, 3, 3]], [1, 2], depth=2)
     means = np.array([7, 0, 255], np.uint8)

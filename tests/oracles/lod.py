@@ -88,8 +88,8 @@ def looks(words, depth, dense, palette):
 
 
 def spare_coverage(coverage):
-    """Give by how much a block's mean coverage exceeds a half."""
-    return sum(coverage) / 3 - Fraction(1, 2)
+    """Give by how much a block's least coverage exceeds the least that a mean needs."""
+    return min(coverage) - Fraction(11, 16)
 
 
 def surface_of(visible):

@@ -66,7 +66,7 @@ def test_a_far_view_is_the_models_and_costs_less(config):
     colours = [(255, 0, 0), (0, 255, 0), (120, 130, 140)]
     rom = with_means(Rom("noise", from_dense(voxels), (EMPTY, *(Material(str(c), c) for c in colours))))
     camera = voxrt.aim_camera(rom, (24, 24))
-    checked = voxrt.check(rom, camera, (24, 24), config=config, lod=0.75)
+    checked = voxrt.check(rom, camera, (24, 24), config=config, lod=1)
     assert checked.wrong_pixels == 0
     plain = voxrt.render(rom, camera, size=(24, 24), config=config)
     assert checked.rtl.cost.words_read is not None
