@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import struct
 import sys
 import tempfile
 import time
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -98,6 +100,20 @@ def send(simulation: BoardSimulation, address: int, words: list[int]) -> bool:
     return done
 
 
+class Placed(NamedTuple):
+    """A placed design: its board, its ``.config``, where memories are in that, and the program that simulates it."""
+
+    board: dict[str, Any]
+    config: str
+    slices: dict[str, list[Slice]]
+    program: Path
+
+    @property
+    def black(self) -> int:
+        """Frames before the first picture: a frame buffer shows a picture when the next one starts."""
+        return 2 if "boot_block_bits" in self.board else 1
+
+
 def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[str, bool]]:
     """Check the placed design in a folder; give what was checked, and whether it holds."""
     board = build.read_board(name)
@@ -106,41 +122,53 @@ def verify(name: str, folder: Path, work: Path, *, rebuilt: bool) -> list[tuple[
     config = (folder / "top.config").read_text()
     (work / "placed.v").write_text(placed_verilog(json.loads((folder / "placed.json").read_text())))
     program = compile_placed(board, [*MODELS, work / "placed.v"], work / "placed")
-    # A frame buffer shows a picture when the next one starts.
-    black = 2 if "boot_block_bits" in board else 1
+    placed = Placed(board, config, slices, program)
     scenes = {file: load_scene(EXAMPLES / file, depth) for file, depth in SCENES.items()}
+    swapped = next(iter(scenes))
+
+    def checks_of(file: str) -> list[tuple[str, bool]]:
+        place = work / Path(file).stem
+        place.mkdir()
+        new = scenes["planet.glb"] if file == swapped else None
+        return verify_scene(placed, file, scenes[file], new, place)
+
+    # A simulation is a process of its own: scenes run side by side.
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = [check for checks in pool.map(checks_of, scenes) for check in checks]
+    if rebuilt:
+        contents = contents_of(scenes["house.obj"], board)
+        build.synthesize(board, contents, work)
+        build.place_and_route(board, described["seed"], work)
+        same = (work / "top.config").read_text() == patch_config(config, slices, contents)
+        found.append(("the patched .config is the one of a full rebuild with the scene, byte for byte", same))
+    return found
+
+
+def verify_scene(placed: Placed, file: str, scene: Scene, new: Scene | None, work: Path) -> list[tuple[str, bool]]:
+    """Check the frames of a scene in the simulated netlist, and those of the scene that replaces it."""
     found: list[tuple[str, bool]] = []
 
     def note(what: str, *, holds: bool) -> None:
-        print(f"{what}: {'holds' if holds else 'FAILS'}", file=sys.stderr)
-        found.append((what, holds))
+        print(f"{file}: {what}: {'holds' if holds else 'FAILS'}", file=sys.stderr)
+        found.append((f"{file}: {what}", holds))
 
-    for number, (file, scene) in enumerate(scenes.items()):
-        write_block_rams(patch_config(config, slices, contents_of(scene, board)), work)
-        cameras = orbit(scene)
-        with BoardSimulation(program, work) as simulation:
-            seen = simulation.frames(black + 2)[black:]
-            equal = all(np.array_equal(pixels, picture(scene, cameras[i])) for i, (pixels, _) in enumerate(seen))
-            note(f"{file}: two frames at the pins are the exact model's, byte for byte", holds=equal)
-            note(f"{file}: timing at the pins is that of 640 x 480", holds=all(timing.is_vga for _, timing in seen))
-            if number:
-                continue
-            new = scenes["planet.glb"]
+    write_block_rams(patch_config(placed.config, placed.slices, contents_of(scene, placed.board)), work)
+    cameras = orbit(scene)
+    with BoardSimulation(placed.program, work) as simulation:
+        seen = simulation.frames(placed.black + 2)[placed.black :]
+        equal = all(np.array_equal(pixels, picture(scene, cameras[i])) for i, (pixels, _) in enumerate(seen))
+        note("two frames at the pins are the exact model's, byte for byte", holds=equal)
+        note("timing at the pins is that of 640 x 480", holds=all(timing.is_vga for _, timing in seen))
+        if new is not None:
             base = -(-len(scene.words) // 8) * 8
             control = (BOARD_REGISTERS["control"], [1 << 8 | SCALE << 4 | STEERED | RUN])
             swap = [*scene_writes(new, Lighting(), SIZE, base), *camera_writes(orbit(new)[9]), control]
             done = send(simulation, OCTREE_MEMORY + 4 * base, relocate(new.words, base).tolist())
             done &= send(simulation, TABLE + 4 * FREE_LIST, encode_list(swap))
             done &= send(simulation, BOARD_REGISTERS["play"], [FREE_LIST])
-            after = simulation.frames(black + 2)[-1][0]
+            after = simulation.frames(placed.black + 2)[-1][0]
             equal = done and np.array_equal(after, picture(new, orbit(new)[9]))
-            note(f"{file}: planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
-    if rebuilt:
-        contents = contents_of(scenes["house.obj"], board)
-        build.synthesize(board, contents, work)
-        build.place_and_route(board, described["seed"], work)
-        same = (work / "top.config").read_text() == patch_config(config, slices, contents)
-        note("the patched .config is the one of a full rebuild with the scene, byte for byte", holds=same)
+            note("planet.glb, sent by the serial line, is the exact model's picture", holds=equal)
     return found
 
 
