@@ -5,10 +5,9 @@ from fractions import Fraction
 from math import floor
 
 import cocotb
-from bench_ray_generator import begin
-from bench_ray_generator import expected as directions_of
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from oracles.ray import FACE_NONE, shade
+from raster import begin, line_by_line
 from streams import PACES, drive, exchange, reset_on_the_way, start
 from structs import MATERIAL_WRITE, SHADED_PIXEL, SHADING
 
@@ -69,7 +68,7 @@ def shading_of(flat, faces):
 def some_pixels(frame, colours, flat, faces, kinds):
     """Make a frame's pixels and what shall come of them."""
     items, wanted = [], []
-    for direction, first, line_end, last in directions_of(*frame):
+    for direction, first, line_end, last in line_by_line(frame):
         material = random.randrange(256)
         face = random.choice([axis for axis in range(3) if direction[axis]] + [FACE_NONE])
         brightness, sums, part = given(random.choice(kinds))

@@ -1,11 +1,8 @@
 """voxrt_strip_generator: directions in the order of strips, for frames of all shapes, taken at any pace."""
 
-import random
-
 import cocotb
-from cocotb.triggers import ClockCycles, with_timeout
-from raster import begin, direction_at, some_frame
-from streams import PACES, drive, reset, start, take
+from raster import check_frame, check_reset, direction_at, some_frame
+from streams import PACES, start
 from strip_order import in_strips
 
 LANES = 1
@@ -28,12 +25,7 @@ async def directions(dut, taking):
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(40):
         frame = some_frame(highest=40)
-        drive(dut, ready_i=0)
-        await begin(dut, frame)
-        wanted = expected(frame)
-        assert await with_timeout(take(dut, len(wanted), taking, lambda: seen(dut)), 1, "ms") == wanted
-        await ClockCycles(dut.clk_i, 3)
-        assert not int(dut.valid_o.value)
+        await check_frame(dut, frame, expected(frame), taking, lambda: seen(dut))
 
 
 @cocotb.test()
@@ -42,9 +34,7 @@ async def wide_frames(dut, width):
     """Two strips and a line, of fewer lines where the picture is wide."""
     await start(dut, raster_i=0, ready_i=0)
     frame = *some_frame()[:3], width, 9
-    await begin(dut, frame)
-    wanted = expected(frame)
-    assert await with_timeout(take(dut, len(wanted), "always", lambda: seen(dut)), 1, "ms") == wanted
+    await check_frame(dut, frame, expected(frame), "always", lambda: seen(dut))
 
 
 @cocotb.test()
@@ -53,14 +43,4 @@ async def reset_at_any_clock(dut):
     await start(dut, raster_i=0, ready_i=0)
     for _ in range(20):
         frame = some_frame(highest=20)
-        drive(dut, ready_i=0)
-        await begin(dut, frame)
-        taker = cocotb.start_soon(take(dut, frame[3] * frame[4], "random", lambda: seen(dut)))
-        await ClockCycles(dut.clk_i, random.randrange(1, 40))
-        if not taker.done():
-            taker.cancel()
-        await reset(dut)
-        assert not int(dut.valid_o.value)
-        drive(dut, ready_i=0)
-        await begin(dut, frame)
-        assert await take(dut, frame[3] * frame[4], "random", lambda: seen(dut)) == expected(frame)
+        await check_reset(dut, frame, expected(frame), lambda: seen(dut))

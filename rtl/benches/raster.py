@@ -2,8 +2,9 @@
 
 import random
 
-from cocotb.triggers import ClockCycles, RisingEdge
-from streams import drive
+import cocotb
+from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
+from streams import drive, reset, take
 from structs import RASTER
 
 
@@ -33,3 +34,40 @@ def direction_at(frame, line, column):
     """Give the direction of a pixel."""
     corner, right, down, _, _ = frame
     return tuple(c + column * r + line * s for c, r, s in zip(corner, right, down, strict=True))
+
+
+def line_by_line(frame):
+    """Give a frame's directions in raster order, each with whether it is the first, its line's last, the last."""
+    width, height = frame[3:]
+    return [
+        (
+            direction_at(frame, line, column),
+            line == column == 0,
+            column == width - 1,
+            (line, column) == (height - 1, width - 1),
+        )
+        for line in range(height)
+        for column in range(width)
+    ]
+
+
+async def check_frame(dut, frame, wanted, taking, get):
+    """Trace a frame: `get` reads what comes, which is `wanted` and no more."""
+    drive(dut, ready_i=0)
+    await begin(dut, frame)
+    assert await with_timeout(take(dut, len(wanted), taking, get), 1, "ms") == wanted
+    await ClockCycles(dut.clk_i, 3)
+    assert not int(dut.valid_o.value)
+
+
+async def check_reset(dut, frame, wanted, get):
+    """Reset at a random clock of a frame; the same frame is whole afterwards."""
+    drive(dut, ready_i=0)
+    await begin(dut, frame)
+    taker = cocotb.start_soon(take(dut, len(wanted), "random", get))
+    await ClockCycles(dut.clk_i, random.randrange(1, 40))
+    if not taker.done():
+        taker.cancel()
+    await reset(dut)
+    assert not int(dut.valid_o.value)
+    await check_frame(dut, frame, wanted, "random", get)
