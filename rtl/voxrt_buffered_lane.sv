@@ -9,6 +9,7 @@ module voxrt_buffered_lane
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
   parameter int unsigned MemoryClocks = 2,
+  parameter int unsigned RowBits      = 5,     // 5 or, as with Light, 6: 2**RowBits rays, in slots and waiting.
   parameter int unsigned RayDepth     = 16,    // Rays that wait, of the camera and shadow rays each.
   parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before.
   parameter bit          Light        = 1'b0,
@@ -51,7 +52,6 @@ module voxrt_buffered_lane
 );
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
-  localparam int unsigned RowBits = row_bits(Light);
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
 
   // A ray in the queue, no wider than this configuration needs.
@@ -219,6 +219,7 @@ module voxrt_buffered_lane
     .PositionBits(PositionBits),
     .BlockBits   (BlockBits),
     .MemoryClocks(MemoryClocks),
+    .RowBits     (RowBits),
     .Light       (Light),
     .Mirrors     (Mirrors),
     .Lod         (Lod)

@@ -9,6 +9,7 @@ module voxrt_cell_times
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned Slots        = 11,
+  parameter int unsigned RowBits      = 5,
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -24,7 +25,7 @@ module voxrt_cell_times
   input  logic                  [2:0]                            mirrored1_i,
   input  logic                  [2:0]                            dead1_i,
   input  logic                                                   shadow1_i,
-  input  logic                  [row_bits(Light)-1:0]            row2_i,
+  input  logic                  [RowBits-1:0]                    row2_i,
   input  logic                  [MaxDepth-1:0]                   size2_i,
   input  logic                                                   shadow2_i,
   input  logic                                                   takes_far2_i,
@@ -42,7 +43,6 @@ module voxrt_cell_times
   output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o [3],
   output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
-  localparam int unsigned RowBits = row_bits(Light);
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;

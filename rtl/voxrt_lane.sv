@@ -36,6 +36,7 @@ module voxrt_lane
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
   parameter int unsigned MemoryClocks = 2,
+  parameter int unsigned RowBits      = 5,  // 5 or, as with Light, 6: 2**RowBits rays, in slots and waiting.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter bit          Lod          = 1'b0
@@ -56,7 +57,7 @@ module voxrt_lane
   input  logic                                            ray_valid_i,
   output logic                                            ray_ready_o,
   input  ray_t                                            ray_i,
-  input  logic            [row_bits(Light)-1:0]           ray_row_i,
+  input  logic            [RowBits-1:0]                   ray_row_i,
   // Octree memory: the word comes MemoryClocks clocks after its address, or not.
   output logic                                            mem_read_o,
   output logic            [BlockBits+2:0]                 mem_address_o,      // {block, octant}
@@ -79,7 +80,6 @@ module voxrt_lane
 );
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
-  localparam int unsigned RowBits = row_bits(Light);
 
   // Stages as the table numbers them, and those in which a slower memory keeps rays waiting.
   localparam int unsigned Stages = 12;
@@ -197,6 +197,7 @@ module voxrt_lane
     .MaxDepth    (MaxDepth),
     .PositionBits(PositionBits),
     .Slots       (Slots),
+    .RowBits     (RowBits),
     .Light       (Light),
     .Mirrors     (Mirrors)
   ) u_times (

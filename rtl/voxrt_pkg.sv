@@ -103,17 +103,12 @@ package voxrt_pkg;
     return set_bits < 3 ? 2 ** set_bits : 8;
   endfunction
 
-  // Bits of the number of a row of weights: each ray of a lane has a row, in its slot or in the queue.
-  function automatic int row_bits(bit light);
-    return light ? 6 : 5;
-  endfunction
-
   // Widths of the structs below.
   localparam int unsigned DistanceLimit = distance_bits(DepthLimit, PositionLimit);
   localparam int unsigned KeyLimit = key_bits(DepthLimit, 1'b1);
   localparam int unsigned PointLimit = DepthLimit + FractionBits;
   localparam int unsigned ShadowPointLimit = DepthLimit + ShadowFractionBits + 2;
-  localparam int unsigned RowLimit = row_bits(1'b1);
+  localparam int unsigned RowLimit = 6;  // Bits of the number of a row of weights.
   localparam int unsigned ReachLimit = DistanceLimit - FractionBits;
 
   typedef logic [7:0] material_t;

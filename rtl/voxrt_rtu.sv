@@ -61,7 +61,10 @@ module voxrt_rtu
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);
   // Rays that are neighbours find lines in the caches. A pixel's detail is too wide for a buffer of strips.
   localparam bit Strips = MemoryForm == CachedForm && !Light && !Mirrors;
-  localparam int unsigned RayDepth = Light ? 16 : 32;  // 32 rows of memory, in one queue or in two.
+  // Each ray of a lane has a row of weights. Light has two queues of rays. Behind caches, queues are longer: lanes get rays
+  // in turn, and a lane whose rays wait for lines must not keep the next rays from the other lanes.
+  localparam int unsigned RowBits = Light || MemoryForm == CachedForm ? 6 : 5;
+  localparam int unsigned RayDepth = Light ? 16 : 2 ** RowBits;
 
   // Frame.
   logic   start, busy_q, root_valid;  // root_valid: for one clock, when the root is there.
@@ -288,6 +291,7 @@ module voxrt_rtu
       .PositionBits(PositionBits),
       .BlockBits   (BlockBits),
       .MemoryClocks(memory_clocks(MemoryForm)),
+      .RowBits     (RowBits),
       .RayDepth    (RayDepth),
       .CreditClocks(CreditClocks),
       .Light       (Light),

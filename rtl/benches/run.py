@@ -109,8 +109,12 @@ BUILDS = {
     "hit_point-deep": Build("voxrt_hit_point", {"MaxDepth": 16}, ("bench_hit_point",)),
     "light": Build("voxrt_light", {"Lanes": 3, "MaxDepth": 6}, ("bench_light",)),
     "lane": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8}, ("bench_lane",)),
-    "lane-light": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "Light": 1}, ("bench_lane",)),
-    "lane-lit": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Light": 1, "Mirrors": 1}, ("bench_lane",)),
+    "lane-light": Build(
+        "voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "MemoryClocks": 5, "RowBits": 6, "Light": 1}, ("bench_lane",)
+    ),
+    "lane-lit": Build(
+        "voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "RowBits": 6, "Light": 1, "Mirrors": 1}, ("bench_lane",)
+    ),
     "lane-mirrors": Build("voxrt_lane", {"MaxDepth": 6, "BlockBits": 8, "Mirrors": 1}, ("bench_lane",)),
     "private_memory": Build(
         "voxrt_on_chip_memory", {"Lanes": 3, "BlockBits": 6, "Banked": 0}, ("bench_on_chip_memory",)
