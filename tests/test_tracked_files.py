@@ -29,8 +29,8 @@ FOLDERS = {
     "web",
 }
 
-LARGEST = 1100 << 10
-"""Bytes. The largest file is a placed design of a board, 1.09 MB; a build's result is seldom as small."""
+LARGEST = 1 << 20
+"""Bytes. The largest file is a placed design of a board, 0.86 MB; a build's result is seldom as small."""
 
 
 @pytest.fixture(scope="module")

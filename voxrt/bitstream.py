@@ -5,8 +5,8 @@ Nothing is placed or routed for a scene, unless the design itself is to be built
 
 from __future__ import annotations
 
+import bz2
 import json
-import lzma
 import os
 import shutil
 import subprocess
@@ -124,10 +124,10 @@ def read_board(name: str) -> PlacedBoard:
         voxrt brings no placed design for this board.
     """
     folder = design_build.DESIGNS / name
-    if not (folder / "base.json").is_file() or not (folder / "base.config.xz").is_file():
+    if not (folder / "base.json").is_file() or not (folder / "base.config.bz2").is_file():
         raise ToolError(f"voxrt brings no placed design for {name}: build it with --rebuild")
     design = msgspec.json.decode((folder / "base.json").read_bytes(), type=BaseDesign)
-    return _placed(name, design, lzma.decompress((folder / "base.config.xz").read_bytes()).decode())
+    return _placed(name, design, bz2.decompress((folder / "base.config.bz2").read_bytes()).decode())
 
 
 def rebuild_board(name: str, folder: Path, seed: int | None = None) -> PlacedBoard:

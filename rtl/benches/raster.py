@@ -52,7 +52,7 @@ def line_by_line(frame):
 
 
 async def check_frame(dut, frame, wanted, taking, get):
-    """Trace a frame: `get` reads what comes, which is `wanted` and no more."""
+    """Start a frame and take what comes, by `get`: it is `wanted`, and no more comes."""
     drive(dut, ready_i=0)
     await begin(dut, frame)
     assert await with_timeout(take(dut, len(wanted), taking, get), 1, "ms") == wanted
@@ -61,7 +61,7 @@ async def check_frame(dut, frame, wanted, taking, get):
 
 
 async def check_reset(dut, frame, wanted, get):
-    """Reset at a random clock of a frame; the same frame is whole afterwards."""
+    """Reset at a random clock of a frame. Then the same frame is right from its start."""
     drive(dut, ready_i=0)
     await begin(dut, frame)
     taker = cocotb.start_soon(take(dut, len(wanted), "random", get))
