@@ -62,7 +62,7 @@ def test_a_memory_that_is_too_large_for_the_bitstream_can_be_uploaded(tmp_path):
     file = tmp_path / "planet.mem"
     with pytest.raises(package.DoesNotFitError) as refusal:
         read_memory(file, None, board)
-    assert "66,881 words and 8 levels, and ulx3s-85f-sdram starts from 32,769 words and 12 levels; " in str(
+    assert "66,881 words and 8 levels, and a bitstream of ulx3s-85f-sdram holds 32,769 words and 12 levels; " in str(
         refusal.value
     )
     assert str(refusal.value).endswith(f"write it into the running board: voxrt upload {file} --to serial:PORT")

@@ -134,12 +134,12 @@ def read_memory(source: Path, depth: int | None, placed: PlacedBoard) -> tuple[B
             n for n in range(min(tree.depth, most), 0, -1) if len(coarsen(tree, tree.depth - n).words) <= capacity
         )
         remedy = f"build it with --depth {fits}, or give the asset"
-        verb = "holds"
+        holder = placed.name
         if placed.design.frame_buffer and tree.depth <= most:
-            verb = "starts from"
+            holder = f"a bitstream of {placed.name}"
             remedy = f"write it into the running board: voxrt upload {source} --to serial:PORT"
         raise voxrt.DoesNotFitError(
-            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {placed.name} {verb} {capacity:,} words "
+            f"{source}: {len(tree.words):,} words and {tree.depth} levels, and {holder} holds {capacity:,} words "
             f"and {most} levels; {remedy}"
         )
     return blob, None
