@@ -1,10 +1,10 @@
 """Benchmark of the level of detail: how close its pictures are to supersampled ones, and what far views cost.
 
-Usage: ``python bench/lod.py [--only pictures|cost | --write]``. Assets come from the folder ``VOXRT_ASSETS``.
-Pictures, 320x240 from the default camera at depth 10, are compared with pictures of 16 samples per pixel without level
-of detail. The cost, 640x480, is that of the verilated core with a memory of latency 50 and interval 3; every pixel is
-compared with the exact model. Rays stop at cells of several widths. ``--write`` puts the tables into
-``bench/results/lod.md``.
+Usage: ``python bench/lod.py [--only pictures|cost] [--write]``. Assets come from the folder ``VOXRT_ASSETS``.
+Pictures, 320x240 at depth 10, are compared with pictures of 16 samples per pixel without level of detail: from the
+default camera, and from cameras farther away. The cost, 640x480, is that of the verilated core with a memory of latency
+50 and interval 3; every pixel is compared with the exact model. Rays stop at cells of several widths. ``--write`` puts
+the tables into ``bench/results/lod.md``; those that were not asked for stay.
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 import voxrt
 from voxrt.octree import with_means
@@ -21,9 +23,14 @@ from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cached import ASSETS, GARDEN, GARGO, ROOT, SKULL, TRUCK, rom_of
 
+if TYPE_CHECKING:
+    from voxrt import Camera, Rom
+
 RESULTS = ROOT / "bench" / "results" / "lod.md"
 SIZE, FAR_SIZE, DEPTH = (640, 480), (320, 240), 10
 PICTURE_CELLS = (0.5, 0.75, 1.0)
+DISTANCES = {1: "the default camera", 2: "twice as far", 4: "four times as far"}
+"""Where pictures are taken from: times the distance of the default camera."""
 COST_CELLS = (0.0, 0.5, 1.0, 1.5, 2.0)
 """Widths of the widest cell that rays stop at, in pixels."""
 PICTURES = {
@@ -55,24 +62,35 @@ class Table(NamedTuple):
         return f"## {self.title}\n\n" + "\n".join(lines) + "\n"
 
 
-def pictures() -> Table:
+def camera_from(rom: Rom, times: int) -> Camera:
+    """Give the default camera, moved back along its look: so many times as far from the middle of the world."""
+    camera = voxrt.aim_camera(rom, FAR_SIZE)
+    position, look = np.array(camera.position), np.array(camera.look)
+    middle = 16 * (1 << DEPTH) / 2
+    moved = position - (times - 1) * np.linalg.norm(position - middle) * look / np.linalg.norm(look)
+    place = tuple(int(x) for x in np.rint(moved))
+    return voxrt.aim_camera(rom, FAR_SIZE, position=place, look=camera.look)
+
+
+def pictures(times: int) -> Table:
     """Compare pictures with and without level of detail with those of 16 samples."""
     heads = ["asset", "off: SSIM, dB", *(f"{cell:g}: SSIM, dB" for cell in PICTURE_CELLS)]
     rows = [tuple(heads)]
     better = dict.fromkeys(PICTURE_CELLS, 0)
     for name, asset in PICTURES.items():
         rom = with_means(rom_of(name, asset, DEPTH))
-        wanted = voxrt.render(rom, size=FAR_SIZE, engine="model", samples=4).colour
+        camera = camera_from(rom, times)
+        wanted = voxrt.render(rom, camera, size=FAR_SIZE, engine="model", samples=4).colour
         found = []
         for cell in (0.0, *PICTURE_CELLS):
-            shown = voxrt.render(rom, size=FAR_SIZE, engine="model", lod=cell).colour
+            shown = voxrt.render(rom, camera, size=FAR_SIZE, engine="model", lod=cell).colour
             found.append((structural_similarity(wanted, shown), peak_signal_to_noise(wanted, shown)))
             if cell:
                 better[cell] += found[-1][0] > found[0][0] and found[-1][1] > found[0][1]
         rows.append((name, *(f"{likeness:.4f}, {noise:.2f}" for likeness, noise in found)))
         print(*rows[-1], flush=True)
     rows.append(("both better", "", *map(str, better.values())))
-    return Table(f"Pictures of {FAR_SIZE[0]}x{FAR_SIZE[1]}, depth {DEPTH}, against 16 samples per pixel", rows)
+    return Table(f"Pictures from {DISTANCES[times]}", rows)
 
 
 def costs(config: str) -> Table:
@@ -102,6 +120,12 @@ def costs(config: str) -> Table:
     return Table(f"Far views of {SIZE[0]}x{SIZE[1]}, {config}, latency 50, interval 3", rows)
 
 
+def written() -> dict[str, str]:
+    """Give the texts of the tables in the written file, by title."""
+    parts = RESULTS.read_text(encoding="utf-8").split("## ")[1:] if RESULTS.exists() else []
+    return {part.split("\n")[0]: f"## {part.rstrip()}\n" for part in parts}
+
+
 def main() -> None:
     """Run it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -109,18 +133,22 @@ def main() -> None:
     parser.add_argument("--config", default="cached16")
     parser.add_argument("--write", action="store_true")
     asked = parser.parse_args()
-    if asked.only and asked.write:
-        parser.error("--write puts both tables into the file: leave --only out")
     if not ASSETS.is_dir():
         sys.exit(f"there is no folder of assets at {ASSETS}; name one by VOXRT_ASSETS")
     tables = []
     if asked.only != "cost":
-        tables.append(pictures())
+        tables += [pictures(times) for times in DISTANCES]
     if asked.only != "pictures":
         tables.append(costs(asked.config))
+    found = {table.title: table.text() for table in tables}
+    if asked.write:
+        others = {title: text for title, text in written().items() if title not in found}
+        found = found | others if asked.only == "pictures" else others | found
     text = "# Level of detail\n\n`python bench/lod.py --write`. "
-    text += "A number is the width in pixels of the widest cell that rays stop at.\n\n"
-    text += "\n".join(table.text() for table in tables)
+    text += "A number is the width in pixels of the widest cell that rays stop at.\n"
+    text += f"Pictures have {FAR_SIZE[0]}x{FAR_SIZE[1]} pixels and depth {DEPTH}. "
+    text += "They are compared with pictures of 16 samples per pixel.\n\n"
+    text += "\n".join(found.values())
     print(text)
     if asked.write:
         RESULTS.write_text(text, encoding="utf-8")
