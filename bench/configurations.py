@@ -18,7 +18,7 @@ RESULTS = ROOT / "bench" / "results"
 SCRIPTS = ("bench/rtl.py", "rtl/area.py", "rtl/clock.py")
 # The size at which cycles per pixel are taken. Frames per second would need the clock of each configuration.
 SIZE = "640x480"
-SCENES = {"published house, depth 10": "house", "Menger sponge, 128 a side": "sponge"}
+SCENES = {"published house, depth 10": "house", "Menger sponge, 128 per side": "sponge"}
 # Reference: fpga-voxel-integer-ray-tracer-report.txt, tables 8 and 10, and its RTL simulated at 256x256 pixels.
 ORIGINAL = (
     "| the original, 1 core | | 1 | 3,473 | | 1,242 | 42 | 0 | 338 | |",
@@ -42,13 +42,8 @@ def table(name: str) -> list[dict[str, str]]:
     return rows
 
 
-def main() -> None:
-    """Measure, join and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--keep", action="store_true", help="measure nothing anew")
-    if not parser.parse_args().keep:
-        for script in SCRIPTS:
-            subprocess.run([sys.executable, ROOT / script, "--write"], check=True)
+def joined() -> str:
+    """Give the table that joins cycles and area, as `configurations.md` has it."""
     cycles = {
         (row["configuration"], row["frame"], row["scene"]): float(row["cycles per pixel"])
         for row in table("rtl.md")
@@ -72,7 +67,17 @@ def main() -> None:
             cells += [f"{each:.2f}" for each in counted]
             lines.append(f"| {' | '.join(cells)} |")
     lines += [row + " |" * (len(heads) + 1 - row.count("|")) for row in ORIGINAL]
-    text = "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Measure, join and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--keep", action="store_true", help="measure nothing anew")
+    if not parser.parse_args().keep:
+        for script in SCRIPTS:
+            subprocess.run([sys.executable, ROOT / script, "--write"], check=True)
+    text = joined()
     print(text, end="")
     (RESULTS / "configurations.md").write_text(text)
 

@@ -97,5 +97,5 @@ def scenes(memories: Path, size: tuple[int, int]) -> list[Scene]:
     for name, make in (("terrain", terrain), ("sphere and boxes", sphere_and_boxes), ("Menger sponge", menger)):
         words = from_dense(make(7)).words
         light = np.array([32, 192, 16], np.int32) * 16
-        found.append(Scene(f"{name}, 128 a side", words, 7, corner_camera(7, size), light))
+        found.append(Scene(f"{name}, 128 per side", words, 7, corner_camera(7, size), light))
     return found

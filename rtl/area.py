@@ -125,6 +125,9 @@ class Area:
 VIDEO = Area(luts=12446, memory_luts=None, paired_luts=12446, flops=22097, dsps=18, rams=15)
 WITH_VIDEO = "z1"
 AND_VIDEO = "and the report's video part"
+# What the caches of a configuration cost is told beside a core of the same width that has none.
+WITH_CACHES = "cached16"
+WITHOUT_CACHES = f"z1 as deep and wide as {WITH_CACHES}, with lod"
 HEAD = """\
 Estimates of yosys `synth_xilinx` for xc7, before place and route. LUT: all, each function counted as one; of
 these memory: distributed memories; LUT, paired: after functions that share inputs are paired (rtl/area.py).
@@ -163,7 +166,8 @@ def row(name: str, parameters: dict[str, int], area: Area) -> str:
 
 def table(rows: dict[str, str]) -> str:
     """Give the table of these rows, in the order of the configurations."""
-    names = [name for each in read_configurations() for name in (each, f"{each} {AND_VIDEO}")] + [LANE_ROW]
+    names = [name for each in read_configurations() for name in (each, f"{each} {AND_VIDEO}")]
+    names += [WITHOUT_CACHES, LANE_ROW]
     return HEAD + "".join(rows[name] + "\n" for name in names if name in rows)
 
 
@@ -191,6 +195,9 @@ def main() -> None:
             both = f"{name} {AND_VIDEO}"
             rows[both] = row(both, parameters, found + VIDEO)
             rows[LANE_ROW] = row(LANE_ROW, LANE, area(netlist(LANE, "voxrt_lane")))
+        if name == WITH_CACHES:
+            on_chip = {each: parameters[each] for each in ("Lanes", "MaxDepth", "PositionBits", "Lod")}
+            rows[WITHOUT_CACHES] = row(WITHOUT_CACHES, Z1 | on_chip, area(netlist(on_chip)))
     print(table(rows), end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
