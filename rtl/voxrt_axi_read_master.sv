@@ -6,8 +6,8 @@
 module voxrt_axi_read_master
   import voxrt_pkg::*;
 #(
-  parameter int unsigned UnderWay    = 8,   // A power of two.
-  parameter int unsigned TimeoutBits = 16
+  parameter int unsigned UnderWay    = 8,  // Bursts: a power of two, 2 .. 256.
+  parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,           // The bus's reset.
@@ -26,6 +26,13 @@ module voxrt_axi_read_master
   output axi_read_request_t  axi_o,
   input  axi_read_response_t axi_i
 );
+  if (UnderWay < 2 || UnderWay > 256 || 2 ** $clog2(UnderWay) != UnderWay) begin : gen_bad_under_way
+    $error("voxrt_axi_read_master: UnderWay must be a power of two, 2 to 256");
+  end
+  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
+    $error("voxrt_axi_read_master: TimeoutBits must be 1 to 32 bits");
+  end
+
   localparam int unsigned CountBits = $clog2(UnderWay) + 1;
   localparam logic [CountBits-1:0] One = CountBits'(1);
 

@@ -3,9 +3,9 @@
 // Where port B reads a row while port A writes it, the word read is undefined: the lanes work with any word, and what
 // is read later is right. (A simulation reads the old word.)
 module voxrt_block_ram #(
-  parameter int unsigned Width = 18,
-  parameter int unsigned Depth = 1024,
-  parameter string       File  = ""  // What it holds from the beginning, for $readmemh.
+  parameter int unsigned Width = 18,    // Bits: 1 or more.
+  parameter int unsigned Depth = 1024,  // Rows: 2 or more.
+  parameter string       File  = ""     // What it holds from the beginning, for $readmemh.
 ) (
   input  logic                     clk_i,
   input  logic                     a_read_i,
@@ -17,6 +17,13 @@ module voxrt_block_ram #(
   input  logic [$clog2(Depth)-1:0] b_row_i,
   output logic [        Width-1:0] b_data_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_block_ram: Width must be 1 bit or more");
+  end
+  if (Depth < 2) begin : gen_bad_depth
+    $error("voxrt_block_ram: Depth must be 2 rows or more");
+  end
+
   // Without no_rw_check, yosys would build the memory twice. Public, so that a simulation can fill it at once.
   (* no_rw_check *)
   logic [Width-1:0] data_q[Depth]  /* verilator public_flat_rw */;

@@ -8,10 +8,10 @@ module voxrt_buffered_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,
-  parameter int unsigned RowBits      = 5,     // 5 or, as with Light, 6: 2**RowBits rays, in slots and waiting.
-  parameter int unsigned RayDepth     = 16,    // Rays that wait, of the camera and shadow rays each.
-  parameter int unsigned CreditClocks = 1,     // credit_o does not count what was issued so many clocks before.
+  parameter int unsigned MemoryClocks = 2,   // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned RowBits      = 5,   // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
+  parameter int unsigned RayDepth     = 16,  // Waiting rays, of each kind: a power of two, 2 .. 2**RowBits.
+  parameter int unsigned CreditClocks = 1,   // credit_o does not count what was issued so many clocks before: 1 .. 3.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter bit          Lod          = 1'b0
@@ -50,6 +50,19 @@ module voxrt_buffered_lane
   output logic                                           bad_pointer_o,
   output logic                                           step_limit_o
 );
+  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
+    $error("voxrt_buffered_lane: MemoryClocks must be 2 to 5 clocks");
+  end
+  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
+    $error("voxrt_buffered_lane: RowBits must be 5 or 6 bits");
+  end
+  if (RayDepth < 2 || RayDepth > 2 ** RowBits || 2 ** $clog2(RayDepth) != RayDepth) begin : gen_bad_ray_depth
+    $error("voxrt_buffered_lane: RayDepth must be a power of two, 2 to 2**RowBits");
+  end
+  if (CreditClocks < 1 || CreditClocks > 3) begin : gen_bad_credit_clocks
+    $error("voxrt_buffered_lane: CreditClocks must be 1 to 3 clocks");
+  end
+
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned Width = pixel_bits(MaxDepth, Light, Mirrors);

@@ -13,10 +13,10 @@ module voxrt_cached_memory
 #(
   parameter int unsigned Lanes       = 1,
   parameter int unsigned BlockBits   = 12,
-  parameter int unsigned L1SetBits   = 5,   // Sets of four lines.
+  parameter int unsigned L1SetBits   = 5,  // Sets of four lines.
   parameter int unsigned L2SetBits   = 9,
   parameter bit          Lod         = 1'b0,
-  parameter int unsigned TimeoutBits = 16
+  parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -37,6 +37,10 @@ module voxrt_cached_memory
   input  axi_read_response_t               axi_i            [BusPorts],
   output memory_events_t                   events_o
 );
+  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
+    $error("voxrt_cached_memory: TimeoutBits must be 1 to 32 bits");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
 
   // Frames.

@@ -8,8 +8,8 @@ module voxrt_cell_times
 #(
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
-  parameter int unsigned Slots        = 11,
-  parameter int unsigned RowBits      = 5,
+  parameter int unsigned Slots        = 12,  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
+  parameter int unsigned RowBits      = 5,   // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0
 ) (
@@ -43,6 +43,13 @@ module voxrt_cell_times
   output logic signed [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] near2_o [3],
   output logic [distance_bits(MaxDepth, PositionBits)-FractionBits-1:0] reach3_o
 );
+  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
+    $error("voxrt_cell_times: Slots must be 12 to 15");
+  end
+  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
+    $error("voxrt_cell_times: RowBits must be 5 or 6 bits");
+  end
+
   localparam int unsigned OriginBits = distance_bits(MaxDepth, PositionBits);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
   localparam int unsigned DistanceBits = Mirrors ? reflected_distance_bits(MaxDepth, PositionBits) : OriginBits;

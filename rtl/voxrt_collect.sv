@@ -1,7 +1,7 @@
 // Three results of a unit that is used three times per beat, side by side. The unit gets the values of turns 0, 1 and 2;
 // results come Clocks clocks later, and are there Beats beats later, during the whole beat.
 module voxrt_collect #(
-  parameter int unsigned Width  = 8,
+  parameter int unsigned Width  = 8,  // Bits: 1 or more.
   parameter int unsigned Clocks = 2,  // Of the unit, from its values to their result: 2 or 3.
   parameter int unsigned Beats  = 2   // From values to results_o: 2 or more.
 ) (
@@ -11,6 +11,16 @@ module voxrt_collect #(
   input  logic [Width-1:0] result_i,
   output logic [Width-1:0] results_o[3]
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_collect: Width must be 1 bit or more");
+  end
+  if (Clocks < 2 || Clocks > 3) begin : gen_bad_clocks
+    $error("voxrt_collect: Clocks must be 2 or 3 clocks");
+  end
+  if (Beats < 2) begin : gen_bad_beats
+    $error("voxrt_collect: Beats must be 2 beats or more");
+  end
+
   localparam logic [1:0] FirstTurn = 2'(Clocks);
   localparam logic [1:0] SecondTurn = 2'(Clocks + 1);
   localparam logic [1:0] LastTurn = 2'(Clocks + 2);

@@ -4,8 +4,8 @@
 // Non-restoring: a stage adds the divisor to the remainder when that is negative, and subtracts it otherwise, in one
 // adder. The bit is 1 where the result is not negative.
 module voxrt_divide #(
-  parameter int unsigned DivisorBits  = 8,
-  parameter int unsigned QuotientBits = 8
+  parameter int unsigned DivisorBits  = 8,  // 1 or more.
+  parameter int unsigned QuotientBits = 8   // 2 or more.
 ) (
   input  logic                                clk_i,
   input  logic [            QuotientBits-1:0] valid_i,     // Of each stage: registers hold where it is low.
@@ -13,6 +13,13 @@ module voxrt_divide #(
   input  logic [             DivisorBits-1:0] divisor_i,
   output logic [            QuotientBits-1:0] quotient_o   // QuotientBits clocks later.
 );
+  if (DivisorBits < 1) begin : gen_bad_divisor_bits
+    $error("voxrt_divide: DivisorBits must be 1 bit or more");
+  end
+  if (QuotientBits < 2) begin : gen_bad_quotient_bits
+    $error("voxrt_divide: QuotientBits must be 2 bits or more");
+  end
+
   // Before stage s: the remainder (highest bit: negative), then the dividend's bits to come and the quotient's so far.
   logic [DivisorBits:0]    remainder[QuotientBits+1];
   logic [QuotientBits-1:0] bits   [QuotientBits+1];

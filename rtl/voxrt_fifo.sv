@@ -1,7 +1,7 @@
 // First in, first out, of any depth that is a power of two. Data in distributed memory, read combinationally.
 module voxrt_fifo #(
-  parameter int unsigned Width = 8,
-  parameter int unsigned Depth = 16
+  parameter int unsigned Width = 8,  // Bits: 1 or more.
+  parameter int unsigned Depth = 16  // Words: a power of two, 2 or more.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -12,6 +12,13 @@ module voxrt_fifo #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_fifo: Width must be 1 bit or more");
+  end
+  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
+    $error("voxrt_fifo: Depth must be a power of two, 2 or more");
+  end
+
   localparam int unsigned IndexBits = $clog2(Depth);
 
   logic [Width-1:0]   data_q[Depth];

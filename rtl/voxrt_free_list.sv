@@ -3,7 +3,7 @@
 // Nobody allocates more rows than there are: the list of freed rows is as long as the memory, and is not read before
 // each row has been allocated once.
 module voxrt_free_list #(
-  parameter int unsigned RowBits = 5
+  parameter int unsigned RowBits = 5  // 2**RowBits rows: 1 or more.
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,
@@ -12,6 +12,10 @@ module voxrt_free_list #(
   input  logic               free_i,
   input  logic [RowBits-1:0] row_i
 );
+  if (RowBits < 1) begin : gen_bad_row_bits
+    $error("voxrt_free_list: RowBits must be 1 bit or more");
+  end
+
   logic [RowBits-1:0] freed_q[2 ** RowBits];
   logic [RowBits-1:0] allocate_q, free_q;
   logic               all_allocated_once_q;

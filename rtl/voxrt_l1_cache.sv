@@ -18,8 +18,9 @@ module voxrt_l1_cache
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits  = 12,
-  parameter int unsigned SetBits    = 5,                         // 1 or more.
-  parameter int unsigned Ways       = 4,
+  parameter int unsigned SetBits    = 5,  // 2**SetBits sets: 1 or more, less than BlockBits.
+  parameter int unsigned Ways       = 4,  // Lines of a set: 1, 2 or 4.
+  // Until a ray comes round: 2 clocks or more.
   parameter int unsigned TurnClocks = lane_slots(memory_clocks(int'(CachedForm))),
   parameter bit          Lod        = 1'b0
 ) (
@@ -42,6 +43,16 @@ module voxrt_l1_cache
   input  logic                            [1:0] answer_quarter_i,
   input  logic [1:0][payload_bits(BlockBits, Lod):0] answer_pair_i
 );
+  if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
+    $error("voxrt_l1_cache: SetBits must be 1 bit or more, and less than BlockBits");
+  end
+  if (Ways != 1 && Ways != 2 && Ways != 4) begin : gen_bad_ways
+    $error("voxrt_l1_cache: Ways must be 1, 2 or 4");
+  end
+  if (TurnClocks < 2) begin : gen_bad_turn_clocks
+    $error("voxrt_l1_cache: TurnClocks must be 2 clocks or more");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned WordBits = PayloadBits + 1;
   localparam int unsigned LineBits = BlockBits + 1;

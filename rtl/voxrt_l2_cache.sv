@@ -16,9 +16,9 @@ module voxrt_l2_cache
 #(
   parameter int unsigned Lanes     = 16,
   parameter int unsigned BlockBits = 12,
-  parameter int unsigned SetBits   = 9,   // Sets of four lines; less than BlockBits.
+  parameter int unsigned SetBits   = 9,  // 2**SetBits sets of four lines: 1 or more, less than BlockBits.
   parameter bit          Lod       = 1'b0,
-  parameter int unsigned Misses    = 32   // A power of two.
+  parameter int unsigned Misses    = 32  // Lines: a power of two, 2 or more.
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
@@ -39,6 +39,13 @@ module voxrt_l2_cache
   output logic                                  fill_ready_o,
   input  logic [7:0][payload_bits(BlockBits, Lod):0] fill_words_i
 );
+  if (SetBits < 1 || SetBits >= BlockBits) begin : gen_bad_set_bits
+    $error("voxrt_l2_cache: SetBits must be 1 bit or more, and less than BlockBits");
+  end
+  if (Misses < 2 || 2 ** $clog2(Misses) != Misses) begin : gen_bad_misses
+    $error("voxrt_l2_cache: Misses must be a power of two, 2 or more");
+  end
+
   localparam int unsigned Ways = 4;
   localparam int unsigned Pipes = Lanes > 1 ? 2 : 1;
   localparam int unsigned PipeLanes = (Lanes + 1) / 2;

@@ -35,8 +35,8 @@ module voxrt_lane
   parameter int unsigned MaxDepth     = 10,
   parameter int unsigned PositionBits = 17,
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,
-  parameter int unsigned RowBits      = 5,  // 5 or, as with Light, 6: 2**RowBits rays, in slots and waiting.
+  parameter int unsigned MemoryClocks = 2,  // From an address to its word, as memory_clocks has it: 2 .. 5.
+  parameter int unsigned RowBits      = 5,  // 2**RowBits rays, in slots and waiting: 5, or, as with Light, 6.
   parameter bit          Light        = 1'b0,
   parameter bit          Mirrors      = 1'b0,
   parameter bit          Lod          = 1'b0
@@ -78,6 +78,13 @@ module voxrt_lane
   output logic                                            bad_pointer_o,
   output logic                                            step_limit_o
 );
+  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
+    $error("voxrt_lane: MemoryClocks must be 2 to 5 clocks");
+  end
+  if (RowBits < 5 || RowBits > RowLimit) begin : gen_bad_row_bits
+    $error("voxrt_lane: RowBits must be 5 or 6 bits");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned KeyBits = key_bits(MaxDepth, Light);
 

@@ -9,7 +9,7 @@ module voxrt_light
 #(
   parameter int unsigned Lanes      = 1,
   parameter int unsigned MaxDepth   = 10,
-  parameter int unsigned QueueDepth = 16
+  parameter int unsigned QueueDepth = 16  // Shadow rays per lane: a power of two, 2 or more.
 ) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
@@ -28,6 +28,10 @@ module voxrt_light
   output shadow_ray_t                shadow_ray_o,
   output light_planes_t              light_planes_o
 );
+  if (QueueDepth < 2 || 2 ** $clog2(QueueDepth) != QueueDepth) begin : gen_bad_queue_depth
+    $error("voxrt_light: QueueDepth must be a power of two, 2 or more");
+  end
+
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;
   localparam int unsigned HitBits = MaxDepth + FractionBits;
   localparam int unsigned LightBits = light_bits(MaxDepth);

@@ -1,10 +1,10 @@
 // Lines on their way into the caches of a few lanes (voxrt_l1_cache): whole lines come in at any clock, two words per
 // clock go out, in order. A line may go to several of the lanes at once.
 module voxrt_line_queue #(
-  parameter int unsigned Lanes    = 2,
-  parameter int unsigned SetBits  = 5,
-  parameter int unsigned WordBits = 14,
-  parameter int unsigned Depth    = 16   // Lines that the lanes ask for at a time, together; a power of two.
+  parameter int unsigned Lanes    = 2,   // That share the queue: 1 or more.
+  parameter int unsigned SetBits  = 5,   // Of their caches: 1 or more.
+  parameter int unsigned WordBits = 14,  // Of a word, as lanes read it: 1 or more.
+  parameter int unsigned Depth    = 16   // Lines that the lanes ask for at a time, together: a power of two, 2 or more.
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
@@ -16,6 +16,19 @@ module voxrt_line_queue #(
   output logic [         1:0]             quarter_o,
   output logic [         1:0][WordBits-1:0] pair_o      // Words 2 * quarter_o and the next.
 );
+  if (Lanes < 1) begin : gen_bad_lanes
+    $error("voxrt_line_queue: Lanes must be 1 or more");
+  end
+  if (SetBits < 1) begin : gen_bad_set_bits
+    $error("voxrt_line_queue: SetBits must be 1 bit or more");
+  end
+  if (WordBits < 1) begin : gen_bad_word_bits
+    $error("voxrt_line_queue: WordBits must be 1 bit or more");
+  end
+  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
+    $error("voxrt_line_queue: Depth must be a power of two, 2 or more");
+  end
+
   logic                     valid, ready;
   logic [   Lanes-1:0]      lanes;
   logic [7:0][WordBits-1:0] words;

@@ -9,7 +9,7 @@ module voxrt_line_reader
 #(
   parameter int unsigned BlockBits   = 12,
   parameter bit          Lod         = 1'b0,
-  parameter int unsigned TimeoutBits = 16
+  parameter int unsigned TimeoutBits = 16  // The bus must answer within 2**TimeoutBits clocks: 1 .. 32.
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,           // The bus's reset.
@@ -28,6 +28,10 @@ module voxrt_line_reader
   output axi_read_request_t                     axi_o           [BusPorts],
   input  axi_read_response_t                    axi_i           [BusPorts]
 );
+  if (TimeoutBits < 1 || TimeoutBits > 32) begin : gen_bad_timeout_bits
+    $error("voxrt_line_reader: TimeoutBits must be 1 to 32 bits");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned UnderWay = 16;
 

@@ -5,8 +5,8 @@
 module voxrt_lod
   import voxrt_pkg::*;
 #(
-  parameter int unsigned LevelBits = 4,
-  parameter int unsigned WholeBits = 14
+  parameter int unsigned LevelBits = 4,  // 1 or more.
+  parameter int unsigned WholeBits = 14  // Of a distance, voxels, signed: 2 .. ReachLimit.
 ) (
   input  logic                        clk_i,
   // Stage 2: a ray reads a pointer with that mean material; 0: the cell is not to be stopped at.
@@ -20,6 +20,13 @@ module voxrt_lod
   output logic                        stops_o,
   output material_t                   mean_o
 );
+  if (LevelBits < 1) begin : gen_bad_level_bits
+    $error("voxrt_lod: LevelBits must be 1 bit or more");
+  end
+  if (WholeBits < 2 || WholeBits > ReachLimit) begin : gen_bad_whole_bits
+    $error("voxrt_lod: WholeBits must be 2 to ReachLimit bits");
+  end
+
   // 2: the farthest near plane. The cell of the origin has none ahead: its distance counts as 0.
   logic signed [WholeBits-1:0] farther, farthest;
   logic        [WholeBits-2:0] distance3_q;

@@ -1,7 +1,7 @@
 // Pixels of all lanes in pixel order: lane i has the pixels i mod Lanes.
 module voxrt_merge #(
   parameter int unsigned Lanes = 1,
-  parameter int unsigned Width = 8
+  parameter int unsigned Width = 8  // Bits: 1 or more.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -13,6 +13,10 @@ module voxrt_merge #(
   input  logic             ready_i,
   output logic [Width-1:0] pixel_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_merge: Width must be 1 bit or more");
+  end
+
   logic [Lanes-1:0] next_lane_q;  // One-hot.
   logic             valid;
   logic [Width-1:0] pixel;

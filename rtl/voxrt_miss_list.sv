@@ -8,10 +8,10 @@
 // Who waits is in memories: a lane waits for an entry when its bits in joined_q and answered_q differ. The first is
 // written by misses, the second when the entry ends. Both are cleared after a reset; until then nothing is accepted.
 module voxrt_miss_list #(
-  parameter int unsigned Pipes     = 2,
-  parameter int unsigned PipeLanes = 8,
-  parameter int unsigned LineBits  = 13,
-  parameter int unsigned Entries   = 16   // A power of two.
+  parameter int unsigned Pipes     = 2,   // 1 or 2.
+  parameter int unsigned PipeLanes = 8,   // Lanes per pipe: 1 or more.
+  parameter int unsigned LineBits  = 13,  // Of a line's number: 1 or more.
+  parameter int unsigned Entries   = 16   // Lines: a power of two, 2 or more.
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
@@ -35,6 +35,19 @@ module voxrt_miss_list #(
   input  logic                 free_i,
   output logic [PipeLanes-1:0] free_lanes_o [Pipes]
 );
+  if (Pipes < 1 || Pipes > 2) begin : gen_bad_pipes
+    $error("voxrt_miss_list: Pipes must be 1 or 2");
+  end
+  if (PipeLanes < 1) begin : gen_bad_pipe_lanes
+    $error("voxrt_miss_list: PipeLanes must be 1 or more");
+  end
+  if (LineBits < 1) begin : gen_bad_line_bits
+    $error("voxrt_miss_list: LineBits must be 1 bit or more");
+  end
+  if (Entries < 2 || 2 ** $clog2(Entries) != Entries) begin : gen_bad_entries
+    $error("voxrt_miss_list: Entries must be a power of two, 2 or more");
+  end
+
   localparam int unsigned IndexBits = $clog2(Entries);
   typedef logic [IndexBits-1:0] index_t;
 

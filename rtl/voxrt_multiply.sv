@@ -7,15 +7,25 @@
 module voxrt_multiply
   import voxrt_pkg::*;
 #(
-  parameter int unsigned ABits     = 20,
-  parameter int unsigned BBits     = 20,
-  parameter int unsigned LogicBits = 0
+  parameter int unsigned ABits     = 20,  // 1 or more.
+  parameter int unsigned BBits     = 20,  // 1 or more.
+  parameter int unsigned LogicBits = 0    // Of a, multiplied in logic: fewer than ABits.
 ) (
   input  logic                   clk_i,
   input  logic [      ABits-1:0] a_i,
   input  logic [      BBits-1:0] b_i,
   output logic [ABits+BBits-1:0] product_o
 );
+  if (ABits < 1) begin : gen_bad_a_bits
+    $error("voxrt_multiply: ABits must be 1 bit or more");
+  end
+  if (BBits < 1) begin : gen_bad_b_bits
+    $error("voxrt_multiply: BBits must be 1 bit or more");
+  end
+  if (LogicBits >= ABits) begin : gen_bad_logic_bits
+    $error("voxrt_multiply: LogicBits must be less than ABits");
+  end
+
   localparam int unsigned ProductBits = ABits + BBits;
 
   logic [ProductBits-1:0] product2_q;

@@ -36,8 +36,7 @@ module voxrt_octree_memory
   input  logic [BlockBits+3:0]             address_i         [Lanes],
   output logic [Lanes-1:0]                 ack_o,
   output logic [payload_bits(BlockBits, Lod):0] word_o       [Lanes],
-  // Lod: the dialect of the words that are written or, cached, read in a frame; and, cached, which lanes' rays hit the
-  // cells of the pointers that they read three clocks ago.
+  // Lod: whether the words that are written, or, cached, read in a frame, are of the dialect lod.
   input  logic                             lod_words_i,
   // Cached: see voxrt_cached_memory.
   input  logic                             bus_rst_ni,

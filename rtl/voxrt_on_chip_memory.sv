@@ -12,7 +12,7 @@ module voxrt_on_chip_memory
 #(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned BlockBits = 12,
-  parameter bit          Banked    = 1'b0,
+  parameter bit          Banked    = 1'b0,  // BankedForm, not PrivateForm.
   parameter bit          Lod       = 1'b0,
   parameter string       File      = ""     // As voxrt_octree_memory has it.
 ) (

@@ -8,8 +8,8 @@
 // With StoresEarlier a pixel may be stored before its entry is completed, which then tells whether it is lit: two
 // memories. Without, both happen at once, and one is enough.
 module voxrt_pixel_buffer #(
-  parameter int unsigned Width         = 10,
-  parameter int unsigned Depth         = 256,  // A power of two.
+  parameter int unsigned Width         = 10,   // Bits: 1 or more.
+  parameter int unsigned Depth         = 256,  // Entries: a power of two, 4 or more.
   parameter bit          StoresEarlier = 1'b0
 ) (
   input  logic                   clk_i,
@@ -31,6 +31,13 @@ module voxrt_pixel_buffer #(
   output logic                   lit_o,
   output logic [Width-1:0]       pixel_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_pixel_buffer: Width must be 1 bit or more");
+  end
+  if (Depth < 4 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
+    $error("voxrt_pixel_buffer: Depth must be a power of two, 4 or more");
+  end
+
   localparam int unsigned IndexBits = $clog2(Depth);
   localparam int unsigned TagBits = IndexBits + 1;
   localparam int unsigned FifoDepth = 4;

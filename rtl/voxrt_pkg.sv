@@ -5,6 +5,10 @@
 //
 // Structs are as wide as the largest configuration needs (DepthLimit, PositionLimit). A module uses the low bits of a
 // field, as many as its parameters say; synthesis removes the others. Fields marked "signed" are to be read so.
+//
+// Parameters that many modules have (Lanes, MaxDepth, PositionBits, BlockBits, MemoryForm, L1SetBits, L2SetBits, Light,
+// Mirrors, RayClocks, Lod) are those of voxrt_core, which says and checks their units and ranges. Each other parameter
+// is checked by the module that uses it.
 package voxrt_pkg;
 
   // The largest values of the parameters MaxDepth and PositionBits.

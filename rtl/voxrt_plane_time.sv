@@ -7,14 +7,22 @@
 module voxrt_plane_time
   import voxrt_pkg::*;
 #(
-  parameter int unsigned DistanceBits = 18,
-  parameter int unsigned TimeBits     = DistanceBits + WeightBits  // Fewer: T modulo 2**TimeBits.
+  parameter int unsigned DistanceBits = 18,  // Signed: 2 .. DistanceLimit.
+  // T modulo 2**TimeBits: 18 .. DistanceBits + WeightBits.
+  parameter int unsigned TimeBits     = DistanceBits + WeightBits
 ) (
   input  logic                           clk_i,
   input  logic signed [DistanceBits-1:0] distance_i,  // Plane minus origin, 1/16 voxel.
   input  logic        [  WeightBits-1:0] weight_i,
   output logic signed [    TimeBits-1:0] time_o
 );
+  if (DistanceBits < 2 || DistanceBits > DistanceLimit) begin : gen_bad_distance_bits
+    $error("voxrt_plane_time: DistanceBits must be 2 to DistanceLimit bits");
+  end
+  if (TimeBits < 18 || TimeBits > DistanceBits + WeightBits) begin : gen_bad_time_bits
+    $error("voxrt_plane_time: TimeBits must be 18 to DistanceBits + WeightBits bits");
+  end
+
   if (MultiplierBits >= 25) begin : gen_wide
     localparam int unsigned LowBits = 17;
     localparam int unsigned HighBits = TimeBits - LowBits;

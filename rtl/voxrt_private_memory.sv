@@ -9,9 +9,9 @@
 // reads, even if the processor uses the port at every clock.
 module voxrt_private_memory #(
   parameter int unsigned Lanes       = 1,
-  parameter int unsigned AddressBits = 15,
-  parameter int unsigned PayloadBits = 12,
-  parameter string       File        = ""  // For $readmemh: a row per line, encoded.
+  parameter int unsigned AddressBits = 15,  // 2**AddressBits words: 1 or more.
+  parameter int unsigned PayloadBits = 12,  // Of a word, besides the highest: 9 or more.
+  parameter string       File        = ""   // For $readmemh: a row per line, encoded.
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -25,6 +25,13 @@ module voxrt_private_memory #(
   output logic [      Lanes-1:0] ack_o,
   output logic [  PayloadBits:0] word_o            [Lanes]
 );
+  if (AddressBits < 1) begin : gen_bad_address_bits
+    $error("voxrt_private_memory: AddressBits must be 1 bit or more");
+  end
+  if (PayloadBits < 9) begin : gen_bad_payload_bits
+    $error("voxrt_private_memory: PayloadBits must be 9 bits or more");
+  end
+
   localparam int unsigned Copies = (Lanes + 1) / 2;
 
   logic [3:0]       count_q;

@@ -1,8 +1,8 @@
 // Two queues in one memory, whose depth distributed memory has anyway: rays of the camera, and shadow rays, which
 // leave first. A ray comes only when its queue has a place: both queues' writers hold credits, so none is refused.
 module voxrt_ray_queue #(
-  parameter int unsigned Width = 8,
-  parameter int unsigned Depth = 16  // Of each queue; a power of two.
+  parameter int unsigned Width = 8,  // Bits: 1 or more.
+  parameter int unsigned Depth = 16  // Rays of each queue: a power of two, 2 or more.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -14,6 +14,13 @@ module voxrt_ray_queue #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_ray_queue: Width must be 1 bit or more");
+  end
+  if (Depth < 2 || 2 ** $clog2(Depth) != Depth) begin : gen_bad_depth
+    $error("voxrt_ray_queue: Depth must be a power of two, 2 or more");
+  end
+
   localparam int unsigned IndexBits = $clog2(Depth);
 
   logic [Width-1:0]   data_q [2*Depth];

@@ -6,7 +6,7 @@
 module voxrt_reflect
   import voxrt_pkg::*;
 #(
-  parameter int unsigned Slots = 8
+  parameter int unsigned Slots = 12  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
 ) (
   input  logic                               clk_i,
   // Held during a frame; 0: no material is a mirror.
@@ -23,6 +23,10 @@ module voxrt_reflect
   output logic                               ends_o,            // It was reflected often enough: it shows mirrors_o.
   output mirrors_t                           mirrors_o
 );
+  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
+    $error("voxrt_reflect: Slots must be 12 to 15");
+  end
+
   material_entry_t table_q[256];
   material_entry_t entry4_q, entry5_q, entry6_q, entry7_q;
   mirrors_t        mirrors_q[Slots], mirrors7, mirrors8_q, mirrors9_q;

@@ -7,7 +7,7 @@ module voxrt_root
   import voxrt_pkg::*;
 #(
   parameter int unsigned BlockBits    = 12,
-  parameter int unsigned MemoryClocks = 2,
+  parameter int unsigned MemoryClocks = 2,    // From an address to its word, as memory_clocks has it: 2 .. 5.
   parameter bit          Lod          = 1'b0,
   parameter bit          ReadsFirst   = 1'b0  // Word 0 is read like all others, from block -1.
 ) (
@@ -24,6 +24,10 @@ module voxrt_root
   input  logic                             ack_i,
   input  logic [payload_bits(BlockBits, Lod):0] word_i
 );
+  if (MemoryClocks < 2 || MemoryClocks > 5) begin : gen_bad_memory_clocks
+    $error("voxrt_root: MemoryClocks must be 2 to 5 clocks");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, Lod);
   localparam int unsigned AddressBits = BlockBits + 3;
 

@@ -14,7 +14,7 @@
 module voxrt_shader
   import voxrt_pkg::*;
 #(
-  parameter bit          Given     = 1'b0,
+  parameter bit          Given     = 1'b0,  // voxrt_brightness is there.
   parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
 ) (
   input  logic            clk_i,

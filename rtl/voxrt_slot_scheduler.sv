@@ -17,7 +17,7 @@ module voxrt_slot_scheduler
   import voxrt_pkg::*;
 #(
   parameter int unsigned MaxDepth = 10,
-  parameter int unsigned Slots    = 11,
+  parameter int unsigned Slots    = 12,  // Rays in the ring of the lane, as lane_slots has it: 12 .. 15.
   parameter bit          Light    = 1'b0,
   parameter bit          Mirrors  = 1'b0
 ) (
@@ -58,6 +58,10 @@ module voxrt_slot_scheduler
   input  material_t                                       point_material_i,
   input  logic                                            hit_point_ready_i
 );
+  if (Slots < 12 || Slots > 15) begin : gen_bad_slots
+    $error("voxrt_slot_scheduler: Slots must be 12 to 15");
+  end
+
   localparam int unsigned PointBits = MaxDepth + FractionBits;
   localparam int unsigned DetailBits = detail_bits(MaxDepth, Light, Mirrors);
 

@@ -1,7 +1,7 @@
 // A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock; ready_o depends on ready_i
 // in the same clock.
 module voxrt_stream_register #(
-  parameter int unsigned Width = 8
+  parameter int unsigned Width = 8  // Bits: 1 or more.
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -12,6 +12,10 @@ module voxrt_stream_register #(
   input  logic             ready_i,
   output logic [Width-1:0] data_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_stream_register: Width must be 1 bit or more");
+  end
+
   logic             valid_q;
   logic [Width-1:0] data_q;
 

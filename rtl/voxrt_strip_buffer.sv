@@ -4,7 +4,7 @@ module voxrt_strip_buffer
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes = 1,
-  parameter int unsigned Width = 10
+  parameter int unsigned Width = 10  // Bits: 1 or more.
 ) (
   input  logic                clk_i,
   input  logic                rst_ni,
@@ -19,6 +19,10 @@ module voxrt_strip_buffer
   input  logic                ready_i,
   output logic [   Width-1:0] pixel_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("voxrt_strip_buffer: Width must be 1 bit or more");
+  end
+
   localparam int unsigned StripBits = strip_bits(Lanes);
   localparam int unsigned QueueDepth = 8;
   localparam int unsigned CountBits = $clog2(QueueDepth) + 1;

@@ -12,7 +12,7 @@ module voxrt_strip_place
   import voxrt_pkg::*;
 #(
   parameter int unsigned Lanes   = 1,
-  parameter bit          ByLines = 1'b0
+  parameter bit          ByLines = 1'b0  // The order, see above.
 ) (
   input  logic                clk_i,
   input  logic                start_i,    // To the first pixel. Width and height are held from here on.

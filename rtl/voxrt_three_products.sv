@@ -2,7 +2,7 @@
 // beats later. Values stay for a beat (voxrt_turns).
 module voxrt_three_products #(
   parameter int unsigned     RayClocks = 1,
-  parameter int unsigned     ABits     = 20,
+  parameter int unsigned     ABits     = 20,  // As voxrt_multiply has them.
   parameter int unsigned     BBits     = 20,
   parameter bit [2:0][7:0]   LogicBits = '0   // As voxrt_multiply has it, of each product; of a shared one, none.
 ) (

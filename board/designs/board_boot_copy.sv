@@ -4,8 +4,8 @@
 module board_boot_copy
   import voxrt_pkg::*;
 #(
-  parameter int unsigned BlockBits = 12,
-  parameter string       File      = ""  // For $readmemh; "": nothing.
+  parameter int unsigned BlockBits = 12,  // 2**BlockBits blocks: 5 .. 19.
+  parameter string       File      = ""   // For $readmemh; "": nothing.
 ) (
   input  logic         clk_i,
   input  logic         rst_ni,
@@ -17,6 +17,10 @@ module board_boot_copy
   output logic [255:0] data_o,
   input  logic         done_i
 );
+  if (BlockBits < 5 || BlockBits > 19) begin : gen_bad_block_bits
+    $error("board_boot_copy: BlockBits must be 5 to 19 bits");
+  end
+
   localparam int unsigned PayloadBits = payload_bits(BlockBits, 1'b0);
 
   typedef enum logic [1:0] {

@@ -5,7 +5,7 @@
 module board_bus
   import board_pkg::*;
 #(
-  parameter int unsigned MemoryClocks = 3  // From an address of the octree memory to its word.
+  parameter int unsigned MemoryClocks = 3  // From an address of the octree memory to its word: 2 or more.
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
@@ -47,6 +47,10 @@ module board_bus
   output logic    [31:0]       table_data_o,
   input  logic    [31:0]       table_data_i
 );
+  if (MemoryClocks < 2) begin : gen_bad_memory_clocks
+    $error("board_bus: MemoryClocks must be 2 clocks or more");
+  end
+
   typedef enum logic [2:0] {
     Idle,
     Begin,

@@ -1,7 +1,7 @@
 // A value from one clock to another, each time send_i is set. It must not be set again before three clocks of the
 // receiver have passed.
 module board_event #(
-  parameter int unsigned Width = 8
+  parameter int unsigned Width = 8  // Bits: 1 or more.
 ) (
   input  logic             from_clk_i,
   input  logic             from_rst_ni,
@@ -11,6 +11,10 @@ module board_event #(
   output logic             received_o,  // For one clock, value_o from then on.
   output logic [Width-1:0] value_o
 );
+  if (Width < 1) begin : gen_bad_width
+    $error("board_event: Width must be 1 bit or more");
+  end
+
   logic             toggle_q, toggle, last_q;
   logic [Width-1:0] value_q;
 

@@ -6,7 +6,7 @@
 module board_frames
   import board_pkg::*;
 #(
-  // System clock, Hz.
+  // System clock, Hz: 1 or more.
   parameter int unsigned ClockHz    = 75_000_000,
   // The line buffer holds 2**LineBits lines: 4 .. 7.
   parameter int unsigned LineBits   = 4,
@@ -40,6 +40,9 @@ module board_frames
   input  logic [         2:0] buttons_i,
   output logic [         7:0] leds_o
 );
+  if (ClockHz < 1) begin : gen_bad_clock_hz
+    $error("board_frames: ClockHz must be 1 Hz or more");
+  end
   if (LineBits < 4 || LineBits > 7) begin : gen_bad_lines
     $error("board_frames: LineBits must be 4 to 7");
   end

@@ -6,7 +6,8 @@
 module board_memory_port
   import board_pkg::*;
 #(
-  parameter int unsigned Lines = 983_040  // Of the octree memory: word 0 is the last of line 0, a block has a line.
+  // Of the octree memory: word 0 is the last of line 0, a block has a line. 2 .. 2**20.
+  parameter int unsigned Lines = 983_040
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
@@ -32,6 +33,10 @@ module board_memory_port
   input  logic                 done_i,
   input  logic    [255:0]      line_data_i
 );
+  if (Lines < 2 || Lines > 2 ** 20) begin : gen_bad_lines
+    $error("board_memory_port: Lines must be 2 to 2**20 lines");
+  end
+
   localparam logic [23:0] Page = 24'h001030;
   localparam logic [23:0] Blocks = 24'h001034;
   localparam int unsigned PageBits = 2;

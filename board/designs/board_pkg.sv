@@ -1,4 +1,7 @@
 // Types and constants that the modules of the board designs share.
+//
+// A parameter that a module hands on has the unit and the range that the module says and checks which uses it:
+// voxrt_core, board_pll, board_line_buffer, board_requests, board_sdram, board_boot_copy.
 package board_pkg;
 
   // An access to the address map (docs/ecp5_boards.md): a whole word.

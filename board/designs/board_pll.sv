@@ -3,10 +3,10 @@
 //
 // The oscillator must give 125 MHz x InputDivider / FeedbackDivider.
 module board_pll #(
-  parameter int unsigned InputDivider    = 1,
-  parameter int unsigned FeedbackDivider = 5,
-  parameter int unsigned SystemDivider   = 10,
-  parameter int unsigned ChipDelay       = 0    // 0: there is no such chip, and no clock for it.
+  parameter int unsigned InputDivider    = 1,   // 1 .. 128.
+  parameter int unsigned FeedbackDivider = 5,   // 1 .. 128.
+  parameter int unsigned SystemDivider   = 10,  // 1 .. 128.
+  parameter int unsigned ChipDelay       = 0    // Less than SystemDivider; 0: no such chip, no clock for it.
 ) (
   input  logic clk_i,
   output logic bit_clk_o,
@@ -15,6 +15,16 @@ module board_pll #(
   output logic chip_clk_o,
   output logic locked_o
 );
+  if (InputDivider < 1 || InputDivider > 128) begin : gen_bad_input_divider
+    $error("board_pll: InputDivider must be 1 to 128");
+  end
+  if (FeedbackDivider < 1 || FeedbackDivider > 128) begin : gen_bad_feedback_divider
+    $error("board_pll: FeedbackDivider must be 1 to 128");
+  end
+  if (SystemDivider < 1 || SystemDivider > 128) begin : gen_bad_system_divider
+    $error("board_pll: SystemDivider must be 1 to 128");
+  end
+
   localparam int unsigned BitDivider = 6;
   localparam int unsigned PixelDivider = 30;
 

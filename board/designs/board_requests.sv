@@ -2,7 +2,7 @@
 module board_requests
   import board_pkg::*;
 #(
-  parameter int unsigned GapBits = 22  // A request is dropped after 2**GapBits clocks without a byte.
+  parameter int unsigned GapBits = 22  // A request is dropped after 2**GapBits clocks without a byte: 1 .. 32.
 ) (
   input  logic          clk_i,
   input  logic          rst_ni,
@@ -23,6 +23,10 @@ module board_requests
   output logic          request_done_o,
   output logic          request_bad_o
 );
+  if (GapBits < 1 || GapBits > 32) begin : gen_bad_gap_bits
+    $error("board_requests: GapBits must be 1 to 32 bits");
+  end
+
   localparam logic [7:0] RequestMark = 8'h56;
   localparam logic [7:0] AnswerMark = 8'h76;
   localparam logic [7:0] Read = 8'd1;

@@ -8,8 +8,8 @@
 // Counts of clocks hold up to 80 MHz, for parts of speed -7 and faster. board_sdram_pins adds one clock on the way out,
 // and one and a half on the way in.
 module board_sdram #(
-  parameter int unsigned ClockHz   = 57_692_307,
-  parameter int unsigned PowerOnUs = 200          // The chip is left alone after power-on.
+  parameter int unsigned ClockHz   = 57_692_307,  // Hz: 12 to 80 million.
+  parameter int unsigned PowerOnUs = 200          // The chip is left alone after power-on, us: 1 .. 50,000.
 ) (
   input  logic         clk_i,
   input  logic         rst_ni,
@@ -34,6 +34,13 @@ module board_sdram #(
   output logic [ 15:0] sdram_dq_o,
   input  logic [ 15:0] sdram_dq_i
 );
+  if (ClockHz < 12_000_000 || ClockHz > 80_000_000) begin : gen_bad_clock_hz
+    $error("board_sdram: ClockHz must be 12 to 80 million");
+  end
+  if (PowerOnUs < 1 || PowerOnUs > 50_000) begin : gen_bad_power_on_us
+    $error("board_sdram: PowerOnUs must be 1 to 50,000 us");
+  end
+
   localparam int unsigned PowerOnClocks = (ClockHz / 1000) * PowerOnUs / 1000;
   // 8192 rows in 64 ms, less what the lines under way take.
   localparam int unsigned RefreshClocks = (ClockHz / 1000) * 64 / 8192 - 80;

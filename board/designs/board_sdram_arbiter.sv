@@ -4,7 +4,7 @@
 // screen's, goes first while it is urgent, and else not twice while another waits; the others in turn. So each of the
 // others has a line after Ports - 1 lines at most of its equals, and as many of the screen, while the screen is not urgent.
 module board_sdram_arbiter #(
-  parameter int unsigned Ports = 5
+  parameter int unsigned Ports = 5  // 2 or more.
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -25,6 +25,10 @@ module board_sdram_arbiter #(
   output logic [255:0]            request_data_o,
   input  logic                    done_i
 );
+  if (Ports < 2) begin : gen_bad_ports
+    $error("board_sdram_arbiter: Ports must be 2 or more");
+  end
+
   localparam int unsigned PortBits = $clog2(Ports);
   localparam int unsigned UnderWayBits = 2;  // The controller has three lines at most.
 

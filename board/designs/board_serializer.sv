@@ -1,7 +1,7 @@
 // Ten bits per pixel clock to one pin, two per bit clock (DDR). The bit clock is five times the pixel clock, from the same
 // PLL.
 module board_serializer #(
-  parameter int unsigned Channels = 4
+  parameter int unsigned Channels = 4  // Pins: 1 or more.
 ) (
   input  logic                     pixel_clk_i,
   input  logic                     pixel_rst_ni,
@@ -9,6 +9,10 @@ module board_serializer #(
   input  logic [Channels-1:0][9:0] words_i,      // Bit 0 goes first.
   output logic [Channels-1:0]      pins_o
 );
+  if (Channels < 1) begin : gen_bad_channels
+    $error("board_serializer: Channels must be 1 or more");
+  end
+
   logic pixel_toggle_q;
   always_ff @(posedge pixel_clk_i) pixel_toggle_q <= pixel_rst_ni && !pixel_toggle_q;
 

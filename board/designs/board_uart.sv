@@ -1,7 +1,7 @@
 // A serial line: 8 data bits, no parity, one stop bit. Any ratio of clock and baud from 8 upwards.
 module board_uart #(
-  parameter int unsigned ClockHz = 75_000_000,
-  parameter int unsigned Baud    = 3_000_000
+  parameter int unsigned ClockHz = 75_000_000,  // Hz: 8 times Baud or more.
+  parameter int unsigned Baud    = 3_000_000    // 1/s: 300 or more.
 ) (
   input  logic       clk_i,
   input  logic       rst_ni,
@@ -16,6 +16,13 @@ module board_uart #(
   input  logic [7:0] byte_i,
   output logic       tx_o
 );
+  if (ClockHz < 8 * Baud) begin : gen_bad_clock_hz
+    $error("board_uart: ClockHz must be 8 times Baud or more");
+  end
+  if (Baud < 300) begin : gen_bad_baud
+    $error("board_uart: Baud must be 300 or more");
+  end
+
   // The part of a bit per clock, in 1/2**PhaseBits: the baud is met within 1 in 2**16.
   localparam int unsigned PhaseBits = 20;
   localparam int unsigned Step = int'((64'(Baud) * (64'd1 << PhaseBits) + 64'(ClockHz) / 2) / 64'(ClockHz));

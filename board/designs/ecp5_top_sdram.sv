@@ -22,8 +22,8 @@ module ecp5_top_sdram #(
   parameter int unsigned PowerOnUs       = 200,
   parameter int unsigned GapBits         = 22,
   parameter bit          ButtonsLow      = 1'b0,
-  parameter int unsigned Leds            = 8,
-  parameter int unsigned Highs           = 1,
+  parameter int unsigned Leds            = 8,   // 1 .. 8.
+  parameter int unsigned Highs           = 1,   // Pins that are always 1: 1 or more.
   parameter string       OctreeFile      = "",
   parameter string       TableFile       = ""
 ) (
@@ -45,6 +45,13 @@ module ecp5_top_sdram #(
   output logic [      1:0] sdram_dqm,
   inout  wire  [     15:0] sdram_d
 );
+  if (Leds < 1 || Leds > 8) begin : gen_bad_leds
+    $error("ecp5_top_sdram: Leds must be 1 to 8");
+  end
+  if (Highs < 1) begin : gen_bad_highs
+    $error("ecp5_top_sdram: Highs must be 1 or more");
+  end
+
   logic bit_clk, pixel_clk, system_clk, chip_clk, locked;
 
   board_pll #(
