@@ -16,8 +16,8 @@ module board_uart #(
   input  logic [7:0] byte_i,
   output logic       tx_o
 );
-  if (ClockHz < 8 * Baud) begin : gen_bad_clock_hz
-    $error("board_uart: ClockHz must be 8 times Baud or more");
+  if (Baud > ClockHz / 8) begin : gen_bad_clock_hz
+    $error("board_uart: ClockHz and Baud must be in a ratio of 8 or more");
   end
   if (Baud < 300) begin : gen_bad_baud
     $error("board_uart: Baud must be 300 or more");
