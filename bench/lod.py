@@ -141,9 +141,8 @@ def main() -> None:
     if asked.only != "pictures":
         tables.append(costs(asked.config))
     found = {table.title: table.text() for table in tables}
-    if asked.write:
-        others = {title: text for title, text in written().items() if title not in found}
-        found = found | others if asked.only == "pictures" else others | found
+    if asked.write and asked.only:
+        found = written() | found
     text = "# Level of detail\n\n`python bench/lod.py --write`. "
     text += "A number is the width in pixels of the widest cell that rays stop at.\n"
     text += f"Pictures have {FAR_SIZE[0]}x{FAR_SIZE[1]} pixels and depth {DEPTH}. "

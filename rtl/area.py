@@ -185,6 +185,8 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     configurations = read_configurations()
+    if unknown := [name for name in options.names if name not in configurations]:
+        parser.error(f"there is no configuration {', '.join(unknown)}; there are {', '.join(configurations)}")
     rows: dict[str, str] = {}
     for name in options.names or configurations:
         parameters = configurations[name].parameters
@@ -196,8 +198,8 @@ def main() -> None:
             rows[both] = row(both, parameters, found + VIDEO)
             rows[LANE_ROW] = row(LANE_ROW, LANE, area(netlist(LANE, "voxrt_lane")))
         if name == WITH_CACHES:
-            on_chip = {each: parameters[each] for each in ("Lanes", "MaxDepth", "PositionBits", "Lod")}
-            rows[WITHOUT_CACHES] = row(WITHOUT_CACHES, Z1 | on_chip, area(netlist(on_chip)))
+            wide = Z1 | {each: parameters[each] for each in ("MaxDepth", "PositionBits", "Lod")}
+            rows[WITHOUT_CACHES] = row(WITHOUT_CACHES, wide, area(netlist(wide)))
     print(table(rows), end="")
     if options.write:
         RESULTS.parent.mkdir(exist_ok=True)
