@@ -102,6 +102,11 @@ package voxrt_pkg;
     return 10 + clocks;
   endfunction
 
+  // Whether there are so many lanes that wires to and from all of them are the longest paths.
+  function automatic bit many_lanes(int lanes);
+    return lanes > 4;
+  endfunction
+
   // Lines that a lane's cache asks for at a time. Each set asks for one at most.
   function automatic int l1_outstanding(int set_bits);
     return set_bits < 3 ? 2 ** set_bits : 8;

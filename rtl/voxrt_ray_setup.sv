@@ -85,7 +85,13 @@ module voxrt_ray_setup
   );
 
   assign ready_o = advance;
-  assign takes   = valid_i && advance;
+
+  // With many lanes valid_i is a long path, so it does not enable the multipliers. They may read a direction without a ray.
+  if (many_lanes(Lanes)) begin : gen_takes_all
+    assign takes = advance;
+  end else begin : gen_takes
+    assign takes = valid_i && advance;
+  end
 
   // What travels along unchanged.
   logic [Stages:1]            valid_q, moves;

@@ -19,7 +19,7 @@ module voxrt_rays
   input  logic                    root_leaf_i,
   input  material_t               root_material_i,
   input  logic [LodScaleBits-1:0] lod_scale_i,
-  // Lanes that have a credit; the lane that a ray is issued to, which takes one.
+  // Lanes that have a credit (with many lanes, in the next clock); the lane that a ray is issued to, which takes one.
   input  logic        [Lanes-1:0] credit_i,
   output logic        [Lanes-1:0] issue_o,          // One-hot or 0.
   // Shadow rays, from voxrt_light.
@@ -37,7 +37,22 @@ module voxrt_rays
   logic signed [ScanBits-1:0] direction[3], ray_direction[3];
   logic        [   Lanes-1:0] next_lane_q;  // One-hot.
 
-  assign issues  = direction_valid && setup_ready && (credit_i & next_lane_q) != '0 && !shadow_valid_i;
+  if (many_lanes(Lanes)) begin : gen_lanes
+    // Whether the next lane has a credit. It is found a clock earlier, because credits come over long wires.
+    logic [Lanes-1:0] lane_after;
+    logic             granted_q;
+
+    assign lane_after = {next_lane_q[Lanes-2:0], next_lane_q[Lanes-1]};
+
+    always_ff @(posedge clk_i) begin
+      granted_q <= rst_ni && (issues ? (credit_i & lane_after) != '0 : (credit_i & next_lane_q) != '0);
+    end
+
+    assign issues = direction_valid && setup_ready && granted_q && !shadow_valid_i;
+  end else begin : gen_few_lanes
+    assign issues = direction_valid && setup_ready && (credit_i & next_lane_q) != '0 && !shadow_valid_i;
+  end
+
   assign issue_o = issues ? next_lane_q : '0;
 
   always_comb begin
@@ -108,13 +123,20 @@ module voxrt_rays
 
 `ifndef SYNTHESIS
   // Before the first reset, nothing holds.
-  logic reset_seen_q = 1'b0;
-  always_ff @(posedge clk_i) reset_seen_q <= reset_seen_q || !rst_ni;
+  logic             reset_seen_q = 1'b0;
+  logic [Lanes-1:0] credit_q, credit;
+
+  assign credit = many_lanes(Lanes) ? credit_q : credit_i;  // As a ray's issue sees it.
+
+  always_ff @(posedge clk_i) begin
+    reset_seen_q <= reset_seen_q || !rst_ni;
+    credit_q     <= rst_ni ? credit_i : '0;
+  end
 
   always_ff @(posedge clk_i) begin
     if (rst_ni && reset_seen_q) begin
       assert ($onehot(next_lane_q)) else $error("next_lane_q is not one-hot");
-      assert ((issue_o & ~credit_i) == '0) else $error("a ray for a lane without credit");
+      assert ((issue_o & ~credit) == '0) else $error("a ray for a lane without credit");
       assert (!valid_o || $onehot(lane_o)) else $error("a ray for no lane or many");
     end
   end

@@ -229,11 +229,15 @@ module voxrt_rtu
     .weights_o      (ray_weights)
   );
 
-  // Credits: with several lanes, a register on the way to them and one on the way back.
+  // Credits: with several lanes, a register on the way to them and one on the way back. With many, the one on the way back
+  // is in voxrt_rays, behind the choice of a lane.
   localparam int unsigned CreditClocks = Lanes > 1 ? 3 : 1;
   logic [Lanes-1:0] lane_credit, lane_issue;
 
-  if (Lanes > 1) begin : gen_credit_registers
+  if (many_lanes(Lanes)) begin : gen_issue_register
+    assign credit = lane_credit;
+    always_ff @(posedge clk_i) lane_issue <= rst_ni ? issue : '0;
+  end else if (Lanes > 1) begin : gen_credit_registers
     always_ff @(posedge clk_i) begin
       credit     <= rst_ni ? lane_credit : '0;
       lane_issue <= rst_ni ? issue : '0;
