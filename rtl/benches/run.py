@@ -48,7 +48,7 @@ BUILDS = {
     "octo-narrow": Build(CORE, CONFIGURATIONS["octo"], ("bench_core",), narrow=True, repeats=True),
     "banked-light": Build(
         CORE,
-        {"Lanes": 3, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
+        {"Lanes": 5, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "MemoryForm": 1, "Light": 1},
         ("bench_core",),
         repeats=True,
     ),
@@ -79,7 +79,7 @@ BUILDS = {
     "pixel_packer": Build("voxrt_pixel_packer", {}, ("bench_pixel_packer",)),
     "scan": Build("voxrt_scan", {}, ("bench_scan",)),
     "ray_generator": Build("voxrt_ray_generator", {}, ("bench_ray_generator",)),
-    "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 3, "Light": 1}, ("bench_ray_setup",)),
+    "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 5, "Light": 1}, ("bench_ray_setup",)),
     "ray_setup-shared": Build(
         "voxrt_ray_setup",
         {"MaxDepth": 6, "Lanes": 3, "Light": 1, "RayClocks": 4},
