@@ -78,8 +78,10 @@ module voxrt_pixels
     assign ordered       = merged;
   end
 
+  // With many lanes, the shader's ready ends here, and does not go on to all of them.
   voxrt_stream_register #(
-    .Width(MergeBits)
+    .Width    (MergeBits),
+    .CutsReady(many_lanes(Lanes))
   ) u_merged (
     .clk_i,
     .rst_ni,
@@ -122,6 +124,7 @@ module voxrt_pixels
   end
 
   voxrt_shader #(
+    .Lanes    (Lanes),
     .Given    (Given),
     .RayClocks(RayClocks)
   ) u_shader (

@@ -3,9 +3,12 @@
 //
 // raster_i.start starts voxrt_scan too, which gives corner and line_step. Right, width and height must hold while
 // valid_o may still rise. Directions come from two clocks after the corner on, one at every clock that ready_i is high.
+// With Ahead they come a clock later, from a FIFO: ready_i does not enable the additions.
 module voxrt_ray_generator
   import voxrt_pkg::*;
-(
+#(
+  parameter bit Ahead = 1'b0
+) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
   input  raster_t                    raster_i,
@@ -22,7 +25,51 @@ module voxrt_ray_generator
   logic                       advances, new_line, last;
 
   assign last     = line_end_q && last_line_q;
-  assign advances = raster_i.corner || (valid_q && ready_i);
+
+  if (Ahead) begin : gen_ahead
+    typedef struct packed {
+      logic [2:0][ScanBits-1:0] direction;
+      logic                     first;
+      logic                     line_end;
+      logic                     last;
+    } made_t;
+
+    logic  ready;
+    made_t made, offered;
+
+    assign advances      = raster_i.corner || (valid_q && ready);
+    assign made.first    = first_q;
+    assign made.line_end = line_end_q;
+    assign made.last     = last;
+
+    always_comb begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        made.direction[a] = direction_q[a];
+        direction_o[a]    = $signed(offered.direction[a]);
+      end
+    end
+
+    voxrt_fifo #(
+      .Width($bits(made_t)),
+      .Depth(4)
+    ) u_made (
+      .clk_i,
+      .rst_ni (rst_ni && !raster_i.start),
+      .valid_i(valid_q),
+      .ready_o(ready),
+      .data_i (made),
+      .valid_o,
+      .ready_i,
+      .data_o (offered)
+    );
+
+    assign first_o    = offered.first;
+    assign line_end_o = offered.line_end;
+    assign last_o     = offered.last;
+  end else begin : gen_advances
+    assign advances = raster_i.corner || (valid_q && ready_i);
+  end
+
   // The first line is a step from 0.
   assign new_line = raster_i.corner || line_end_q;
 
@@ -58,9 +105,11 @@ module voxrt_ray_generator
     if (!rst_ni || raster_i.start) valid_q <= 1'b0;
   end
 
-  assign valid_o     = valid_q;
-  assign direction_o = direction_q;
-  assign first_o     = first_q;
-  assign line_end_o  = line_end_q;
-  assign last_o      = last;
+  if (!Ahead) begin : gen_outputs
+    assign valid_o     = valid_q;
+    assign direction_o = direction_q;
+    assign first_o     = first_q;
+    assign line_end_o  = line_end_q;
+    assign last_o      = last;
+  end
 endmodule

@@ -14,6 +14,7 @@
 module voxrt_shader
   import voxrt_pkg::*;
 #(
+  parameter int unsigned Lanes     = 1,     // That the pixels come from.
   parameter bit          Given     = 1'b0,  // voxrt_brightness is there.
   parameter int unsigned RayClocks = 1      // 1, or 4: one multiplier for three axes or channels.
 ) (
@@ -50,7 +51,12 @@ module voxrt_shader
   logic                       direction_valid, enters, first, line_end, last;
   logic signed [ScanBits-1:0] direction[3];
 
-  voxrt_ray_generator u_directions (
+  // With many lanes, directions are made ahead: a pixel that enters moves a pointer, not the generator, which is far away.
+  localparam bit Ahead = many_lanes(Lanes);
+
+  voxrt_ray_generator #(
+    .Ahead(Ahead)
+  ) u_directions (
     .clk_i,
     .rst_ni,
     .raster_i,
@@ -77,16 +83,21 @@ module voxrt_shader
     .advance_o(advance)
   );
 
-  assign ready_o = ready_q && direction_valid && advance;
-  assign enters  = valid_i && ready_o;
+  if (Ahead) begin : gen_ahead
+    assign ready_o = ready_q;
+  end else begin : gen_at_once
+    assign ready_o = ready_q && direction_valid && advance;
+  end
+  assign enters = valid_i && ready_o;
 
   always_ff @(posedge clk_i) begin
-    credits_q     <= credits_q - CountBits'(enters) + CountBits'(leaves);
-    // One clock late: a pixel may have entered since.
+    credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
+    // One clock late: a pixel may have entered since. Directions that are made ahead run out at the frame's end alone.
     ready_q <= credits_q > CountBits'(1);
+    if (Ahead && !direction_valid) ready_q <= 1'b0;
     if (!rst_ni) begin
-      credits_q     <= CountBits'(FifoDepth);
-      ready_q <= 1'b0;
+      credits_q <= CountBits'(FifoDepth);
+      ready_q   <= 1'b0;
     end
   end
 
@@ -99,7 +110,8 @@ module voxrt_shader
   always_ff @(posedge clk_i) begin
     if (advance) valid_q <= {valid_q[Stages-1:1], enters};
     if (!rst_ni) valid_q <= '0;
-    if (enters) info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
+    // Ahead: `enters` does not enable stage 1, which may read what no pixel is.
+    if (Ahead ? 1'b1 : enters) info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
     for (int unsigned s = 2; s <= Stages; s++) if (moves[s-1]) info_q[s] <= info_q[s-1];
   end
 
@@ -117,7 +129,7 @@ module voxrt_shader
 
   always_ff @(posedge clk_i) begin
     if (material_write_i.valid) table_q[material_write_i.material] <= material_write_i.entry.colour;
-    if (enters) begin
+    if (Ahead ? 1'b1 : enters) begin
       colour1_q       <= table_q[pixel_i.material];
       brightness_q[1] <= Given ? brightness_i : '0;
       direction1_q    <= direction;
@@ -277,6 +289,7 @@ module voxrt_shader
     if (rst_ni && reset_seen_q) begin
       assert (!moves[Stages] || fifo_ready) else $error("the FIFO of pixels overflows");
       assert (credits_q <= CountBits'(FifoDepth)) else $error("more credits than places");
+      assert (!enters || direction_valid) else $error("a pixel without a direction");
     end
   end
 `else

@@ -1,7 +1,8 @@
-// A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock; ready_o depends on ready_i
-// in the same clock.
+// A register in a stream: valid_o and data_o come from flip-flops. One transfer per clock. ready_o depends on ready_i in
+// the same clock; with CutsReady it comes from a flip-flop too, and a second register holds what comes meanwhile.
 module voxrt_stream_register #(
-  parameter int unsigned Width = 8  // Bits: 1 or more.
+  parameter int unsigned Width     = 8,    // Bits: 1 or more.
+  parameter bit          CutsReady = 1'b0
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -19,16 +20,39 @@ module voxrt_stream_register #(
   logic             valid_q;
   logic [Width-1:0] data_q;
 
-  assign ready_o = !valid_q || ready_i;
   assign valid_o = valid_q;
   assign data_o  = data_q;
 
-  always_ff @(posedge clk_i) begin
-    if (ready_o) begin
-      valid_q <= valid_i;
-      data_q  <= data_i;
+  if (CutsReady) begin : gen_cuts_ready
+    logic             second_valid_q;
+    logic [Width-1:0] second_q;
+
+    assign ready_o = !second_valid_q;
+
+    always_ff @(posedge clk_i) begin
+      if (!second_valid_q) second_q <= data_i;
+      if (!valid_q || ready_i) begin
+        valid_q        <= second_valid_q || valid_i;
+        data_q         <= second_valid_q ? second_q : data_i;
+        second_valid_q <= 1'b0;
+      end else if (valid_i) begin
+        second_valid_q <= 1'b1;
+      end
+      if (!rst_ni) begin
+        valid_q        <= 1'b0;
+        second_valid_q <= 1'b0;
+      end
     end
-    if (!rst_ni) valid_q <= 1'b0;
+  end else begin : gen_register
+    assign ready_o = !valid_q || ready_i;
+
+    always_ff @(posedge clk_i) begin
+      if (ready_o) begin
+        valid_q <= valid_i;
+        data_q  <= data_i;
+      end
+      if (!rst_ni) valid_q <= 1'b0;
+    end
   end
 
 `ifndef SYNTHESIS

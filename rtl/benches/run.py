@@ -72,6 +72,7 @@ BUILDS = {
     ),
     "fifo": Build("voxrt_fifo", {}, ("bench_fifo",)),
     "stream_register": Build("voxrt_stream_register", {}, ("bench_stream_register",)),
+    "stream_register-cut": Build("voxrt_stream_register", {"CutsReady": 1}, ("bench_stream_register",)),
     "free_list": Build("voxrt_free_list", {"RowBits": 5}, ("bench_free_list",)),
     "ray_queue": Build("voxrt_ray_queue", {}, ("bench_ray_queue",)),
     "pixel_buffer": Build("voxrt_pixel_buffer", {"Depth": 16, "StoresEarlier": 1}, ("bench_pixel_buffer",)),
@@ -79,6 +80,7 @@ BUILDS = {
     "pixel_packer": Build("voxrt_pixel_packer", {}, ("bench_pixel_packer",)),
     "scan": Build("voxrt_scan", {}, ("bench_scan",)),
     "ray_generator": Build("voxrt_ray_generator", {}, ("bench_ray_generator",)),
+    "ray_generator-ahead": Build("voxrt_ray_generator", {"Ahead": 1}, ("bench_ray_generator",)),
     "ray_setup": Build("voxrt_ray_setup", {"MaxDepth": 6, "Lanes": 5, "Light": 1}, ("bench_ray_setup",)),
     "ray_setup-shared": Build(
         "voxrt_ray_setup",
@@ -87,6 +89,7 @@ BUILDS = {
     ),
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
+    "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),
     "shader-given": Build("voxrt_shader", {"Given": 1}, ("bench_shader",)),
     "shader-shared": Build("voxrt_shader", {"RayClocks": 4}, ("bench_shader",), narrow=True),
     "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
