@@ -28,8 +28,8 @@ TOO_LARGE = {"z1", "banked"}
 CACHED = 2
 HEAD = """\
 Designs of boards with Lattice ECP5, speed grade 6, real pins, yosys `synth_ecp5` and nextpnr: the system clock that the
-longest path between registers allows, in MHz, by the seed of the placement; -: not routed. Configurations that are no
-board's are in the design of the ULX3S board with an LFE5U-85F.
+longest path between registers allows, in MHz, by the seed of the placement. Configurations that are no board's are in
+the design of the ULX3S board with an LFE5U-85F.
 
 | design | lanes | MHz | LUT4 | FF | multipliers 18 x 18 | block RAMs of 18 Kbit |
 |---|---|---|---|---|---|---|
