@@ -78,7 +78,7 @@ module voxrt_pixels
     assign ordered       = merged;
   end
 
-  // With many lanes, the shader's ready ends here, and does not go on to all of them.
+  // With many lanes, the shader's ready is too far from them to reach them in the same clock.
   voxrt_stream_register #(
     .Width    (MergeBits),
     .CutsReady(many_lanes(Lanes))

@@ -52,7 +52,8 @@ module voxrt_shader
   logic signed [ScanBits-1:0] direction[3];
 
   // With many lanes, directions are made ahead: a pixel that enters moves a pointer, not the generator, which is far away.
-  localparam bit Ahead = many_lanes(Lanes);
+  // Only where the pipeline moves at every clock.
+  localparam bit Ahead = many_lanes(Lanes) && RayClocks == 1;
 
   voxrt_ray_generator #(
     .Ahead(Ahead)
@@ -92,7 +93,8 @@ module voxrt_shader
 
   always_ff @(posedge clk_i) begin
     credits_q <= credits_q - CountBits'(enters) + CountBits'(leaves);
-    // One clock late: a pixel may have entered since. Directions that are made ahead run out at the frame's end alone.
+    // One clock late: a pixel may have entered since. With Ahead the FIFO of directions is empty only before the frame's
+    // first direction and after its last one.
     ready_q <= credits_q > CountBits'(1);
     if (Ahead && !direction_valid) ready_q <= 1'b0;
     if (!rst_ni) begin
@@ -110,7 +112,7 @@ module voxrt_shader
   always_ff @(posedge clk_i) begin
     if (advance) valid_q <= {valid_q[Stages-1:1], enters};
     if (!rst_ni) valid_q <= '0;
-    // Ahead: `enters` does not enable stage 1, which may read what no pixel is.
+    // With Ahead, stage 1 loads at every clock, because enters is a long path. valid_q says whether it holds a pixel.
     if (Ahead ? 1'b1 : enters) info_q[1] <= '{pixel: pixel_i, first: first, line_end: line_end, last: last};
     for (int unsigned s = 2; s <= Stages; s++) if (moves[s-1]) info_q[s] <= info_q[s-1];
   end

@@ -65,6 +65,13 @@ BUILDS = {
         narrow=True,
         repeats=True,
     ),
+    "micro-many": Build(
+        CORE,
+        {"Lanes": 5, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "RayClocks": 4},
+        ("bench_core",),
+        narrow=True,
+        repeats=True,
+    ),
     "lod": Build(
         CORE,
         {"Lanes": 2, "MaxDepth": 6, "PositionBits": 13, "BlockBits": 8, "Lod": 1},
@@ -90,6 +97,7 @@ BUILDS = {
     "divide": Build("voxrt_divide", {}, ("bench_divide",)),
     "shader": Build("voxrt_shader", {}, ("bench_shader",)),
     "shader-many": Build("voxrt_shader", {"Lanes": 5}, ("bench_shader",)),
+    "shader-many-shared": Build("voxrt_shader", {"Lanes": 5, "RayClocks": 4}, ("bench_shader",), narrow=True),
     "shader-given": Build("voxrt_shader", {"Given": 1}, ("bench_shader",)),
     "shader-shared": Build("voxrt_shader", {"RayClocks": 4}, ("bench_shader",), narrow=True),
     "multiply": Build("voxrt_multiply", {"ABits": 40, "BBits": 8}, ("bench_multiply",)),
