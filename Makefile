@@ -180,10 +180,13 @@ build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp
 clean:
 	rm -rf $(VENV) build demo
 
-$(VENV)/.installed: $(VENV)/.ready $(PACKAGE)
+# Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
+# the same sources are built quickly too.
+export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
+$(VENV)/.installed: $(VENV)/.build $(PACKAGE)
 	@echo "building voxrt, its native code and the verilated ray tracer: a few minutes when anything changed"
 	@rm -rf build/wheel
-	@$(PIP) wheel --no-deps --wheel-dir build/wheel .
+	@PATH="$(abspath $(BIN)):$$PATH" $(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel .
 	@$(PIP) install --force-reinstall --no-deps build/wheel/*.whl
 	@$(PIP) install build/wheel/*.whl
 	@touch $@
@@ -199,7 +202,7 @@ $(VENV)/.actionlint: $(VENV)/.ready Makefile
 	  echo "actionlint cannot be built by the Go that is here"; fi
 	@touch $@
 
-$(VENV)/.hardware $(VENV)/.estimate $(VENV)/.docs $(VENV)/.web: $(VENV)/.%: $(VENV)/.ready pyproject.toml
+$(VENV)/.build $(VENV)/.hardware $(VENV)/.estimate $(VENV)/.docs $(VENV)/.web: $(VENV)/.%: $(VENV)/.ready pyproject.toml
 	@$(PIP) install --group $*
 	@touch $@
 

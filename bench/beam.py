@@ -19,15 +19,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import voxrt
-from voxrt.beam import SCREEN, BeamFit, fit_beam
-from voxrt.bitstream import BaseDesign, read_board
 from voxrt.board.designs import build
 from voxrt.board.designs.boot_table import BOARD_REGISTERS, boot_table, encode_octree
 from voxrt.board.designs.simulation.board_simulation import BoardSimulation, compile_sources
-from voxrt.board_scenes import board_scene
+from voxrt.boards.beam import SCREEN, BeamFit, fit_beam
+from voxrt.boards.bitstream import BaseDesign, read_board
+from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.octree import Rom, from_dense
-from voxrt.orbit import orbit
+from voxrt.views.orbit import orbit
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from rtl_scenes import terrain

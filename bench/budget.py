@@ -19,7 +19,7 @@ import numpy as np
 
 import voxrt
 from voxrt import export, octree
-from voxrt.fitting import Views, fit_budget
+from voxrt.building.fitting import Views, fit_budget
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

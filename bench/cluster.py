@@ -22,8 +22,8 @@ from typing import NamedTuple
 
 import voxrt
 from voxrt import octree
-from voxrt.blockwise import block_voxelizer, plan_build
-from voxrt.cluster import cluster_side
+from voxrt.plans.blockwise import block_voxelizer, plan_build
+from voxrt.plans.cluster import cluster_side
 
 FAN_IN = 4
 MOST_PIECES = 16

@@ -15,9 +15,9 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import voxrt
-from voxrt.beam import SCREEN_HZ, BoardTracer, fit_frames
 from voxrt.board.designs import build
-from voxrt.orbit import orbit
+from voxrt.boards.beam import SCREEN_HZ, BoardTracer, fit_frames
+from voxrt.views.orbit import orbit
 
 ROOT = Path(__file__).resolve().parents[1]
 DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"

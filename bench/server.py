@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import asset_reader, load_scene
+from voxrt.boards.board_scenes import asset_reader, load_scene
 from voxrt.serve.frame_client import FrameClient, open_client
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer

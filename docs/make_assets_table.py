@@ -143,7 +143,7 @@ def examine_all() -> list[Row]:
     context = multiprocessing.get_context("forkserver")
     # What every process needs is imported once, before they part.
     formats = ("gltf.load", "obj.load", "ply.load", "stl.load", "usd.isolated")
-    context.set_forkserver_preload(["voxrt.pipeline", *(f"voxrt.voxelize.formats.{name}" for name in formats)])
+    context.set_forkserver_preload(["voxrt.building.pipeline", *(f"voxrt.voxelize.formats.{name}" for name in formats)])
     with ThreadPoolExecutor(PROCESSES) as pool:
         return list(pool.map(lambda asset: _examine_apart(context, asset), listed_assets(ROOT)))
 

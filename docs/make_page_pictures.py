@@ -13,7 +13,7 @@ import threading
 from pathlib import Path
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import asset_reader
+from voxrt.boards.board_scenes import asset_reader
 from voxrt.serve.scene_library import SceneLibrary
 from voxrt.serve.server import FrameServer
 from voxrt.serve.server_options import ServerOptions

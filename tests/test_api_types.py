@@ -13,7 +13,7 @@ import pytest
 
 import voxrt
 from voxrt import build_options, octree, sim, voxelize
-from voxrt.build_options import BuildKeywords, BuildOptions
+from voxrt.options.build_options import BuildKeywords, BuildOptions
 
 ROOT = Path(__file__).resolve().parents[1]
 

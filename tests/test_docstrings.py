@@ -19,7 +19,7 @@ NEEDS = {
     "voxrt.view.cells": "pyvista",
     "voxrt.view.pictures": "pyvista",
     "voxrt.view.window": "pyvista",
-    "voxrt.depth_likeness": "open3d",
+    "voxrt.views.depth_likeness": "open3d",
     "voxrt.sim.rendering.check": "voxrt.sim._rtl",
     "voxrt.sim.hardware.shader_features": "voxrt.sim._rtl",
 }
@@ -27,7 +27,8 @@ NEEDS = {
 
 RETURNED = {
     "voxrt.export.Manifest", "voxrt.export.RomFiles", "voxrt.export.RomInfo", "voxrt.export.WordFile",
-    "voxrt.fitting.BudgetFit", "voxrt.fitting.InteriorFit", "voxrt.depth_likeness.LikenessAtDepth",
+    "voxrt.building.fitting.BudgetFit", "voxrt.building.fitting.InteriorFit",
+    "voxrt.views.depth_likeness.LikenessAtDepth",
     "voxrt.octree.Census", "voxrt.octree.Difference", "voxrt.octree.Fit", "voxrt.octree.Leaves", "voxrt.octree.Octant",
     "voxrt.octree.Region", "voxrt.octree.SurfaceChange", "voxrt.sim.Comparison", "voxrt.sim.EngineCheck",
     "voxrt.sim.Frame", "voxrt.sim.Likeness", "voxrt.sim.RayHits", "voxrt.sim.Reading", "voxrt.sim.RenderCost",

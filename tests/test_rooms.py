@@ -22,6 +22,9 @@ MAY_IMPORT = {
 }
 """Room: the rooms that it may import, besides itself. The front door, voxrt's own modules, may import all."""
 
+INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
+"""The folders of ``voxrt/``, each of which imports itself and those before it."""
+
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
 """Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
 
@@ -109,6 +112,21 @@ def test_rooms_import_in_one_direction(graph):
         for target in targets
         if room_of(target) not in MAY_IMPORT[room_of(name)] | {room_of(name)}
         and target != "voxrt"  # the package itself holds no code that rooms could use
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_folders_of_voxrt_import_in_one_direction(graph):
+    def place(module: str) -> int:
+        _, folder, *_ = (*module.split("."), "", "")
+        return INSIDE_VOXRT.index(folder) if folder in INSIDE_VOXRT else -1
+
+    wrong = [
+        f"{name} imports {target}"
+        for name, targets in graph.items()
+        if place(name) >= 0
+        for target in targets
+        if place(target) > place(name)
     ]
     assert not wrong, "\n".join(wrong)
 

@@ -94,22 +94,22 @@ __all__ = [
 ]
 
 _HOMES = {
-    "voxrt.animation": ("build_animation",),
-    "voxrt.animation_takes": ("frame_times",),
-    "voxrt.baking": ("Bake",),
-    "voxrt.build_options": ("BuildOptions",),
-    "voxrt.build_result": ("BuildResult",),
+    "voxrt.building.animation": ("build_animation",),
+    "voxrt.building.animation_takes": ("frame_times",),
+    "voxrt.building.baking": ("Bake",),
+    "voxrt.options.build_options": ("BuildOptions",),
+    "voxrt.building.result": ("BuildResult",),
     "voxrt.export": (
         "read_any",
         "read_rom",
         "rom_info",
     ),
-    "voxrt.fitting": (
+    "voxrt.building.fitting": (
         "BudgetFit",
         "InteriorFit",
     ),
-    "voxrt.from_arrays": ("mesh_scene",),
-    "voxrt.depth_likeness": (
+    "voxrt.sources.from_arrays": ("mesh_scene",),
+    "voxrt.views.depth_likeness": (
         "LikenessAtDepth",
         "draw_likeness_curve",
         "likeness_curve",
@@ -128,14 +128,14 @@ _HOMES = {
         "Lighting",
     ),
     "voxrt.outputs": ("OutputError",),
-    "voxrt.pictures": (
+    "voxrt.views.pictures": (
         "Picture",
         "animation_camera",
         "render",
         "save_animation",
         "save_picture",
     ),
-    "voxrt.pipeline": (
+    "voxrt.building.pipeline": (
         "build",
         "voxelize_mesh",
     ),
@@ -154,7 +154,7 @@ _HOMES = {
         "shader_features",
     ),
     "voxrt.view": ("ViewerError",),
-    "voxrt.viewpoint": (
+    "voxrt.views.viewpoint": (
         "ViewpointError",
         "aim_camera",
     ),
@@ -168,7 +168,7 @@ _HOMES = {
         "fit_grid",
         "load",
     ),
-    "voxrt.writers": (
+    "voxrt.views.writers": (
         "WRITABLE_SUFFIXES",
         "convert",
     ),
@@ -178,21 +178,18 @@ _ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 
 if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
     from voxrt import board, export, octree, serve, sim, view, voxelize
-    from voxrt.animation import build_animation
-    from voxrt.animation_takes import frame_times
-    from voxrt.baking import Bake
-    from voxrt.build_options import BuildOptions
-    from voxrt.build_result import BuildResult
-    from voxrt.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve
+    from voxrt.building.animation import build_animation
+    from voxrt.building.animation_takes import frame_times
+    from voxrt.building.baking import Bake
+    from voxrt.building.fitting import BudgetFit, InteriorFit
+    from voxrt.building.pipeline import build, voxelize_mesh
+    from voxrt.building.result import BuildResult
     from voxrt.errors import ToolError
     from voxrt.export import read_any, read_rom, rom_info
-    from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.from_arrays import mesh_scene
     from voxrt.octree import BOARDS, Octree, Region, Rom, RomError, diff, differing_regions
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.options.build_options import BuildOptions
     from voxrt.outputs import OutputError
-    from voxrt.pictures import Picture, animation_camera, render, save_animation, save_picture
-    from voxrt.pipeline import build, voxelize_mesh
     from voxrt.sim import (
         Frame,
         NoSuchConfigurationError,
@@ -206,10 +203,13 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
         follow_ray,
         shader_features,
     )
+    from voxrt.sources.from_arrays import mesh_scene
     from voxrt.view import ViewerError
-    from voxrt.viewpoint import ViewpointError, aim_camera
+    from voxrt.views.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve
+    from voxrt.views.pictures import Picture, animation_camera, render, save_animation, save_picture
+    from voxrt.views.viewpoint import ViewpointError, aim_camera
+    from voxrt.views.writers import WRITABLE_SUFFIXES, convert
     from voxrt.voxelize import AssetError, DoesNotFitError, Grid, Material, Scene, SceneWarning, fit_grid, load
-    from voxrt.writers import WRITABLE_SUFFIXES, convert
 else:
 
     def __getattr__(name: str) -> object:
@@ -225,4 +225,4 @@ def __dir__() -> list[str]:
 
 
 if "IPython" in sys.modules:  # a notebook: it finds the cards on the values' classes
-    import_module("voxrt.cards")
+    import_module("voxrt.building.cards")

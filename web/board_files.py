@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from voxrt.beam import SCREEN, configuration_of
-from voxrt.bitstream import board_names, pack, read_board
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import places
 from voxrt.board.designs.boot_table import (
@@ -26,6 +24,8 @@ from voxrt.board.designs.boot_table import (
 )
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene
+from voxrt.boards.beam import SCREEN, configuration_of
+from voxrt.boards.bitstream import board_names, pack, read_board
 from voxrt.octree.camera import Camera, Lighting
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from voxrt.bitstream import Memory, PlacedBoard
+    from voxrt.boards.bitstream import Memory, PlacedBoard
 
 SCALES = 3
 _CAMERA = Camera((0, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0))

@@ -16,7 +16,7 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.view import View
-from voxrt.board_scenes import board_scene
+from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 
 EXAMPLES = Path(sys.argv[0]).resolve().parents[1]

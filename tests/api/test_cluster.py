@@ -14,8 +14,8 @@ import pytest
 from oracles.meshes import icosphere
 
 import voxrt
-from voxrt.blockwise import join_tiles
-from voxrt.local_workers import completed
+from voxrt.plans.blockwise import join_tiles
+from voxrt.plans.local_workers import completed
 
 distributed = pytest.importorskip("distributed")
 
@@ -96,9 +96,9 @@ def test_squares_of_tiles_that_workers_join_give_the_same_bytes(on_a_cluster, tm
         names.extend(pieces)
         return join_tiles(pieces, *others)
 
-    monkeypatch.setattr("voxrt.cluster._JOINERS", 1)
-    monkeypatch.setattr("voxrt.cluster._TILES_PER_WORKER", 32)
-    monkeypatch.setattr("voxrt.cluster.join_tiles", look)
+    monkeypatch.setattr("voxrt.plans.cluster._JOINERS", 1)
+    monkeypatch.setattr("voxrt.plans.cluster._TILES_PER_WORKER", 32)
+    monkeypatch.setattr("voxrt.plans.cluster.join_tiles", look)
     asset = tmp_path / "ball.obj"
     ball = icosphere(2, (0.0, 0.0, 0.0), 1.0)
     lines = [f"v {x} {y} {z}" for x, y, z in ball.positions]
@@ -212,7 +212,7 @@ def test_an_interrupted_cluster_leaves_tiles_and_nothing_else(number, code, alon
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("voxrt.cluster._WAIT", 0.5)
+    monkeypatch.setattr("voxrt.plans.cluster._WAIT", 0.5)
     with pytest.raises(voxrt.ToolError, match=r"tcp://127.0.0.1:9: no scheduler with a worker answers") as refused:
         voxrt.build(EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, scheduler="tcp://127.0.0.1:9")
     assert "\n" not in str(refused.value)

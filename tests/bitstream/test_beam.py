@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import voxrt
-from voxrt.beam import SCREEN, SCREEN_HZ, BoardTracer, beam_lead, fit_beam, fit_frames
+from voxrt.boards.beam import SCREEN, SCREEN_HZ, BoardTracer, beam_lead, fit_beam, fit_frames
 from voxrt.octree.camera import Camera, look_at
-from voxrt.orbit import orbit
 from voxrt.sim import _model
+from voxrt.views.orbit import orbit
 
 BUFFER_LINES, LINES = 16, 525  # of the boards: board/designs/board_pkg.sv
 BANDS = 12

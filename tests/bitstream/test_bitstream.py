@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 import voxrt
-from voxrt.beam import BeamFit
-from voxrt.bitstream import BaseDesign, Memory, PlacedBoard, board_names, make_bitstream, read_board
 from voxrt.board.designs import build
 from voxrt.board.designs.base_design import base_contents, find_slices, patch_config
 from voxrt.board.designs.boot_table import CAMERAS
-from voxrt.board_scenes import board_scene, load_scene
+from voxrt.boards.beam import BeamFit
+from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names, make_bitstream, read_board
+from voxrt.boards.board_scenes import board_scene, load_scene
 from voxrt.errors import ToolError
 from voxrt.export import Blob
 from voxrt.octree import BOARDS
-from voxrt.orbit import orbit
+from voxrt.views.orbit import orbit
 
 BLOCK_BITS = 8
 ROWS, BITS = 8 << BLOCK_BITS, 10

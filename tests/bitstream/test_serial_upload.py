@@ -15,8 +15,8 @@ import pytest
 from fakes.ecp5_board import Board
 
 import voxrt
-from voxrt.board_scenes import load_scene
-from voxrt.orbit import orbit
+from voxrt.boards.board_scenes import load_scene
+from voxrt.views.orbit import orbit
 
 pytest.importorskip("serial", reason="pyserial is not installed")
 

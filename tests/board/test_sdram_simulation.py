@@ -37,7 +37,7 @@ from voxrt.board.register_writes import camera_writes
 from voxrt.board.scene import relocate
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import Lighting, View
-from voxrt.board_scenes import load_scene
+from voxrt.boards.board_scenes import load_scene
 from voxrt.octree.camera import look_at
 
 pytestmark = [

@@ -14,7 +14,7 @@ import voxrt
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View
-from voxrt.board_scenes import board_scene
+from voxrt.boards.board_scenes import board_scene
 from voxrt.cli.run import run
 from voxrt.export import blob_bytes
 from voxrt.serve.blob import read_blob as read_on_board

@@ -5,7 +5,7 @@ import pytest
 
 import voxrt
 from voxrt import export
-from voxrt.board_scenes import load_scene
+from voxrt.boards.board_scenes import load_scene
 from voxrt.sim import Lighting
 from voxrt.sim import render as render_frame
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import voxrt as package
-from voxrt.bitstream import BaseDesign, Memory, PlacedBoard, board_names
+from voxrt.boards.bitstream import BaseDesign, Memory, PlacedBoard, board_names
 from voxrt.cli.bitstream import read_memory, summary_rows
 from voxrt.cli.bitstream_results import BitstreamResult
 from voxrt.octree import coarsen

@@ -9,7 +9,7 @@ from oracles.gltf_writer import GltfWriter
 import voxrt
 from voxrt import octree
 from voxrt.sim import render as render_frame
-from voxrt.viewpoint import authored_camera, stands_inside
+from voxrt.views.viewpoint import authored_camera, stands_inside
 from voxrt.voxelize import EMPTY, Material, Scene, SceneObject, Viewpoint
 from voxrt.voxelize.formats.gltf import load_gltf
 

@@ -18,7 +18,7 @@ import voxrt as library
 AT_EVERY_TOUCH = """
 import os, shutil, signal, sys
 from itertools import count
-import voxrt.pipeline
+import voxrt.building.pipeline
 from voxrt.cli import main
 number, folder = int(sys.argv[1]), os.getcwd()
 touches = moment = 0

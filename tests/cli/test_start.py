@@ -22,12 +22,12 @@ LIBRARIES = {"numpy", "msgspec", "PIL", "trimesh", "pxr", "pyvista", "websockets
 PARSER = {"cyclopts", "rich", "docstring_parser", "attrs"}
 OTHER_WORK = {
     "numpy.ma",
-    "voxrt.baking",
+    "voxrt.building.baking",
     "voxrt.board",
-    "voxrt.fitting",
-    "voxrt.from_arrays",
+    "voxrt.building.fitting",
+    "voxrt.sources.from_arrays",
     "voxrt.octree.budget",
-    "voxrt.pictures",
+    "voxrt.views.pictures",
     "voxrt.serve",
     "voxrt.sim._model",
     "voxrt.sim._rtl",

@@ -131,7 +131,7 @@ def test_help_imports_no_heavy_library(folder):
     code = (
         "import sys\nfrom voxrt.cli import main\nsys.argv = ['voxrt', '--help']\n"
         "try:\n    main()\nfinally:\n"
-        "    assert not {'numpy', 'PIL', 'trimesh', 'pxr', 'voxrt.pipeline'} & set(sys.modules)"
+        "    assert not {'numpy', 'PIL', 'trimesh', 'pxr', 'voxrt.building.pipeline'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True)
 

@@ -7,7 +7,7 @@ import pytest
 
 from voxrt import Camera, Material, Rom, ViewpointError, aim_camera, render
 from voxrt.octree import from_dense
-from voxrt.viewpoint import authored_camera
+from voxrt.views.viewpoint import authored_camera
 from voxrt.voxelize import EMPTY, Grid, Viewpoint
 
 SIZE = (80, 60)

@@ -12,7 +12,7 @@ from fakes.scene_reader import ReadyScenes
 from oracles.cuts import memory_of
 
 from voxrt.board.simulated.model import ModelDevice
-from voxrt.board_scenes import asset_reader, board_scene
+from voxrt.boards.board_scenes import asset_reader, board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
 from voxrt.serve.scene_library import SceneLibrary

@@ -13,10 +13,10 @@ import pytest
 from PIL import Image
 
 from voxrt import BuildOptions, build, export
+from voxrt.building.fitting import fit_budget
 from voxrt.cli import progress
 from voxrt.cli.run import run
-from voxrt.estimate import BuildEstimate, estimate_build
-from voxrt.fitting import fit_budget
+from voxrt.plans.estimate import BuildEstimate, estimate_build
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 

@@ -6,7 +6,7 @@ from oracles.octree import reference_words, unshared_words
 from oracles.random_worlds import dense_cubes
 
 from voxrt import octree
-from voxrt.fitting import Views, fit_budget
+from voxrt.building.fitting import Views, fit_budget
 from voxrt.voxelize import DoesNotFitError, Material
 
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from voxrt.plain_verilog import plain_verilog
+from voxrt.boards.plain_verilog import plain_verilog
 from voxrt.rtl.configurations import read_configurations
 
 

@@ -13,7 +13,7 @@ from oracles.memory import words_of
 from oracles.random_cameras import random_voxels
 
 from voxrt.board.registers import MATERIALS, REGISTERS
-from voxrt.plain_verilog import merge_modules, plain_verilog
+from voxrt.boards.plain_verilog import merge_modules, plain_verilog
 from voxrt.rtl.configurations import RTL, read_configurations
 from voxrt.sim import _model
 

@@ -17,7 +17,7 @@ from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, refit
-from voxrt.board_scenes import board_scene
+from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob
 from voxrt.octree import Octree, Rom
 from voxrt.sim import Camera, Lighting, NoSuchConfigurationError, SimulatorError, render

@@ -10,7 +10,7 @@ from voxrt import octree, sim
 from voxrt.octree.camera import THREE_QUARTER, Lighting
 from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of, registers_of
-from voxrt.viewpoint import aim_camera
+from voxrt.views.viewpoint import aim_camera
 
 SIZE = (320, 240)
 

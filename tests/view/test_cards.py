@@ -63,7 +63,7 @@ def test_the_deepest_world_is_drawn_in_its_coarse_octants():
 
 def test_builds_scenes_and_rays():
     import voxrt
-    import voxrt.cards
+    import voxrt.building.cards
     from voxrt.sim import follow_ray
 
     built = voxrt.build(EXAMPLES / "house.obj", depth=4)

@@ -25,12 +25,12 @@ from fakes.static_page import (
 
 import voxrt
 from voxrt import aim_camera
-from voxrt.beam import SCREEN, fit_beam
-from voxrt.bitstream import make_bitstream, read_board
-from voxrt.board_scenes import board_scene
+from voxrt.boards.beam import SCREEN, fit_beam
+from voxrt.boards.bitstream import make_bitstream, read_board
+from voxrt.boards.board_scenes import board_scene
 from voxrt.export import Blob, write_rom
 from voxrt.octree.camera import Lighting
-from voxrt.orbit import orbit
+from voxrt.views.orbit import orbit
 from voxrt.voxelize import EMPTY
 
 if TYPE_CHECKING:

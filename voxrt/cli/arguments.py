@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args
 
 from cyclopts import Parameter
 
-from voxrt.backgrounds import read_background
 from voxrt.cli.errors import UsageError
+from voxrt.options.backgrounds import read_background
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -183,7 +183,7 @@ def board_name(_type: type, tokens: Sequence[Token]) -> str:
 
 def design_name(_type: type, tokens: Sequence[Token]) -> str:
     """Read the name of a board with a design, however it is spelled."""
-    from voxrt.bitstream import board_names  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.boards.bitstream import board_names  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     return _board_of(tokens, board_names())
 

@@ -22,7 +22,7 @@ from voxrt.cli.results import print_json
 from voxrt.outputs import check_folder, writing
 
 if TYPE_CHECKING:
-    from voxrt.bitstream import PlacedBoard
+    from voxrt.boards.bitstream import PlacedBoard
     from voxrt.export import Blob
 
 
@@ -62,10 +62,10 @@ def bitstream(
     reporting
         The form of the output.
     """
-    from voxrt.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
-    from voxrt.bitstream import load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
-    from voxrt.board_scenes import board_scene  # noqa: PLC0415
-    from voxrt.orbit import orbit  # noqa: PLC0415
+    from voxrt.boards.beam import SCREEN, SMALL, fit_beam, fit_frames  # noqa: PLC0415
+    from voxrt.boards.bitstream import load_bitstream, make_bitstream  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415
+    from voxrt.views.orbit import orbit  # noqa: PLC0415
 
     if seed is not None and not rebuild:
         raise UsageError("--seed is of the placement, which --rebuild makes; give both")
@@ -96,7 +96,7 @@ def bitstream(
 
 
 def _place(name: str, seed: int | None, *, rebuild: bool) -> PlacedBoard:
-    from voxrt.bitstream import read_board, rebuild_board  # noqa: PLC0415
+    from voxrt.boards.bitstream import read_board, rebuild_board  # noqa: PLC0415
 
     if not rebuild:
         return read_board(name)

@@ -12,9 +12,9 @@ from voxrt.cli.results import BudgetEntry, budget_entry
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.beam import BeamFit
-    from voxrt.bitstream import PlacedBoard
-    from voxrt.fitting import BudgetFit
+    from voxrt.boards.beam import BeamFit
+    from voxrt.boards.bitstream import PlacedBoard
+    from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Rom
 
 

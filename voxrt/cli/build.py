@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from voxrt.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 from voxrt.cli.arguments import (
     Backdrop,
     Direction,
@@ -33,6 +32,7 @@ from voxrt.cli.building import build_all, check_company, check_frames
 from voxrt.cli.errors import UsageError
 from voxrt.cli.lengths import metres, metres_per_unit
 from voxrt.cli.option_help import OPTION_HELP
+from voxrt.options.build_options import BuildOptions, Dialect, Engine, Fill, Geometry, Pow2, UpAxis
 
 _ASSET = (
     "A glTF (.gltf, .glb), OBJ, USD (.usd, .usda, .usdc, .usdz), STL or PLY file, or a scene of such files (.toml)."

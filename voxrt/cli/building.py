@@ -16,8 +16,8 @@ from voxrt.cli.progress import build_bar
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.build_options import BuildOptions
     from voxrt.cli.arguments import FrameChoice
+    from voxrt.options.build_options import BuildOptions
 
 _NAMED = 32  # so many materials still read as a list
 
@@ -33,7 +33,7 @@ def build_all(
 ) -> None:
     """Build assets one after another, or the animation of all, and say what was made."""
     reports = []
-    import_module("voxrt.pipeline")  # a part of the start
+    import_module("voxrt.building.pipeline")  # a part of the start
     waited = process_age()
     for asset in assets if frames is None else assets[:1]:
         begun = perf_counter()
@@ -78,7 +78,7 @@ def _build(
             return voxrt.build(asset, output, options, progress=bar.begin, estimated=bar.estimate, clustered=bar.tiles)
         made: Path | list[Path] = asset
         if frames == "files" and (len(assets) > 1 or not asset.is_dir()):
-            from voxrt.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it
+            from voxrt.building.animation_takes import natural_order  # noqa: PLC0415 - NumPy comes with it
 
             made = sorted(assets, key=natural_order)
         times = None if frames == "files" else voxrt.frame_times(*frames)
@@ -93,7 +93,7 @@ def check_company(assets: tuple[Path, ...], output: Path, preview: str | None) -
         raise UsageError(f"--preview {preview} is one picture for {len(assets)} assets; leave the file out")
     if output.suffix.lower() in voxrt.export.WORD_SUFFIXES and not output.is_dir():
         raise UsageError(f"-o {output} is one file for {len(assets)} assets; name a folder")
-    from voxrt.asset_source import asset_name  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
+    from voxrt.sources.source import asset_name  # noqa: PLC0415 - NumPy comes with it, and --help must be instant
 
     names: dict[str, Path] = {}
     for asset in assets:

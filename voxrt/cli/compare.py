@@ -15,9 +15,9 @@ from voxrt.cli.messages import complain, summarize, tabulate, warn
 from voxrt.cli.results import print_json
 
 if TYPE_CHECKING:
-    from voxrt.depth_likeness import LikenessAtDepth
     from voxrt.octree import Rom
     from voxrt.sim import Camera, EngineCheck
+    from voxrt.views.depth_likeness import LikenessAtDepth
 
 _COARSEST = 3
 """The first depth of the curve."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 from voxrt.cli.arguments import Depth, Pixels, Reporting, Sight, choice
 from voxrt.cli.configuration import find_configuration
 from voxrt.cli.errors import UsageError
@@ -17,8 +16,9 @@ from voxrt.cli.memory_results import ConvertResult
 from voxrt.cli.messages import name_file, summarize
 from voxrt.cli.results import print_json, warning_entries
 from voxrt.cli.source import read_source
+from voxrt.options.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 from voxrt.outputs import check_folder, writing
-from voxrt.writers import WORD_WRITERS
+from voxrt.views.writers import WORD_WRITERS
 
 if TYPE_CHECKING:
     from voxrt.cli.source import Source
@@ -94,8 +94,8 @@ def _write_core(source: Source, folder: Path, config: str | None, size: tuple[in
     """Write what a core holds; remove what another configuration has left in the folder."""
     from voxrt.board.errors import Refused  # noqa: PLC0415
     from voxrt.board.view import View  # noqa: PLC0415
-    from voxrt.board_scenes import board_scene  # noqa: PLC0415 - NumPy comes with it
-    from voxrt.core_files import MEMORY_FILES, check_fit, core_files  # noqa: PLC0415
+    from voxrt.boards.board_scenes import board_scene  # noqa: PLC0415 - NumPy comes with it
+    from voxrt.boards.core_files import MEMORY_FILES, check_fit, core_files  # noqa: PLC0415
     from voxrt.export.atomic import write_together  # noqa: PLC0415
 
     lighting = source.blob.lighting or voxrt.Lighting()

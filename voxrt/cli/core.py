@@ -7,13 +7,13 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from voxrt.boards.plain_verilog import STAGES, plain_verilog
 from voxrt.cli.arguments import Messages
 from voxrt.cli.configuration import find_configuration
 from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import print_answer, summarize, tabulate
 from voxrt.cli.progress import stage_bar
 from voxrt.outputs import check_folder, writing
-from voxrt.plain_verilog import STAGES, plain_verilog
 from voxrt.rtl.configurations import RTL, read_configurations
 
 

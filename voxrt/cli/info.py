@@ -7,12 +7,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from voxrt.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 from voxrt.cli.arguments import Depth, Reporting, choice
 from voxrt.cli.memory_results import info_result
 from voxrt.cli.messages import frames_row, summarize, tabulate
 from voxrt.cli.results import print_json
 from voxrt.cli.source import read_source
+from voxrt.options.build_options import Dialect  # noqa: TC001 - cyclopts reads the signature
 
 
 def info(

@@ -20,10 +20,10 @@ from voxrt.export.info import BoardInfo, LevelInfo, MaterialInfo  # noqa: TC001
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.depth_likeness import LikenessAtDepth
     from voxrt.export import Blob
     from voxrt.octree import Animation
     from voxrt.sim import Camera, Likeness, RayPath
+    from voxrt.views.depth_likeness import LikenessAtDepth
 
 _AXES = ("x", "y", "z", None)
 """By the numbers of axes; the last is :data:`voxrt.sim.FACE_NONE`."""

@@ -1,11 +1,11 @@
-"""The documentation of :class:`~voxrt.build_options.BuildOptions` as help for the command line."""
+"""The documentation of :class:`~voxrt.options.build_options.BuildOptions` as help for the command line."""
 
 from __future__ import annotations
 
 import inspect
 import re
 
-from voxrt.build_options import BuildOptions
+from voxrt.options.build_options import BuildOptions
 
 
 def _option_help(documentation: str) -> dict[str, str]:

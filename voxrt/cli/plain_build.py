@@ -40,8 +40,8 @@ def read_plain_build(arguments: Sequence[str]) -> Callable[[], None] | None:
     depth = said.get("depth")
     if not assets or depth not in (None, *_DEPTHS):
         return None
-    from voxrt.build_options import BuildOptions, Fill  # noqa: PLC0415 - other commands do without
     from voxrt.cli.building import build_all, check_company  # noqa: PLC0415 - as above
+    from voxrt.options.build_options import BuildOptions, Fill  # noqa: PLC0415 - other commands do without
 
     fill: Fill | None = next((one for one in get_args(Fill) if one == said.get("fill", BuildOptions.fill)), None)
     if fill is None:

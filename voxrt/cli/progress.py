@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress, TaskID
 
-    from voxrt.cluster import ClusterProgress
-    from voxrt.estimate import BuildEstimate
+    from voxrt.plans.cluster import ClusterProgress
+    from voxrt.plans.estimate import BuildEstimate
 
 LONG = 60.0
 """Seconds from which a build is announced by an estimate."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 from cyclopts import Parameter
 
 import voxrt
-from voxrt.build_options import Dialect, Engine  # noqa: TC001 - cyclopts reads the signature
 from voxrt.cli.arguments import (
     Backdrop,
     Depth,
@@ -28,6 +27,7 @@ from voxrt.cli.messages import cache_cost, picture_cost, summarize, warn
 from voxrt.cli.results import print_json, render_result
 from voxrt.cli.source import read_source
 from voxrt.octree import with_means
+from voxrt.options.build_options import Dialect, Engine  # noqa: TC001 - cyclopts reads the signature
 
 if TYPE_CHECKING:
     from voxrt import Camera, Frame, Lighting
@@ -270,7 +270,7 @@ class _Asked(NamedTuple):
 
     def take_path(self, scene: Path, cameras: Path, file: Path, cluster: Cluster, *, check: bool, json: bool) -> None:
         """Render a picture for each camera of a file, save them, and say what they cost."""
-        from voxrt.camera_path import PictureJob, read_cameras, take_pictures  # noqa: PLC0415 - most pictures are one
+        from voxrt.building.camera_path import PictureJob, read_cameras, take_pictures  # noqa: PLC0415 - most pictures are one
 
         job = PictureJob(
             self.memory,

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from voxrt.build_result import BuildResult
-    from voxrt.fitting import BudgetFit, InteriorFit
-    from voxrt.pictures import Picture
+    from voxrt.building.fitting import BudgetFit, InteriorFit
+    from voxrt.building.result import BuildResult
     from voxrt.sim import Camera, RenderCost
+    from voxrt.views.pictures import Picture
     from voxrt.voxelize import SceneWarning
 
 

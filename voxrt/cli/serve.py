@@ -80,7 +80,7 @@ def serve(
         The form of the output: --json prints the address of the page on standard output.
     """
     from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.board_scenes import asset_reader  # noqa: PLC0415 - it imports NumPy
+    from voxrt.boards.board_scenes import asset_reader  # noqa: PLC0415 - it imports NumPy
     from voxrt.serve.scene_library import SceneLibrary, scene_names  # noqa: PLC0415
     from voxrt.serve.server_options import ServerOptions  # noqa: PLC0415
     from voxrt.serve.token import choose_token  # noqa: PLC0415
@@ -106,7 +106,7 @@ def serve(
 
 def _examples() -> list[Path]:
     """Return the example scenes that are installed with voxrt; in a checkout they are links."""
-    from voxrt.board_scenes import ASSET_READER_SUFFIXES  # noqa: PLC0415 - it imports NumPy
+    from voxrt.boards.board_scenes import ASSET_READER_SUFFIXES  # noqa: PLC0415 - it imports NumPy
 
     folder = Path(voxrt.__file__).with_name("example_scenes")
     return sorted(path.resolve() for path in folder.iterdir() if path.suffix in ASSET_READER_SUFFIXES)
@@ -155,7 +155,7 @@ def open_serial_device(port: str) -> SerialDevice:
 
 def _read_first(path: Path, depth: int | None) -> Scene:
     from voxrt.board.errors import Refused  # noqa: PLC0415
-    from voxrt.board_scenes import load_scene  # noqa: PLC0415
+    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path, depth)

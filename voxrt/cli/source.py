@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import voxrt
-from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Sight
 from voxrt.cli.messages import warn
 from voxrt.cli.progress import build_bar
 from voxrt.octree.camera import refit
-from voxrt.viewpoint import authored_camera
+from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.views.viewpoint import authored_camera
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Depth, Pixel, Pixels, Reporting, Sight
 from voxrt.cli.errors import UsageError
 from voxrt.cli.memory_results import trace_result
 from voxrt.cli.messages import summarize, tabulate
 from voxrt.cli.results import print_json
 from voxrt.cli.source import read_source
+from voxrt.options.build_options import PREVIEW_SIZE
 from voxrt.sim import follow_pixel
 from voxrt.view.ray_table import HEADS, describe_end, describe_root, ray_table
 

@@ -73,7 +73,7 @@ def upload(
 
 def _read(path: Path) -> Scene:
     from voxrt.board.errors import Refused  # noqa: PLC0415 - it imports NumPy
-    from voxrt.board_scenes import load_scene  # noqa: PLC0415
+    from voxrt.boards.board_scenes import load_scene  # noqa: PLC0415
 
     try:
         return load_scene(path)
@@ -110,9 +110,9 @@ def _check_fit(scene: Scene, board: dict[str, Any]) -> None:
 
 def _write_serial(path: Path, scene: Scene, port: str, progress: Progress, *, dry_run: bool) -> None:
     """Let the board at a serial line show the scene and turn, as from its bitstream."""
-    from voxrt.beam import SCREEN, BoardTracer, fit_beam  # noqa: PLC0415
     from voxrt.board.errors import DeviceError  # noqa: PLC0415
-    from voxrt.orbit import orbit  # noqa: PLC0415
+    from voxrt.boards.beam import SCREEN, BoardTracer, fit_beam  # noqa: PLC0415
+    from voxrt.views.orbit import orbit  # noqa: PLC0415
 
     rom = voxrt.read_any(path)[0].rom
     try:

@@ -11,18 +11,18 @@ from cyclopts import Parameter
 import voxrt
 from voxrt import octree
 from voxrt import view as drawing
-from voxrt.asset_source import as_text
-from voxrt.build_options import PREVIEW_SIZE
 from voxrt.cli.arguments import Depth, Messages, Pixel, Pixels, Sight, choice, png, whole
 from voxrt.cli.errors import UsageError
 from voxrt.cli.messages import summarize
 from voxrt.cli.source import Source, read_source
 from voxrt.cli.trace import check_pixel
+from voxrt.options.build_options import PREVIEW_SIZE
 from voxrt.outputs import check_folder, writing
+from voxrt.sources.source import as_text
 from voxrt.view.animation import ANIMATION_SUFFIXES, write_animation
 from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import find_owners, preview_of, scene_triangles
-from voxrt.writers import PANE_WRITERS
+from voxrt.views.writers import PANE_WRITERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -26,7 +26,7 @@ using namespace voxrt;
 using namespace voxrt::web;
 using octree::Words;
 
-// Colours that are tried where baked light does not fit with all of them, and the default picture: voxrt/baking.py.
+// Colours that are tried where baked light does not fit with all of them, and the default picture: voxrt/building/baking.py.
 constexpr int kPalettes[] = {sim::kMostBakedColours, 64, 16};
 constexpr int kWidth = 640, kHeight = 480;
 

@@ -1,4 +1,4 @@
-// Cameras that see all of a memory, as voxrt.octree.camera and voxrt.viewpoint make them.
+// Cameras that see all of a memory, as voxrt.octree.camera and voxrt.views.viewpoint make them.
 #pragma once
 
 #include "frame.h"

@@ -17,7 +17,7 @@ from voxrt.voxelize.warning_log import WarningLog
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from voxrt.build_options import UpAxis
+    from voxrt.options.build_options import UpAxis
 
 OPAQUE_FROM = 0.5
 """Faces of a lower opacity are left out."""

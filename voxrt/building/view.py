@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from voxrt.build_options import PREVIEW_SIZE
-from voxrt.viewpoint import ViewpointError, authored_camera, authored_lighting, stands_inside
+from voxrt.options.build_options import PREVIEW_SIZE
+from voxrt.views.viewpoint import ViewpointError, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
 
 if TYPE_CHECKING:
-    from voxrt.build_options import BuildOptions
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.pictures import Picture
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.views.pictures import Picture
     from voxrt.voxelize import Scene
 
 
@@ -25,7 +25,7 @@ def preview(rom: Rom, camera: Camera, lighting: Lighting | None, options: BuildO
     SimulatorError
         The engine cannot hold the memory, the camera or the light.
     """
-    from voxrt.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
+    from voxrt.views.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
 
     frame = render(
         rom,
@@ -66,7 +66,7 @@ def authored_view(
     except ViewpointError as error:
         unseen.append(SceneWarning("light", str(error)))
     if options.bake:
-        from voxrt.baking import FLAT  # noqa: PLC0415 - slow to import, and few builds do this
+        from voxrt.building.baking import FLAT  # noqa: PLC0415 - slow to import, and few builds do this
 
         if lighting is not None and lighting.on:
             unseen.append(SceneWarning("light", "the scene's light is not used: the sun and the sky were baked"))

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, voxelize
-from voxrt.estimate import estimate_build
 from voxrt.octree import _native as octree_native
 from voxrt.outputs import OutputError
-from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
+from voxrt.plans.estimate import estimate_build
+from voxrt.plans.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
 from voxrt.voxelize import BlockVoxelizer, VoxelizationReport
 from voxrt.voxelize import _native as voxelize_native
 from voxrt.voxelize.free_memory import free_memory
@@ -25,10 +25,10 @@ from voxrt.voxelize.free_memory import free_memory
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from voxrt.build_options import BuildOptions
-    from voxrt.estimate import BuildEstimate
     from voxrt.octree import Octree
-    from voxrt.stage_clock import StageClock
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.plans.estimate import BuildEstimate
+    from voxrt.plans.stage_clock import StageClock
     from voxrt.voxelize import ColumnBlock, Grid, Scene
 
 _LEAST_DEPTH = 11

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from voxrt.build_result import BuildResult
-from voxrt.pictures import Picture
+from voxrt.building.result import BuildResult
 from voxrt.sim.image import encode_png
 from voxrt.view.cards import card, octree_rows, register_card, rom_png
+from voxrt.views.pictures import Picture
 
 if TYPE_CHECKING:
     from voxrt.sim import Frame

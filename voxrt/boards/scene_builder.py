@@ -1,6 +1,6 @@
-"""``python -m voxrt.scene_builder DEPTH MEMORY_DEPTH FILE ...``: the process that builds the scenes of a frame server.
+"""``python -m voxrt.boards.scene_builder DEPTH MEMORY_DEPTH FILE ...`` builds the scenes of a frame server.
 
-:func:`voxrt.board_scenes.asset_reader` starts it. An empty argument stands for None.
+:func:`voxrt.boards.board_scenes.asset_reader` starts it. An empty argument stands for None.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from functools import partial
 
-from voxrt.board_scenes import read_files
+from voxrt.boards.board_scenes import read_files
 from voxrt.serve.scene_child import run_child
 
 if __name__ == "__main__":

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from voxrt.baking import Bake
+    from voxrt.building.baking import Bake
+    from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.export import BakedLight, Blob, Source
-    from voxrt.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Animation, Octree, Rom
     from voxrt.octree.camera import Camera, Lighting
-    from voxrt.pictures import Picture
+    from voxrt.views.pictures import Picture
     from voxrt.voxelize import ObjectReport, Scene, SceneWarning
 
 

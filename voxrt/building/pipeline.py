@@ -9,33 +9,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.asset_source import as_text, asset_label, asset_name, load_asset, refuse_warnings
-from voxrt.blockwise import build_octree, plan_build
-from voxrt.build_grid import build_grid
-from voxrt.build_options import merge_options
-from voxrt.build_result import BuildResult
-from voxrt.build_view import authored_view, preview
-from voxrt.build_writing import named_settings, write_build
-from voxrt.object_selection import crowded_out, refuse_empty, without_objects
-from voxrt.output_files import output_files, refuse_other_asset
+from voxrt.building.grid import build_grid
+from voxrt.building.output_files import output_files, refuse_other_asset
+from voxrt.building.result import BuildResult
+from voxrt.building.view import authored_view, preview
+from voxrt.building.writing import named_settings, write_build
+from voxrt.options.build_options import merge_options
+from voxrt.plans.blockwise import build_octree, plan_build
+from voxrt.plans.stage_clock import StageClock
+from voxrt.plans.tile_store import TileStore
 from voxrt.sim import SimulatorError
-from voxrt.stage_clock import StageClock
-from voxrt.tile_store import TileStore
-from voxrt.viewpoint import ViewpointError, aim_camera, authored_camera, named_camera
+from voxrt.sources.object_selection import crowded_out, refuse_empty, without_objects
+from voxrt.sources.source import as_text, asset_label, asset_name, load_asset, refuse_warnings
+from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, named_camera
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
-    from voxrt.asset_source import Asset
-    from voxrt.baking import Bake
-    from voxrt.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
-    from voxrt.cluster import ClusterProgress
-    from voxrt.estimate import BuildEstimate
-    from voxrt.fitting import BudgetFit, InteriorFit
+    from voxrt.building.baking import Bake
+    from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.octree import Octree, Rom
     from voxrt.octree.camera import Camera
+    from voxrt.options.build_options import BuildKeywords, BuildOptions, Fill, UpAxis
+    from voxrt.plans.cluster import ClusterProgress
+    from voxrt.plans.estimate import BuildEstimate
+    from voxrt.sources.source import Asset
     from voxrt.voxelize import Grid, Scene, VoxelizationReport
 
 
@@ -213,7 +213,7 @@ def voxelize_mesh(
     >>> cube.coordinates.shape
     (512, 3)
     """
-    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - most builds are of files
+    from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - most builds are of files
 
     scene = mesh_scene(vertices, faces, colours=colours, face_colours=face_colours, up=up, unit=unit)
     return build(scene, depth=depth, voxel_size=voxel_size, fill=fill, threads=threads)
@@ -257,7 +257,7 @@ def _voxelize(
         or (options.scheduler, options.workers) == (None, None)
     ):
         return scene, grid, *build_octree(scene, grid, options, clock, plan=plan, store=store)
-    from voxrt.cluster import build_on_cluster  # noqa: PLC0415 - few builds do this
+    from voxrt.plans.cluster import build_on_cluster  # noqa: PLC0415 - few builds do this
 
     return scene, grid, *build_on_cluster(asset, scene, grid, options, clock, plan=plan, store=store, told=clustered)
 
@@ -281,8 +281,8 @@ def _finished(
     interior, budget = options.interior, options.budget
     if interior == "keep" and budget is None and not options.bake:
         return rom, None, None, None
-    from voxrt.baking import bake, fit_baked  # noqa: PLC0415 - slow to import, and few builds do this
-    from voxrt.fitting import find_material, fit_budget, fit_interior  # noqa: PLC0415
+    from voxrt.building.baking import bake, fit_baked  # noqa: PLC0415 - slow to import, and few builds do this
+    from voxrt.building.fitting import find_material, fit_budget, fit_interior  # noqa: PLC0415
 
     if interior not in ("keep", "any"):
         with clock.stage("interior"):

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from voxrt.pictures import render
-from voxrt.viewpoint import ViewpointError, aim_camera
+from voxrt.views.pictures import render
+from voxrt.views.viewpoint import ViewpointError, aim_camera
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Sequence
 
-    from voxrt.build_options import Engine
     from voxrt.octree import Rom
     from voxrt.octree.camera import Camera, Lighting
+    from voxrt.options.build_options import Engine
     from voxrt.sim import Dram, Frame
 
 _MOST_CAMERAS = 1 << 20
@@ -159,7 +159,7 @@ def take_pictures(
     if scheduler is None and workers is None:
         made = (take_picture(job, number, camera) for number, camera in enumerate(cameras))
     else:
-        from voxrt.cluster import in_order  # noqa: PLC0415 - few paths do this
+        from voxrt.plans.cluster import in_order  # noqa: PLC0415 - few paths do this
 
         made = in_order(take_picture, job, cameras, scheduler=scheduler, workers=workers)
     for one in made:

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from voxrt import sim
-from voxrt.fitting import fit_budget
+from voxrt.building.fitting import fit_budget
 from voxrt.octree.camera import Lighting
 from voxrt.sim.baking.bake import MOST_COLOURS, bake_light
 from voxrt.sim.baking.daylight import Daylight, sky_light
-from voxrt.viewpoint import aim_camera
+from voxrt.views.viewpoint import aim_camera
 
 if TYPE_CHECKING:
-    from voxrt.build_options import BuildOptions
-    from voxrt.fitting import BudgetFit
+    from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Rom
+    from voxrt.options.build_options import BuildOptions
     from voxrt.sim.baking.bake import BakedLight
     from voxrt.voxelize import Scene
 

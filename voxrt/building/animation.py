@@ -11,33 +11,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from voxrt import export, octree, voxelize
-from voxrt.animation_takes import takes_of
-from voxrt.asset_source import as_text, asset_label, load_asset, refuse_warnings
-from voxrt.blockwise import build_octree, plan_build
-from voxrt.build_grid import build_grid
-from voxrt.build_options import DEFAULT_DEPTH, merge_options
-from voxrt.build_result import BuildResult
-from voxrt.build_view import authored_view, preview
-from voxrt.build_writing import named_settings, write_build
-from voxrt.fitting import find_material, fit_interior
-from voxrt.object_selection import crowded_out, refuse_empty, without_objects
+from voxrt.building.animation_takes import takes_of
+from voxrt.building.fitting import find_material, fit_interior
+from voxrt.building.grid import build_grid
+from voxrt.building.output_files import output_files, refuse_other_asset
+from voxrt.building.result import BuildResult
+from voxrt.building.view import authored_view, preview
+from voxrt.building.writing import named_settings, write_build
 from voxrt.octree import Animation, AnimationFrame
-from voxrt.output_files import output_files, refuse_other_asset
+from voxrt.options.build_options import DEFAULT_DEPTH, merge_options
+from voxrt.plans.blockwise import build_octree, plan_build
+from voxrt.plans.stage_clock import StageClock
 from voxrt.sim import SimulatorError, frame_animation
-from voxrt.stage_clock import StageClock
-from voxrt.viewpoint import ViewpointError, authored_camera, named_camera
+from voxrt.sources.object_selection import crowded_out, refuse_empty, without_objects
+from voxrt.sources.source import as_text, asset_label, load_asset, refuse_warnings
+from voxrt.views.viewpoint import ViewpointError, authored_camera, named_camera
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.scene_frames import merge_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from voxrt.animation_takes import Take
-    from voxrt.asset_source import Asset
-    from voxrt.build_options import BuildKeywords, BuildOptions
-    from voxrt.estimate import BuildEstimate
+    from voxrt.building.animation_takes import Take
     from voxrt.octree import Octree
-    from voxrt.pictures import Picture
+    from voxrt.options.build_options import BuildKeywords, BuildOptions
+    from voxrt.plans.estimate import BuildEstimate
+    from voxrt.sources.source import Asset
+    from voxrt.views.pictures import Picture
     from voxrt.voxelize import Grid, ObjectReport, SceneFrames, SceneWarning
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import trimesh
     from numpy.typing import ArrayLike
 
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
 
 Asset: TypeAlias = Union[
     str, "os.PathLike[str]", Scene, "tuple[ArrayLike, ArrayLike]", "trimesh.Trimesh", "trimesh.Scene"
@@ -34,7 +34,7 @@ def asset_name(asset: Asset) -> str:
         return as_text(Path(asset).stem)
     if isinstance(asset, Scene):
         return as_text(asset.name)
-    from voxrt.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
+    from voxrt.sources.from_trimesh import is_trimesh  # noqa: PLC0415 - files do not need it
 
     if is_trimesh(asset):
         return as_text(Path(str(asset.metadata.get("name") or asset.metadata.get("file_name") or "mesh")).stem)
@@ -80,8 +80,8 @@ def load_asset(asset: Asset, options: BuildOptions) -> Scene:
             variants=tuple(options.variants),
             allow_outside=options.allow_outside,
         )
-    from voxrt.from_arrays import mesh_scene  # noqa: PLC0415 - as above
-    from voxrt.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
+    from voxrt.sources.from_arrays import mesh_scene  # noqa: PLC0415 - as above
+    from voxrt.sources.from_trimesh import is_trimesh, trimesh_scene  # noqa: PLC0415
 
     unused = {"time": options.time, "animation": options.animation, "variants": options.variants}
     if isinstance(asset, Scene):

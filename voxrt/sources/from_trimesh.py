@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from voxrt.from_arrays import OPAQUE_FROM, appearance_of_corners, triangles_of
+from voxrt.sources.from_arrays import OPAQUE_FROM, appearance_of_corners, triangles_of
 from voxrt.voxelize import DEFAULT_COLOUR, Appearance, Scene, SceneObject, SurfaceAppearance, Texture
 from voxrt.voxelize.arguments import real_array
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import trimesh
     from numpy.typing import NDArray
 
-    from voxrt.build_options import UpAxis
+    from voxrt.options.build_options import UpAxis
 
 _OPAQUE_WHITE = (1.0, 1.0, 1.0, 1.0)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voxrt import voxelize
-from voxrt.build_options import DEFAULT_DEPTH
+from voxrt.options.build_options import DEFAULT_DEPTH
 
 if TYPE_CHECKING:
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import Grid, Scene
 
 

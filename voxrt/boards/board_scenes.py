@@ -9,13 +9,13 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
-from voxrt.build_options import PREVIEW_SIZE
+from voxrt.building.pipeline import build
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
-from voxrt.pictures import animation_camera
-from voxrt.pipeline import build
+from voxrt.options.build_options import PREVIEW_SIZE
 from voxrt.serve.blob import read_blob
 from voxrt.serve.scene_process import ChildReader
+from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
@@ -122,4 +122,4 @@ def asset_reader(depth: int | None = None, memory_depth: int | None = None) -> C
         Levels of memories without manifest; None refuses them.
     """
     levels = ["" if number is None else str(number) for number in (depth, memory_depth)]
-    return ChildReader(ASSET_READER_SUFFIXES, ("-m", "voxrt.scene_builder", *levels))
+    return ChildReader(ASSET_READER_SUFFIXES, ("-m", "voxrt.boards.scene_builder", *levels))

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import Grid, Scene
 
 _SECONDS_PER_TRIANGLE = 1e-6

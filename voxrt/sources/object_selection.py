@@ -11,7 +11,7 @@ from voxrt.voxelize.dominant_objects import dominant_objects
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import Grid, ObjectReport, Scene
 
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import sim
-from voxrt.backgrounds import read_background
-from voxrt.build_options import PREVIEW_SIZE
 from voxrt.export import Blob
 from voxrt.octree import Rom
 from voxrt.octree.camera import PLAIN_LIGHTING, refit
+from voxrt.options.backgrounds import read_background
+from voxrt.options.build_options import PREVIEW_SIZE
 from voxrt.outputs import OutputError, check_folder, writing
-from voxrt.viewpoint import aim_camera
+from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from voxrt import octree, sim
 from voxrt.octree.camera import PLAIN_LIGHTING
 from voxrt.sim import _model
 from voxrt.sim.engine_arguments import palette_of
-from voxrt.viewpoint import aim_camera
+from voxrt.views.viewpoint import aim_camera
 from voxrt.voxelize import AssetError
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from voxrt.outputs import writing
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from voxrt.build_options import BuildOptions
-    from voxrt.build_result import BuildResult
-    from voxrt.output_files import OutputFiles
+    from voxrt.building.output_files import OutputFiles
+    from voxrt.building.result import BuildResult
+    from voxrt.options.build_options import BuildOptions
 
 
 def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, sim, voxelize
-from voxrt.viewpoint import aim_camera
+from voxrt.views.viewpoint import aim_camera
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -19,17 +19,17 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from voxrt.beam import BoardTracer
 from voxrt.board.designs import build as design_build
 from voxrt.board.designs.base_design import Slice, patch_config
 from voxrt.board.designs.boot_table import boot_table, encode_octree
+from voxrt.boards.beam import BoardTracer
 from voxrt.errors import ToolError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from voxrt.beam import BeamFit
     from voxrt.board.scene import Scene
+    from voxrt.boards.beam import BeamFit
     from voxrt.octree.camera import Camera, Lighting
 
 _CACHED = 2  # rtl/voxrt_pkg.sv

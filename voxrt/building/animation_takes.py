@@ -10,15 +10,15 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from voxrt.asset_source import as_text, asset_name
-from voxrt.from_trimesh import is_trimesh
+from voxrt.sources.from_trimesh import is_trimesh
+from voxrt.sources.source import as_text, asset_name
 from voxrt.voxelize import AssetError, Scene
 from voxrt.voxelize.arguments import real, whole
 from voxrt.voxelize.assets import SUFFIXES
 
 if TYPE_CHECKING:
-    from voxrt.asset_source import Asset
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.sources.source import Asset
 
 _MOST_FRAMES = 4096
 

@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from voxrt.blockwise import block_voxelizer, join_tiles, tiles_key
-from voxrt.cluster_tasks import TileDone, TileJob, inherited_scene, make_tile, merge_tiles
 from voxrt.errors import ToolError
-from voxrt.local_workers import completed
-from voxrt.tile_store import sum_tallies, tile_name
+from voxrt.plans.blockwise import block_voxelizer, join_tiles, tiles_key
+from voxrt.plans.cluster_tasks import TileDone, TileJob, inherited_scene, make_tile, merge_tiles
+from voxrt.plans.local_workers import completed
+from voxrt.plans.tile_store import sum_tallies, tile_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from distributed import Client, Future
 
-    from voxrt.blockwise import BuildPlan
-    from voxrt.build_options import BuildOptions
     from voxrt.octree import Octree
-    from voxrt.stage_clock import StageClock
-    from voxrt.tile_store import TileStore
+    from voxrt.options.build_options import BuildOptions
+    from voxrt.plans.blockwise import BuildPlan
+    from voxrt.plans.stage_clock import StageClock
+    from voxrt.plans.tile_store import TileStore
     from voxrt.voxelize import BlockVoxelizer, ColumnBlock, Grid, Scene, VoxelizationReport
 
 T = TypeVar("T")
@@ -129,7 +129,7 @@ def build_on_cluster(
     asset
         The file that the workers open, at the same path as here.
     scene, grid, options, clock, plan, store
-        As :func:`voxrt.blockwise.build_octree` takes them. The workers write to `store`'s folder.
+        As :func:`voxrt.plans.blockwise.build_octree` takes them. The workers write to `store`'s folder.
     told
         Called as tiles are finished.
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, get_args
 
-from voxrt.backgrounds import read_background
+from voxrt.options.backgrounds import read_background
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from voxrt.asset_source import as_text
 from voxrt.export import WORD_SUFFIXES
 from voxrt.octree import RomError
 from voxrt.outputs import OutputError, check_folder
+from voxrt.sources.source import as_text
 
 if TYPE_CHECKING:
     import os

@@ -16,18 +16,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt import octree, voxelize
-from voxrt.asset_source import load_asset
-from voxrt.blockwise import block_voxelizer, finish_tile, tiles_key
-from voxrt.object_selection import without_objects
-from voxrt.stage_clock import StageClock
-from voxrt.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
+from voxrt.plans.blockwise import block_voxelizer, finish_tile, tiles_key
+from voxrt.plans.stage_clock import StageClock
+from voxrt.plans.tile_store import Tile, TileStore, sparse_tallies, sum_tallies, tile_name
+from voxrt.sources.object_selection import without_objects
+from voxrt.sources.source import load_asset
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from voxrt.build_options import BuildOptions
+    from voxrt.options.build_options import BuildOptions
     from voxrt.voxelize import BlockVoxelizer, ColumnBlock, Grid
 
 
@@ -68,7 +68,7 @@ class TileDone:
     bytes
         The size of its words.
     tallies
-        As :class:`voxrt.tile_store.Tile` has them.
+        As :class:`voxrt.plans.tile_store.Tile` has them.
     """
 
     name: str

@@ -1,0 +1,1 @@
+"""The options of commands and of the Python API."""

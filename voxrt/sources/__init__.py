@@ -1,0 +1,1 @@
+"""What a build starts from: files, arrays, meshes of trimesh, scenes."""

@@ -1,0 +1,1 @@
+"""Cameras, pictures and the files that show a memory."""
