@@ -80,7 +80,7 @@ _HOMES = {
     "voxrt.octree.budget": ("BOARDS", "Fit", "coarsen", "fit", "share", "shared_words"),
     "voxrt.octree.construct": ("build", "from_dense", "from_points"),
     "voxrt.octree.decoding": ("decode",),
-    "voxrt.octree.dialects": ("DIALECTS", "Dialect", "detect_dialect", "encode"),
+    "voxrt.octree.dialects": ("detect_dialect", "encode"),
     "voxrt.octree.disk_assembly": ("DiskAssembly",),
     "voxrt.octree.difference": ("Difference", "Region", "diff", "differing_regions"),
     "voxrt.octree.errors": ("RomError",),
@@ -97,6 +97,7 @@ _HOMES = {
     "voxrt.octree.surface": ("SurfaceChange", "surface_change"),
     "voxrt.octree.vdb": ("from_vdb",),
     "voxrt.octree.voxel_arrays": ("ARRAY_LIMIT", "to_dense", "to_points"),
+    "voxrt.octree.words": ("DIALECTS", "Dialect"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -115,7 +116,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.octree.construct import build, from_dense, from_points
     from voxrt.octree.dag import DagCensus, OccupancyDag, dag_census, mirrored_blocks, occupancy_dag
     from voxrt.octree.decoding import decode
-    from voxrt.octree.dialects import DIALECTS, Dialect, detect_dialect, encode
+    from voxrt.octree.dialects import detect_dialect, encode
     from voxrt.octree.difference import Difference, Region, diff, differing_regions
     from voxrt.octree.disk_assembly import DiskAssembly
     from voxrt.octree.errors import RomError
@@ -131,6 +132,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others
     from voxrt.octree.surface import SurfaceChange, surface_change
     from voxrt.octree.vdb import from_vdb
     from voxrt.octree.voxel_arrays import ARRAY_LIMIT, to_dense, to_points
+    from voxrt.octree.words import DIALECTS, Dialect
 else:
 
     def __getattr__(name: str) -> object:

@@ -44,7 +44,9 @@ from flat_world import (
 )
 from matplotlib import pyplot as plt
 from matplotlib.patches import FancyArrowPatch, Rectangle
-from quadtree import AXES, UNIT, Reading, crossing_time, is_leaf
+from quadtree import AXES, UNIT, Reading, crossing_time
+
+from voxrt.octree.words import EMPTY, is_leaf, material
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,9 +102,8 @@ def draw_tree() -> Figure:
     for block, (x, y) in spots.items():
         for child in range(4):
             word = WORDS[block + child]
-            material = word & 0xFF if is_leaf(word) else -1
             corner = (x - 0.5 + 0.5 * (child & 1), y - 0.5 + 0.5 * (child >> 1))
-            colour = "#eeeeee" if material < 0 else MATERIALS.get(material, "white")
+            colour = MATERIALS.get(material(word), "white") if is_leaf(word) else "#eeeeee"
             address = block + child
             square(place, *corner, 0.5, facecolor=colour, edgecolor="#777777", linewidth=0.8)
             if address in read:
@@ -353,7 +354,7 @@ def draw_walk() -> Figure:
         if not is_leaf(reading.word):
             continue
         side = 1 << reading.level
-        if reading.word == quadtree.LEAF:
+        if reading.word == EMPTY:
             square(place, *reading.corner, side, facecolor=VISITED, edgecolor="#777777", linewidth=0.8, zorder=1)
         x, y = reading.corner
         place.text(
@@ -374,7 +375,7 @@ def flat_table() -> str:
         side = 1 << reading.level
         what = f"pointer to {reading.word}"
         if is_leaf(reading.word):
-            what = f"leaf, material {reading.word & 0xFF}" if reading.word & 0xFF else "leaf, empty"
+            what = "leaf, empty" if reading.word == EMPTY else f"leaf, material {material(reading.word)}"
         entered = f"{reading.key[0]}, {'xy'[reading.key[1]]}" if reading.key[0] else "start"
         where = f"x {x} to {x + side}, y {y} to {y + side}"
         lines.append(f"| {number} | {reading.address} | {what} | {where} | {entered} | {reading.level} |")
