@@ -1,4 +1,4 @@
-"""The rooms of the house and which of them may import which; no circle of imports anywhere."""
+"""Which top-level folders ("rooms") may import which; no circle of imports anywhere."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ MAY_IMPORT = {
     "board": {"voxelize", "octree", "export", "sim"},
     "serve": {"board"},
 }
-"""Room: the rooms that it may import, besides itself. The front door, voxrt's own modules, may import all."""
+"""Room: the rooms that it may import, besides itself. The modules of ``voxrt/`` may import all."""
 
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it."""
 
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
-"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
+"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the modules of ``voxrt/``."""
 
 
 def module_of(path: Path) -> str:

@@ -1,4 +1,4 @@
-"""Words that the project has given up, and sentences that say "a" where they mean "per", stay out of it."""
+"""Plain English: "per" and not "a" in rates, comments with a subject, nouns as names of variables."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ GENERATED = (
     "bench/results",
 )
 
-RETIRED = {
+RATES = {
     r"(cycles?|clocks?) a (pixel|ray|frame)": "cycles per pixel",
     r"words a (ray|pixel)": "words per ray",
     r"(frames|rays|pixels|words|megabytes|steps) a second": "frames per second",
     r"(rays|words|pixels) a (cycle|clock)": "rays per cycle",
     r"words? a line": "words per line",
     r"voxels a side": "voxels per side",
-    r"voxrt_pixel_generator": "voxrt_core",
-    r"voxrt_lane_turn|lane turn": "slot scheduler",
-    r"\blight_way\b": "light direction",
-    r"\bhas_place\b": "grant",
-    r"\bAscent\b": "OctreeBuilder",
-    r"stand[_-]ins?\b": "representatives (budget), proxies (colliders), fakes (tests)",
-    r"\b_?Wardrobe\b|\b(Coat|Dress)\b": "surface appearance, material map",
-    r"\bput_on\b|\bhunger\b": "load, wait until ready",
-    r"\bAudience\b": "Clients",
 }
-"""What is retired, as a pattern, and what is said instead."""
+"""Patterns of rates, and the words to write."""
+
+CODE = ("octree", "export", "sim", "view", "voxelize")
+"""Folders whose Python follows the rules for code."""
+
+RULES = {
+    r"(?:# |\"\"\")Of ": "begin the comment with its subject",
+    r"^ *(?:told|said|asked|given)\b(?:: [^=]+)? :?= ": "name the variable by a noun",
+}
+"""Patterns that code avoids, and what to do."""
 
 ALLOWED: dict[str, str] = {
-    "CHANGELOG.md": "it tells what former versions were called",
-    "tests/test_words.py": "the list",
+    "CHANGELOG.md": "it quotes former versions",
+    "tests/test_words.py": "it has the patterns",
 }
 
 
@@ -58,13 +58,22 @@ def own_texts() -> list[Path]:
     )
 
 
-@pytest.mark.parametrize(("pattern", "instead"), RETIRED.items())
-def test_retired_words_are_gone(pattern, instead):
-    retired = re.compile(pattern)
-    found = [
-        f"{path.relative_to(ROOT)}:{number}: {match.group()}: say {instead}"
-        for path in own_texts()
+def violations(pattern, advice, paths):
+    rule = re.compile(pattern)
+    return [
+        f"{path.relative_to(ROOT)}:{number}: {match.group()}: {advice}"
+        for path in paths
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-        if (match := retired.search(line))
+        if (match := rule.search(line))
     ]
-    assert found == []
+
+
+@pytest.mark.parametrize(("pattern", "advice"), RATES.items())
+def test_rates_say_per(pattern, advice):
+    assert violations(pattern, advice, own_texts()) == []
+
+
+@pytest.mark.parametrize(("pattern", "advice"), RULES.items())
+def test_code_follows_the_rules(pattern, advice):
+    code = [path for path in own_texts() if path.suffix == ".py" and path.relative_to(ROOT).parts[0] in CODE]
+    assert violations(pattern, advice, code) == []

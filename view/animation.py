@@ -118,7 +118,7 @@ def _write_mp4(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
             check=False,
         )
         if done.returncode:
-            *_, said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
-            raise ViewerError(f"FFmpeg failed: {said}; write a .gif")
+            *_, last_line = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
+            raise ViewerError(f"FFmpeg failed: {last_line}; write a .gif")
         data = film.read_bytes()
     write_atomically(path, data)

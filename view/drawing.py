@@ -123,8 +123,8 @@ def draw_octants(
     if grid.n_cells and (entries := _legend(pane, grid, levels)):
         top = 1 - min(0.2, _TITLE / plotter.window_size[1])
         draw_legend(plotter, "legend", entries, left=1 - legend_width(plotter), top=top)
-    told = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
-    plotter.add_text(told, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
+    caption = f"{pane.rom.name}: {grid.n_cells:,} octants shown, {int(grid.field_data['hidden'][0]):,} hidden"
+    plotter.add_text(caption, position="upper_left", font_size=10, color=TEXT, name=f"told {number}")
 
 
 def add_octants(

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from voxrt.view.pane import DrawnRay, Pane, Preview
 
 PREVIEW_WIDTH, PREVIEW_HEIGHT = 0.42, 0.4
-"""Of a preview, as parts of the picture's."""
+"""The size of a preview, as parts of the picture's."""
 
 _COLUMN, _LINE = 0.61, 1.1  # of the table, as parts of the letters' size
 _SMALLEST, _READABLE, _LARGEST = 7, 9, 15  # letters of the table; smaller ones than the readable only for wide tables

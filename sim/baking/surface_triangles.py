@@ -43,7 +43,7 @@ def _arrays(
     mesh: Mesh,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]:
     positions = np.ascontiguousarray(mesh.positions, np.float64)
-    given = mesh.normals
-    directions = np.zeros((0, 3)) if given is None else np.ascontiguousarray(given.vectors, np.float64)
-    rows = np.zeros((0, 3), np.int32) if given is None else np.ascontiguousarray(given.rows)
+    normals = mesh.normals
+    directions = np.zeros((0, 3)) if normals is None else np.ascontiguousarray(normals.vectors, np.float64)
+    rows = np.zeros((0, 3), np.int32) if normals is None else np.ascontiguousarray(normals.rows)
     return positions, np.ascontiguousarray(mesh.triangles), directions, rows

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RTL, DESIGNS = ROOT / "rtl", ROOT / "board" / "designs"
 CORE = "voxrt_core"
 
-# Of each parameter that a module checks: the ends of its range, and values outside of it.
+# The parameters that modules check: the ends of the range of each, and values outside of it.
 RANGES = {
     "voxrt_core": {
         "Lanes": ((1, 16), (0,)),  # To elaborate 255 takes a minute.
