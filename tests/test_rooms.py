@@ -26,7 +26,7 @@ INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "c
 """The folders of ``voxrt/``, each of which imports itself and those before it."""
 
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
-"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the modules of ``voxrt/``."""
+"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt/`` may import ``voxrt.rtl``."""
 
 
 def module_of(path: Path) -> str:

@@ -51,21 +51,9 @@ def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
 
 
 def write_gif(path: Path, pictures: Iterable[NDArray[np.uint8]], period: float | None = None) -> None:
-    """Write pictures as a GIF that plays for ever.
+    """Write pictures, as for :func:`write_animation`, as a GIF that plays for ever.
 
-    Parameters
-    ----------
-    path
-        The file.
-    pictures
-        One or more, uint8, shape (H, W, 3), sRGB, all of one size.
-    period
-        Seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    `period` is the seconds from one to the next, in steps of 1/100; None for that of :data:`PICTURES_A_SECOND`.
     """
     images = [Image.fromarray(picture) for picture in pictures]
     palette = _palette(images)

@@ -25,21 +25,7 @@ _PAGE = Path(__file__).with_suffix(".html")
 def write_page(path: Path, rom: Rom, mesh: OctantMesh, faces: Faces = FACES) -> None:
     """Write octants as a page that needs no other file. A click shows an octant's address, word, level and material.
 
-    Parameters
-    ----------
-    path
-        The file.
-    rom
-        The memory and its materials.
-    mesh
-        Some of its octants.
-    faces
-        The brightness of the sides.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    `faces` is the brightness of the sides.
     """
     points = mesh.points
     packed = b"".join(

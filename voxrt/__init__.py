@@ -1,6 +1,6 @@
 """voxrt: meshes to voxels to an octree memory to pictures ray-traced by hardware.
 
-The public Python interface. Each name is imported when it is first used, so ``import voxrt`` and ``voxrt --help`` are instant::
+Each public name is imported when it is first used, so ``import voxrt`` and ``voxrt --help`` are instant::
 
     import voxrt
 

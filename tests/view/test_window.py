@@ -7,20 +7,13 @@ import pytest
 
 from voxrt import octree, view
 from voxrt.octree.camera import FACES, look_at
-from voxrt.view.plotter import check_screen
 from voxrt.view.scene_overlay import preview_of
 from voxrt.voxelize import EMPTY, Material
 
 SIZE = (320, 240)
 
 
-@pytest.fixture(autouse=True)
-def _canvas():
-    pytest.importorskip("pyvista", reason="the extra voxrt-build[view] is not installed")
-    try:
-        check_screen(off_screen=True)
-    except view.ViewerError as problem:
-        pytest.skip(str(problem))
+pytestmark = pytest.mark.usefixtures("_canvas")
 
 
 @pytest.fixture

@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of
+from oracles.meshes import box_mesh, icosphere, joined, one_object, scene_of, without
 from oracles.voxels import dense, snap, winding_at
 
 from voxrt.voxelize import Grid, Mesh, SceneObject, voxelize
 
 UNIT = 4096
-
-
-def without(mesh, drop):
-    keep = np.ones(len(mesh.triangles), bool)
-    keep[drop] = False
-    return Mesh(mesh.positions, mesh.triangles[keep], mesh.materials[keep])
 
 
 def asked(cells):
