@@ -16,6 +16,7 @@ import voxrt
 from voxrt import export, octree, sim, view, voxelize
 from voxrt.options import build_options
 from voxrt.options.build_options import BuildKeywords, BuildOptions
+from voxrt.voxelize import authoring
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -87,7 +88,9 @@ def test_every_public_name_is_there_at_run_time():
         voxrt.vozelize  # noqa: B018
 
 
-@pytest.mark.parametrize("package", [voxrt, octree, export, sim, view, voxelize], ids=lambda package: package.__name__)
+@pytest.mark.parametrize(
+    "package", [voxrt, octree, export, sim, view, voxelize, authoring], ids=lambda package: package.__name__
+)
 def test_a_package_exports_what_its_stub_lists(package):
     stub = ast.parse(Path(package.__file__).with_suffix(".pyi").read_text())
     listed = {alias.asname for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names}
