@@ -1,7 +1,8 @@
 """The 32-bit words of an octree memory. This module alone knows their bits; the others in Python ask it.
 
 A word with bit 31 clear is a pointer: the address of octant 0 of a block of 8 words. Any other word is a leaf, which
-holds a material; 0 is empty space. Word 0 is the root; blocks stand at 1 + 8k. Four dialects mark leaves:
+holds a material; 0 is empty space. Word 0 is the root; blocks stand at 1 + 8k. The index of an octant in
+its block is {z, y, x}, x in bit 0. Four dialects mark leaves:
 
 ============ ==================== ====================================================
 dialect      leaf of material m   read by
