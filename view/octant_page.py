@@ -13,6 +13,7 @@ import numpy as np
 
 from voxrt.export.atomic import write_atomically
 from voxrt.octree.camera import FACES
+from voxrt.octree.words import EMPTY
 
 if TYPE_CHECKING:
     from voxrt.octree import Rom
@@ -41,6 +42,7 @@ def write_page(path: Path, rom: Rom, mesh: OctantMesh, faces: Faces = FACES) -> 
     scene = {
         "title": f"{rom.name}: {len(mesh.levels):,} octants shown, {mesh.hidden:,} hidden",
         "depth": rom.octree.depth,
+        "empty": EMPTY,
         "count": len(mesh.levels),
         "materials": [{"name": material.name, "colour": material.colour} for material in rom.materials],
         "octants": base64.b64encode(zlib.compress(packed, 9)).decode(),
