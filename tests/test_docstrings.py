@@ -75,9 +75,9 @@ def test_the_example_runs(name):
             if needed == "pyvista":
                 skip_unless_pyvista_draws()
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.FAIL_FAST)
-    said = []
-    runner.run(EXAMPLES[name], out=said.append)
-    assert runner.failures == 0, "".join(said)
+    output = []
+    runner.run(EXAMPLES[name], out=output.append)
+    assert runner.failures == 0, "".join(output)
 
 
 def skip_unless_pyvista_draws():

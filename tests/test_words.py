@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -27,14 +28,8 @@ RATES = {
 }
 """Patterns of rates, and the words to write."""
 
-CODE = ("octree", "export", "sim", "view", "voxelize")
-"""Folders whose Python follows the rules for code."""
-
-RULES = {
-    r"(?:# |\"\"\")Of ": "begin the comment with its subject",
-    r"^ *(?:told|said|asked|given)\b(?:: [^=]+)? :?= ": "name the variable by a noun",
-}
-"""Patterns that code avoids, and what to do."""
+NO_NOUNS = {"told", "said", "asked", "given"}
+"""Words that no variable, parameter or function has for a name."""
 
 ALLOWED: dict[str, str] = {
     "CHANGELOG.md": "it quotes former versions",
@@ -73,7 +68,26 @@ def test_rates_say_per(pattern, advice):
     assert violations(pattern, advice, own_texts()) == []
 
 
-@pytest.mark.parametrize(("pattern", "advice"), RULES.items())
-def test_code_follows_the_rules(pattern, advice):
-    code = [path for path in own_texts() if path.suffix == ".py" and path.relative_to(ROOT).parts[0] in CODE]
-    assert violations(pattern, advice, code) == []
+NOT_YET = tuple(f"voxrt/{folder}/" for folder in ("options", "sources", "views", "plans", "building", "cli"))
+"""Folders whose code is being written anew."""
+
+
+def own_code() -> list[Path]:
+    code = [path for path in own_texts() if path.suffix in {".py", ".pyi"}]
+    return [path for path in code if not path.relative_to(ROOT).as_posix().startswith((*NOT_YET, "tests/cli/"))]
+
+
+def test_comments_begin_with_their_subject():
+    assert violations(r"(?:# |\"\"\")Of ", "begin the comment with its subject", own_code()) == []
+
+
+def test_names_are_nouns():
+    kept = {ast.Name: "id", ast.arg: "arg", ast.FunctionDef: "name"}
+    assert [
+        f"{path.relative_to(ROOT)}:{node.lineno}: name it by a noun"
+        for path in own_code()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if type(node) in kept
+        and getattr(node, kept[type(node)]) in NO_NOUNS
+        and not (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load))
+    ] == []

@@ -101,7 +101,7 @@ def framed(place: Axes, x: float, y: float, side: float, *, colour: str = HIGHLI
     square(place, x, y, side, facecolor="none", edgecolor=colour, linewidth=width, zorder=6)
 
 
-def said(colour: str) -> dict[str, object]:
+def label(colour: str) -> dict[str, object]:
     """Give the style of a text that stands on a drawing."""
     box = {"facecolor": "white", "alpha": 0.9, "edgecolor": "none", "pad": 1.5}
     return {"fontsize": 11, "color": colour, "bbox": box, "zorder": 8}

@@ -241,9 +241,9 @@ class _Writer:
         """Give what a pin always is; None if that changes."""
         bit = self.net(cell, pin)
         chosen = cell["parameters"].get(f"{pin}MUX", "").strip()
-        for given in (chosen, bit):
-            if given in {"0", "1"}:
-                return int(given)
+        for level in (chosen, bit):
+            if level in {"0", "1"}:
+                return int(level)
         drivers = [
             other
             for other in self._module["cells"].values()
