@@ -1,13 +1,11 @@
 #include "bindings.h"
 #include "breadth_first.h"
 #include "coarsen.h"
-#include "dag_counts.h"
 #include "encoded_rows.h"
 #include "fit_candidates.h"
 #include "hidden.h"
 #include "interior.h"
 #include "means.h"
-#include "occupancy_dag.h"
 #include "shared_size.h"
 #include "sight_costs.h"
 #include "surface.h"
@@ -48,35 +46,6 @@ nb::object bind_coarsen(const Vector<Word>& words, unsigned depth, unsigned leve
         const Node root = coarsen(memory, level, pool);
         return breadth_first_words(pool, root);
     }));
-}
-
-nb::object bind_occupancy_dag(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return words_to_numpy(run([&] { return occupancy_dag(memory); }));
-}
-
-nb::object bind_occupied_octree(const Vector<Word>& words, unsigned depth) {
-    return words_to_numpy(run([&] {
-        BlockPool pool;
-        const Node root = occupied_octree(words.data(), words.shape(0), depth, pool);
-        return breadth_first_words(pool, root);
-    }));
-}
-
-// A row per level; the columns are the fields of DagLevel.
-nb::object bind_dag_levels(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    std::vector<std::uint64_t> rows;
-    for (const DagLevel& level : run([&] { return dag_levels(memory); }))
-        rows.insert(rows.end(), {level.tree_nodes, level.tree_words, level.nodes, level.words, level.mirrored_nodes,
-                                 level.mirrored_words});
-    const std::size_t count = rows.size() / 6;
-    return to_numpy(std::move(rows), {count, 6});
-}
-
-std::size_t bind_mirrored_blocks(const Vector<Word>& words, unsigned depth) {
-    const Memory memory = memory_of(words, depth);
-    return run([&] { return mirrored_blocks(memory); });
 }
 
 nb::object bind_fit_candidates(const Vector<Word>& words, unsigned depth, std::size_t limit,
@@ -138,10 +107,6 @@ void bind_derived(nb::module_& m) {
     m.def("encoded_rows", &bind_encoded_rows, "words"_a.noconvert(), "block_bits"_a);
     m.def("shared_words", &bind_shared_words, "words"_a.noconvert(), "depth"_a);
     m.def("coarsen", &bind_coarsen, "words"_a.noconvert(), "depth"_a, "level"_a);
-    m.def("occupancy_dag", &bind_occupancy_dag, "words"_a.noconvert(), "depth"_a);
-    m.def("occupied_octree", &bind_occupied_octree, "words"_a.noconvert(), "depth"_a);
-    m.def("dag_levels", &bind_dag_levels, "words"_a.noconvert(), "depth"_a);
-    m.def("mirrored_blocks", &bind_mirrored_blocks, "words"_a.noconvert(), "depth"_a);
     m.def("mean_materials", &bind_mean_materials, "words"_a.noconvert(), "depth"_a, "light"_a.noconvert());
     m.def("fit_candidates", &bind_fit_candidates, "words"_a.noconvert(), "depth"_a, "limit"_a, "colours"_a);
     m.def("surface_change", &bind_surface_change, "first"_a.noconvert(), "second"_a.noconvert(), "depth"_a);
