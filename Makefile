@@ -100,9 +100,9 @@ comma := ,
 # GCC leaves numbers that do not fit their integer out of "undefined".
 UNDEFINED := undefined,float-cast-overflow
 sanitized = $(CXX) -std=c++20 -O1 -g -Wall -Wextra -fno-sanitize-recover=all -fsanitize=$(subst undefined,$(UNDEFINED),$(subst -,$(comma),$*)) -I$(CURDIR)/build/sanitize/include
-HEADERS := $(wildcard voxelize/src/*.h voxelize/src/*/*.h octree/src/*.h sim/src/model/*.h sim/src/bake/*.h)
+HEADERS := $(wildcard voxelize/src/*/*.h octree/src/*/*.h sim/src/model/*.h sim/src/bake/*.h)
 # $(call sources,FOLDER): what a folder has besides its bindings for Python.
-sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*.cpp $(1)/src/*/*.cpp))
+sources = $(filter-out %/module.cpp %_bindings.cpp,$(wildcard $(1)/src/*/*.cpp))
 # $(call archive,FOLDER): the library of a folder's sources.
 define archive
 @rm -rf $(@:.a=) && mkdir -p $(@:.a=)
@@ -146,13 +146,13 @@ build/sanitize/%/bake: tests/sim/native/bake.cpp build/sanitize/%/libsim.a build
 	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/voxelize: tests/voxelize/native/exercise.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/colour: tests/voxelize/native/colour.cpp build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ivoxelize/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/octree: tests/octree/native/exercise.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
-	$(sanitized) -Ioctree/src -o $@ $^ -pthread
+	$(sanitized) -o $@ $^ -pthread
 
 build/sanitize/%/mesh_to_ray: examples/cpp/mesh_to_ray.cpp build/sanitize/%/liboctree.a build/sanitize/%/libvoxelize.a
 	$(sanitized) -o $@ $^ -pthread
@@ -173,7 +173,7 @@ build/fuzz/native/objects/%.o: %.cpp $(HEADERS) | build/sanitize/include/voxrt
 	$(covered) -fsanitize-coverage=trace-pc -c -o $@ $<
 
 build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp tests/fuzz/native/driver.h $(COVERED)
-	$(covered) -Itests/fuzz/native -I$*/src -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
+	$(covered) -Itests/fuzz/native -o $@ $(filter tests/%.cpp,$^) $(COVERED) -pthread
 
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 

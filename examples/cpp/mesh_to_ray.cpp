@@ -3,10 +3,10 @@
 // Build and run:
 //     cmake -S examples/cpp -B build/cpp -DCMAKE_BUILD_TYPE=Release
 //     cmake --build build/cpp && build/cpp/mesh_to_ray
-#include <voxrt/octree/build.h>
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/build/build.h>
+#include <voxrt/octree/words/verify.h>
 #include <voxrt/sim/ray.h>
-#include <voxrt/voxelize/voxelizer.h>
+#include <voxrt/voxelize/tiles/voxelizer.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -5,7 +5,7 @@
 
 #include <voxrt/bake/baked_light.h>
 #include <voxrt/bake/placed_triangles.h>
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/words/verify.h>
 
 #include <algorithm>
 #include <string>

@@ -3,7 +3,7 @@
 #include "interface_error.h"
 #include "memory.h"
 
-#include <voxrt/octree/encoded_rows.h>
+#include <voxrt/octree/words/encoded_rows.h>
 #include <voxrt/sim/beam.h>
 #include <voxrt/sim/orbit.h>
 

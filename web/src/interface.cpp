@@ -11,12 +11,12 @@
 #include "interface_error.h"
 #include "memory.h"
 
-#include <voxrt/octree/breadth_first.h>
-#include <voxrt/octree/coarsen.h>
-#include <voxrt/octree/leaves.h>
-#include <voxrt/octree/query.h>
-#include <voxrt/octree/validate.h>
-#include <voxrt/octree/verify.h>
+#include <voxrt/octree/build/coarsen.h>
+#include <voxrt/octree/pool/breadth_first.h>
+#include <voxrt/octree/query/leaves.h>
+#include <voxrt/octree/query/query.h>
+#include <voxrt/octree/words/validate.h>
+#include <voxrt/octree/words/verify.h>
 #include <voxrt/sim/frame.h>
 #include <voxrt/sim/frame_tile.h>
 #include <voxrt/sim/ray.h>

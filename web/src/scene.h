@@ -2,11 +2,11 @@
 #pragma once
 
 #include <voxrt/bake/baked_light.h>
-#include <voxrt/octree/words.h>
+#include <voxrt/octree/words/words.h>
 #include <voxrt/voxelize/colour/assign_colours.h>
-#include <voxrt/voxelize/grid_fit.h>
-#include <voxrt/voxelize/material_table.h>
-#include <voxrt/voxelize/object_warnings.h>
+#include <voxrt/voxelize/scene/grid_fit.h>
+#include <voxrt/voxelize/scene/material_table.h>
+#include <voxrt/voxelize/scene/object_warnings.h>
 
 #include <algorithm>
 #include <array>

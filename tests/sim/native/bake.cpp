@@ -8,7 +8,7 @@
 
 #include <voxrt/bake/baked_light.h>
 #include <voxrt/bake/placed_triangles.h>
-#include <voxrt/octree/diff.h>
+#include <voxrt/octree/query/diff.h>
 
 #include <cmath>
 #include <limits>

@@ -4,7 +4,7 @@
 // (material_raster.h).
 #pragma once
 
-#include "../material_table.h"
+#include "../scene/material_table.h"
 #include "appearance.h"
 
 #include <array>

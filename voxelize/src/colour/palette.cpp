@@ -1,6 +1,6 @@
 #include "palette.h"
 
-#include "../interrupt.h"
+#include "../work/interrupt.h"
 #include "srgb.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "raster_cells.h"
 
-#include "../workers.h"
+#include "../work/workers.h"
 #include "srgb.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "raster_layout.h"
 
-#include "../interrupt.h"
+#include "../work/interrupt.h"
 
 #include <algorithm>
 #include <cmath>
