@@ -28,8 +28,6 @@ from voxrt.export.raw import write_raw as write_raw
 from voxrt.export.rom_files import RomFiles as RomFiles
 from voxrt.export.rom_files import read_rom as read_rom
 from voxrt.export.rom_files import write_rom as write_rom
-from voxrt.export.svdag import read_svdag as read_svdag
-from voxrt.export.svdag import write_svdag as write_svdag
 from voxrt.export.vox import read_vox as read_vox
 from voxrt.export.vox import write_vox as write_vox
 from voxrt.export.word_file import WordFile as WordFile

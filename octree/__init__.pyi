@@ -15,11 +15,6 @@ from voxrt.octree.budget import shared_words as shared_words
 from voxrt.octree.construct import build as build
 from voxrt.octree.construct import from_dense as from_dense
 from voxrt.octree.construct import from_points as from_points
-from voxrt.octree.dag import DagCensus as DagCensus
-from voxrt.octree.dag import OccupancyDag as OccupancyDag
-from voxrt.octree.dag import dag_census as dag_census
-from voxrt.octree.dag import mirrored_blocks as mirrored_blocks
-from voxrt.octree.dag import occupancy_dag as occupancy_dag
 from voxrt.octree.decoding import decode as decode
 from voxrt.octree.dialects import detect_dialect as detect_dialect
 from voxrt.octree.dialects import encode as encode
