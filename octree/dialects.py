@@ -95,26 +95,9 @@ def encode(words: NDArray[np.uint32], dialect: str, means: NDArray[np.uint8] | N
 def leaf_materials(
     words: NDArray[np.uint32], dialect: str, *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.uint32]:
-    """Read the words of `dialect` as report words, pointers unchecked.
+    """Read the words of `dialect` (uint32, shape (N,)) as report words, pointers unchecked.
 
-    Parameters
-    ----------
-    words
-        uint32, shape (N,).
-    dialect
-        One of :data:`DIALECTS`.
-    source, lines
-        The file that the words come from and the line of each, for the error.
-
-    Returns
-    -------
-    NDArray[np.uint32]
-        uint32, shape (N,), report dialect.
-
-    Raises
-    ------
-    RomError
-        A word is neither a pointer nor a leaf of that dialect.
+    RomError, which names a line of `source`, where a word is neither a pointer nor a leaf of that dialect.
     """
     origin = as_dialect(dialect)
     if origin == "lod":
@@ -133,24 +116,10 @@ def leaf_materials(
 def block_means(
     words: NDArray[np.uint32], *, source: str = "", lines: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.uint8]:
-    """Read the mean material of each block of a memory of dialect ``lod``.
+    """Read the mean material of each block of a memory of dialect ``lod``, all of whose pointers lead into it.
 
-    Parameters
-    ----------
-    words
-        uint32, shape (1 + 8 * blocks,); every pointer leads into the memory.
-    source, lines
-        The file that the words come from and the line of each, for the error.
-
-    Returns
-    -------
-    NDArray[np.uint8]
-        uint8, shape (blocks,), read-only; 0 for a block that nothing points to.
-
-    Raises
-    ------
-    RomError
-        Two pointers to one block have different means.
+    Return uint8, shape (blocks,), read-only; 0 for a block that nothing points to. RomError, which names a line of
+    `source`, where two pointers to one block have different means.
     """
     pointers = np.flatnonzero(~is_leaf_of(words, "lod"))
     blocks, materials = lod_pointers(words[pointers])

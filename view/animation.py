@@ -30,19 +30,8 @@ _PALETTE_PICTURES = 8  # of an animation that give its palette
 def write_animation(path: Path, pictures: Iterable[NDArray[np.uint8]]) -> None:
     """Write pictures as an animation that plays for ever (GIF) or once (MP4), :data:`PICTURES_A_SECOND`.
 
-    Parameters
-    ----------
-    path
-        The file; its suffix is one of :data:`ANIMATION_SUFFIXES`.
-    pictures
-        One or more, uint8, shape (H, W, 3), sRGB, all of one size; for MP4 of even sides.
-
-    Raises
-    ------
-    ViewerError
-        MP4 is asked for and imageio-ffmpeg is not installed.
-    OSError
-        The file cannot be written.
+    They are uint8, shape (H, W, 3), sRGB, one or more, all of one size; for MP4 of even sides. ViewerError for MP4
+    without imageio-ffmpeg; OSError where the file cannot be written.
     """
     if path.suffix.lower() == ".mp4":
         _write_mp4(path, pictures)

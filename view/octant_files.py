@@ -40,13 +40,7 @@ def read_octants(path: str, **_options: object) -> pyvista.UnstructuredGrid:
     """Read a memory, with its manifest or without, as the cells that :func:`voxrt.view.octants` makes of it.
 
     PyVista finds this by the entry point ``pyvista.readers``, and hands on options that are meant for other readers.
-
-    Raises
-    ------
-    RomError, AssetError
-        The file is no memory.
-    DoesNotFitError
-        It holds too many octants to show.
+    RomError or AssetError where the file is no memory; DoesNotFitError where it holds too many octants to show.
     """
     return octants(read_any(path)[0].rom)
 
