@@ -10,7 +10,7 @@
 #include <voxrt/octree/sight/interior.h>
 #include <voxrt/octree/words/validate.h>
 #include <voxrt/octree/words/verify.h>
-#include <voxrt/sim/ray.h>
+#include <voxrt/sim/rays/ray.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -3,8 +3,8 @@
 #include "interface_error.h"
 #include "scene.h"
 
-#include <voxrt/bake/baked_light.h>
-#include <voxrt/bake/placed_triangles.h>
+#include <voxrt/bake/light/baked_light.h>
+#include <voxrt/bake/surface/placed_triangles.h>
 #include <voxrt/octree/words/verify.h>
 
 #include <algorithm>

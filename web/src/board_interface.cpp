@@ -4,8 +4,8 @@
 #include "memory.h"
 
 #include <voxrt/octree/words/encoded_rows.h>
-#include <voxrt/sim/beam.h>
-#include <voxrt/sim/orbit.h>
+#include <voxrt/sim/views/beam.h>
+#include <voxrt/sim/views/orbit.h>
 
 #include <array>
 #include <optional>

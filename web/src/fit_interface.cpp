@@ -10,10 +10,10 @@
 #include <voxrt/octree/query/diff.h>
 #include <voxrt/octree/sight/surface.h>
 #include <voxrt/octree/words/verify.h>
-#include <voxrt/sim/fit_views.h>
-#include <voxrt/sim/frame_tile.h>
-#include <voxrt/sim/framing.h>
-#include <voxrt/sim/similarity.h>
+#include <voxrt/sim/frames/frame_tile.h>
+#include <voxrt/sim/views/fit_views.h>
+#include <voxrt/sim/views/framing.h>
+#include <voxrt/sim/views/similarity.h>
 
 #include <algorithm>
 #include <array>

@@ -17,14 +17,14 @@ constexpr double kPriceFactor = 0.7;   // from one price to the next
 constexpr unsigned kBisections = 4;
 
 /// Selects the representatives of a memory. This is a facility location problem: a representative costs blocks, and
-/// each brick is shown as the selected one that looks most like it. Solved by adding and dropping (A. A. Kuehn and M.
-/// J. Hamburger, "A Heuristic Program for Locating Warehouses", 1963) at a falling price per block: a representative is
-/// added where it improves the picture by more than it costs, and dropped where it no longer does, until the memory is
-/// full.
+/// each brick is shown as the selected one that looks most like it. It is solved by adding and dropping (A. A. Kuehn
+/// and M. J. Hamburger, "A Heuristic Program for Locating Warehouses", 1963) at a falling price per block: a
+/// representative is added where it improves the picture by more than it costs, and dropped where it no longer does,
+/// until the memory is full.
 class Selection {
 public:
-    /// `unfilled`: only patterns and coarsened ones. A block that no selected one has yet costs its price divided by
-    /// how many representatives would share it, at most `sharing`.
+    /// `unfilled`: select patterns and coarsened ones alone. A block that no selected one has yet costs its price
+    /// divided by how many representatives would share it, at most `sharing`.
     Selection(const Memory& base, unsigned level, Representatives& representatives, bool unfilled,
               std::uint32_t sharing)
         : base_(base), level_(level), representatives_(representatives), unfilled_(unfilled), sharing_(sharing),
@@ -193,8 +193,8 @@ private:
         if (level == level_)
             return representatives_.node(chosen(representatives_.pattern(word)).brick);
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
-        if (const auto known = nodes_.find(key); known != nodes_.end())
-            return known->second;
+        if (const auto entry = nodes_.find(key); entry != nodes_.end())
+            return entry->second;
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant)
             children[octant] = node(base_.child(word, octant, level), level - 1);

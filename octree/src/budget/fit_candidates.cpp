@@ -33,7 +33,7 @@ std::vector<Words> fit_candidates(const Memory& shared, std::size_t words, const
         throw DoesNotFit("the octree does not fit " + std::to_string(words) +
                          " words: as coarse as it may become it takes " + std::to_string(least) +
                          "; give it at least " + std::to_string(least) + " words");
-    const std::size_t finer = (shared.size - 1) / 8 > kManyBlocks ? 2 : 3;
+    const std::size_t finer = block_count(shared.size) > kManyBlocks ? 2 : 3;
     const auto finest = static_cast<unsigned>(worlds.size() > finer ? worlds.size() - finer : 0);
     const Memory world{worlds[finest].data(), worlds[finest].size(), shared.depth};
     const Words hidden = hidden_voxels(world);

@@ -11,14 +11,15 @@
 namespace voxrt::octree {
 namespace {
 
-constexpr std::uint64_t kMostOctants = std::uint64_t{1} << 20; // more count as so many: sums of costs fit 64 bits
+constexpr std::uint64_t kMostOctants = std::uint64_t{1}
+                                       << 20; // a larger number counts as this, so that sums of costs fit 64 bits
 constexpr std::uint32_t kFewPatterns = 4000;
 constexpr std::size_t kChoices = 32;             // per pattern
-constexpr std::size_t kPairs = 24'000'000;       // of a pattern and a representative that are tried, for all patterns,
-constexpr std::size_t kFewestPairs = 1000;       // and at least for each
+constexpr std::size_t kPairs = 24'000'000;       // pairs of a pattern and a representative that are tried in all
+constexpr std::size_t kFewestPairs = 1000;       // pairs that are tried for each pattern at least
 constexpr unsigned kNearlyFull[] = {24, 40, 52}; // of 64 cells
 
-// Octants of `count` cells made uniform, of the material that most of their solid cells have.
+// The brick with its octants of `count` cells made uniform, of the material that most of their solid cells have.
 Cells512 coarsened(const Cells512& cells, unsigned count) {
     Cells512 result;
     for (unsigned first = 0; first < 512; first += count) {

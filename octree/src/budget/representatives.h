@@ -68,12 +68,12 @@ private:
     std::vector<Node> nodes_;
     std::unordered_map<Node, std::uint32_t> numbers_;
     std::unordered_map<Word, std::uint32_t> pattern_of_;
-    std::vector<std::uint64_t> octants_;                // that show a pattern
-    std::vector<std::uint64_t> visible_;                // of those, not hidden
+    std::vector<std::uint64_t> octants_;                // how many octants show a pattern
+    std::vector<std::uint64_t> visible_;                // how many of these are visible
     std::vector<std::vector<std::uint32_t>> fallbacks_; // representatives of a pattern whatever they cost
     std::uint32_t unfilled_ = 0;
     std::vector<std::uint32_t> ascending_; // representatives, those with the fewest solid cells first
-    std::vector<Mask512> masks_;           // theirs, side by side: most are read and nothing else of their brick
+    std::vector<Mask512> masks_;           // the masks of these: of most bricks nothing else is read
     std::vector<std::vector<Node>> blocks_;
     std::vector<std::vector<Match>> choices_;
     std::vector<std::vector<Match>> represented_;

@@ -12,17 +12,14 @@ using Light = std::array<double, 3>;
 /// How bright the faces along the three axes are in the default picture of a scene.
 constexpr std::array<double, 3> kFaces = {0.21, 0.25, 0.54};
 
-/// Another material's colour counts so many times: it stands out where a face that turns is lost among others.
+/// How many times the colour of another material counts: it stands out where a face that turns is lost among others.
 constexpr double kStandingOut = 6;
 
-/// A ray that is stopped by more than stopped it before would mostly have met a face close by: this share of the error
-/// of a face that turns, ...
-constexpr double kPassed = 0.5;
+/// A ray that a new solid cell stops would mostly have met a face close by, and now and then the background.
+constexpr double kPassed = 0.5;     // the share of the error of a face that turns
+constexpr double kBackground = 0.1; // the share of the error of a face before the background
 
-/// ... and this share of that of a face before the background.
-constexpr double kBackground = 0.1;
-
-constexpr double kGrey = 150; // of materials whose colour is not known
+constexpr double kGrey = 150; // the channels of a material whose colour is not known
 
 double squares(const Light& a, double bright_a, const Light& b, double bright_b) {
     double sum = 0;

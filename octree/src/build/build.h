@@ -4,7 +4,7 @@
 // words, on every machine and for every number of threads.
 #pragma once
 
-#include "../words/words.h"
+#include "../words/memory.h"
 
 #include <voxrt/voxelize/grid/sparse_voxels.h>
 

@@ -20,8 +20,8 @@ public:
         if (is_leaf(word))
             return word;
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
-        if (const auto known = nodes_.find(key); known != nodes_.end())
-            return known->second;
+        if (const auto entry = nodes_.find(key); entry != nodes_.end())
+            return entry->second;
         work_.count_step();
         Node result;
         if (level <= finest_) {
@@ -45,8 +45,8 @@ private:
 
     const Census& census(Word block, unsigned level) {
         const std::uint64_t key = std::uint64_t{block} << 8 | level;
-        if (const auto known = censuses_.find(key); known != censuses_.end())
-            return known->second;
+        if (const auto entry = censuses_.find(key); entry != censuses_.end())
+            return entry->second;
         std::array<std::uint64_t, 256> counts{};
         for (unsigned octant = 0; octant < 8; ++octant) {
             const Word child = memory_.child(block, octant, level);

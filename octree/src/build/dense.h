@@ -1,7 +1,7 @@
 // A dense array of materials to memory words.
 #pragma once
 
-#include "../words/words.h"
+#include "../words/memory.h"
 
 #include <cstddef>
 #include <vector>

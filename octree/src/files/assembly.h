@@ -10,6 +10,7 @@
 #pragma once
 
 #include "../pool/block_pool.h"
+#include "../words/memory.h"
 
 #include <cstddef>
 #include <vector>

@@ -70,7 +70,7 @@ std::size_t DiskAssembly::write(const std::string& path) {
     const auto add = [&](Word node) {
         if (!is_leaf(node)) {
             if (address[node] == unvisited) {
-                address[node] = static_cast<Word>(1 + 8 * order.size());
+                address[node] = static_cast<Word>(block_address(order.size()));
                 order.push_back(node);
             }
             node = address[node];
@@ -85,7 +85,7 @@ std::size_t DiskAssembly::write(const std::string& path) {
             add(child);
     }
     file.close();
-    return 1 + 8 * order.size();
+    return memory_size(order.size());
 }
 
 } // namespace voxrt::octree

@@ -4,8 +4,6 @@
 #include "../pool/block_hash.h"
 #include "block_file.h"
 
-#include <stdexcept>
-
 namespace voxrt::octree {
 
 class FilePool {
@@ -38,8 +36,7 @@ public:
             if (slots_[i].tag == static_cast<Word>(hash) && blocks_[slots_[i].number] == children)
                 return slots_[i].number;
         if (blocks_.size() >= kBlockLimit)
-            throw std::length_error(
-                "the octree has more than 2**28 - 1 blocks, which 31-bit addresses cannot reach; lower the depth");
+            throw_too_many_blocks();
         const auto number = static_cast<Word>(blocks_.size());
         blocks_.append(children);
         slots_[i] = {static_cast<Word>(hash), number};
@@ -56,8 +53,7 @@ private:
         Word tag; // the low half of the hash; the high half tells the place
         Word number;
     };
-    static constexpr Word kFree = 0xFFFFFFFFu;
-    static constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
+    static constexpr Word kFree = ~Word{0};
 
     std::size_t place_of(std::uint64_t hash) const { return (hash >> 32) * slots_.size() >> 32; }
 

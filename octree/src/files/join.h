@@ -19,7 +19,7 @@ namespace voxrt::octree {
 template <typename Pool> class JoiningPart {
 public:
     JoiningPart(Pool& pool, const Memory& memory)
-        : pool_(pool), memory_(memory), nodes_(memory.size / 8 + 1, kUnknown) {
+        : pool_(pool), memory_(memory), nodes_(block_count(memory.size) + 1, kUnknown) {
         if (!take_over_in_order())
             std::fill(nodes_.begin(), nodes_.end(), kUnknown);
     }
@@ -50,9 +50,9 @@ private:
 
     // Takes over all blocks; false where one does not stand in front of its children, or is too high for the depth.
     bool take_over_in_order() {
-        if (memory_.size % 8 != 1)
+        if (!is_memory_size(memory_.size))
             return false;
-        const std::size_t blocks = memory_.size / 8;
+        const std::size_t blocks = block_count(memory_.size);
         std::vector<std::uint8_t> levels(blocks + 1, 0);
         std::array<Waiting, kAhead> waiting;
         std::size_t taken = blocks; // this block and all behind it are in the pool
@@ -66,15 +66,15 @@ private:
         voxelize::WorkCounter& work = voxelize::WorkCounter::current();
         for (std::size_t number = blocks; number-- > 0;) {
             work.count_step();
-            take_to(std::min(blocks, number + kAhead)); // whose place is wanted
-            const Word* words = memory_.words + 1 + 8 * number;
+            take_to(std::min(blocks, number + kAhead)); // their places are fetched next
+            const Word* words = memory_.words + block_address(number);
             Waiting& next = waiting[number % kAhead];
             unsigned level = 0;
             for (unsigned octant = 0; octant < 8; ++octant) {
                 const Word word = words[octant];
-                const std::size_t block = (std::size_t{word} - 1) / 8;
+                const std::size_t block = block_number(word);
                 const std::size_t child = block < blocks ? block : blocks; // a leaf's, so that nothing branches on it
-                if ((!is_leaf(word)) & ((word % 8 != 1) | (block <= number) | (block >= blocks)))
+                if ((!is_leaf(word)) & (!is_block_address(word) | (block <= number) | (block >= blocks)))
                     return false;
                 if (child < taken)
                     take_to(child);
@@ -95,8 +95,8 @@ private:
             return word;
         voxelize::WorkCounter::current().count_step();
         memory_.child(word, 0, level); // checks the address
-        const std::size_t number = (word - 1) / 8;
-        if (word == 0 || number + 1 >= nodes_.size())
+        const std::size_t number = block_number(word);
+        if (!is_block_address(word) || number + 1 >= nodes_.size())
             throw std::invalid_argument("the words are not a valid octree; validate them first");
         if (nodes_[number] != kUnknown)
             return nodes_[number];

@@ -6,7 +6,6 @@
 
 #include "block_hash.h"
 
-#include <stdexcept>
 #include <vector>
 
 namespace voxrt::octree {
@@ -47,8 +46,7 @@ public:
             if (slots_[i].hash == hash && same(blocks_[slots_[i].number], children))
                 return slots_[i].number;
         if (blocks_.size() >= kBlockLimit)
-            throw std::length_error(
-                "the octree has more than 2**28 - 1 blocks, which 31-bit addresses cannot reach; lower the depth");
+            throw_too_many_blocks();
         const Word number = static_cast<Word>(blocks_.size());
         slots_[i] = {hash, number};
         blocks_.push_back(children);
@@ -65,8 +63,7 @@ private:
         Word hash;
         Word number;
     };
-    static constexpr Word kFree = 0xFFFFFFFFu;
-    static constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
+    static constexpr Word kFree = ~Word{0};
 
     static bool all_equal(const Block& children) {
         const std::uint64_t first = word_pair(children, 0);

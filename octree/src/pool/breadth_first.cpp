@@ -12,12 +12,11 @@ namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 12; // blocks per job
 constexpr std::size_t kAhead = 8;                    // blocks whose memory is fetched before they are read
-constexpr std::size_t kBlockLimit = (std::size_t{1} << 28) - 1;
 
 // What a block has in place of its address before its level is complete: the first reference to it, 8 x parent +
 // octant. These numbers are higher than all addresses, and none is kUnmet.
-constexpr Word kReference = 0x80000000u;
-constexpr Word kUnmet = 0xFFFFFFFFu;
+constexpr Word kReference = Word{1} << 31;
+constexpr Word kUnmet = ~Word{0};
 
 void fetch([[maybe_unused]] const void* place) {
 #if defined(__GNUC__)
@@ -44,11 +43,11 @@ public:
             add_children(begin, end);
             begin = end;
         }
-        Words words(1 + 8 * order_.size());
+        Words words(memory_size(order_.size()));
         words[0] = 1;
         for_each_piece(0, order_.size(), [&](std::size_t begin, std::size_t end) {
             visit(begin, end, [&](std::size_t i, unsigned octant, Node child, const Address& address) {
-                words[1 + 8 * i + octant] = is_leaf(child) ? child : address.load(std::memory_order_relaxed);
+                words[block_address(i) + octant] = is_leaf(child) ? child : address.load(std::memory_order_relaxed);
             });
         });
         return words;
@@ -111,15 +110,14 @@ private:
         for (const std::vector<Found>& own : found)
             starts.push_back(starts.back() + own.size());
         if (starts.back() > kBlockLimit)
-            throw std::length_error(
-                "the octree has more than 2**28 - 1 blocks, which 31-bit addresses cannot reach; lower the depth");
+            throw_too_many_blocks();
         order_.resize(starts.back());
         for_each_piece(begin, end, [&](std::size_t from, std::size_t) {
             const std::size_t piece = (from - begin) / kPiece;
             std::size_t to = starts[piece];
             for (const Found& one : found[piece]) {
                 order_[to] = one.block;
-                address_of(one.block).store(static_cast<Word>(1 + 8 * to), std::memory_order_relaxed);
+                address_of(one.block).store(static_cast<Word>(block_address(to)), std::memory_order_relaxed);
                 ++to;
             }
         });

@@ -1,6 +1,7 @@
 // Nodes of a pool to memory words.
 #pragma once
 
+#include "../words/memory.h"
 #include "block_pool.h"
 
 #include <vector>

@@ -20,7 +20,6 @@
 #include <atomic>
 #include <bit>
 #include <memory>
-#include <stdexcept>
 
 namespace voxrt::octree {
 
@@ -126,7 +125,7 @@ private:
         explicit Table(std::size_t size) : slots(size + kWindow), shift(64 - std::bit_width(size - 1)) {}
         ~Table() { delete next.load(std::memory_order_relaxed); }
 
-        // Of `kWindow` slots. The upper bits of the hash choose it, the lower are the tag.
+        // The first of `kWindow` slots. The upper bits of the hash choose it, the lower bits are the tag.
         Slot* place(std::uint64_t hash) { return slots.data() + (hash >> shift); }
 
         Table& next_table() {
@@ -149,8 +148,7 @@ private:
         const std::size_t run = used_runs_.fetch_add(1, std::memory_order_relaxed);
         if (run >= kRuns) {
             used_runs_ = kRuns;
-            throw std::length_error(
-                "the octree has more than 2**28 - 1 blocks, which 31-bit addresses cannot reach; lower the depth");
+            throw_too_many_blocks();
         }
         runs_[run].store(RunAllocator().allocate(kRun), std::memory_order_release);
         return static_cast<Node>(run * kRun);

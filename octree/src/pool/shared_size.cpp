@@ -14,7 +14,8 @@ namespace {
 // compared by their representatives.
 class SharedBlocks {
 public:
-    explicit SharedBlocks(const Memory& memory) : memory_(memory), representatives_(memory.size / 8, kUnknown) {
+    explicit SharedBlocks(const Memory& memory)
+        : memory_(memory), representatives_(block_count(memory.size), kUnknown) {
         std::size_t slots = 1024;
         while (slots < 2 * representatives_.size())
             slots *= 2;
@@ -27,8 +28,8 @@ public:
         if (is_leaf(word))
             return word;
         memory_.child(word, 0, level); // checks the address
-        const std::size_t number = (std::size_t{word} - 1) / 8;
-        if (word % 8 != 1 || number >= representatives_.size())
+        const std::size_t number = block_number(word);
+        if (!is_block_address(word) || number >= representatives_.size())
             throw std::invalid_argument("the words are not a valid octree; validate them first");
         if (representatives_[number] != kUnknown)
             return representatives_[number];
@@ -60,7 +61,7 @@ private:
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant) {
             const Word child = memory_.words[word + octant];
-            children[octant] = is_leaf(child) ? child : representatives_[(child - 1) / 8];
+            children[octant] = is_leaf(child) ? child : representatives_[block_number(child)];
         }
         return children;
     }
@@ -77,7 +78,7 @@ private:
 std::size_t shared_words(const Memory& memory) {
     SharedBlocks blocks(memory);
     blocks.representative(memory.root(), memory.depth);
-    return 1 + 8 * blocks.count();
+    return memory_size(blocks.count());
 }
 
 } // namespace voxrt::octree

@@ -18,7 +18,7 @@ struct Occurrence {
 class LevelWalk {
 public:
     /// The words of `memory` must outlive the walk.
-    explicit LevelWalk(const Memory& memory) : memory_(memory), place_(memory.size / 8 + 1, 0) {}
+    explicit LevelWalk(const Memory& memory) : memory_(memory), place_(block_count(memory.size) + 1, 0) {}
 
     /// The blocks below the blocks `parents`, whose octants have the side 2**level, in the order of a breadth-first
     /// walk. Calls on_leaf(word, octants) for the leaves among the children. Throws std::invalid_argument where the
@@ -33,10 +33,10 @@ public:
                     on_leaf(child, parent.octants);
                     continue;
                 }
-                if (child % 8 != 1 || child >= memory_.size)
+                if (!is_block_address(child) || child >= memory_.size)
                     throw std::invalid_argument(
                         "the words are not a valid octree: a pointer leads to no block; validate them first");
-                Word& place = place_[child / 8];
+                Word& place = place_[block_number(child)];
                 if (place == 0) {
                     found.push_back({child, 0});
                     place = static_cast<Word>(found.size());
@@ -44,7 +44,7 @@ public:
                 found[place - 1].octants += parent.octants;
             }
         for (const Occurrence& one : found)
-            place_[one.block / 8] = 0;
+            place_[block_number(one.block)] = 0;
         return found;
     }
 

@@ -65,7 +65,7 @@ private:
 // twice as large.
 class BoundsFinder {
 public:
-    explicit BoundsFinder(const Memory& memory) : memory_(memory), known_(memory.size / 8) {}
+    explicit BoundsFinder(const Memory& memory) : memory_(memory), extents_(block_count(memory.size)) {}
 
     // Empty where high <= low.
     Box of(Word word, unsigned level) {
@@ -74,24 +74,24 @@ public:
             return material(word) != 0 ? Box{{0, 0, 0}, {side, side, side}} : Box{};
         }
         memory_.child(word, 0, level); // checks the address
-        const std::size_t number = (std::size_t{word} - 1) / 8;
-        if (word % 8 != 1 || number >= known_.size())
+        const std::size_t number = block_number(word);
+        if (!is_block_address(word) || number >= extents_.size())
             throw std::invalid_argument("the words are not a valid octree; validate them first");
-        if (known_[number].height == 0)
+        if (extents_[number].height == 0)
             find(number, word, level);
-        const Known& known = known_[number];
-        if (known.height > level)
+        const Extent& extent = extents_[number];
+        if (extent.height > level)
             memory_.child(word, 0, 0); // throws: what is below does not fit
         Box bounds{};
-        for (unsigned axis = 0; axis < 3 && known.solid; ++axis) {
-            bounds.low[axis] = std::int64_t{known.low[axis]} << (level - known.height);
-            bounds.high[axis] = (std::int64_t{known.last[axis]} + 1) << (level - known.height);
+        for (unsigned axis = 0; axis < 3 && extent.solid; ++axis) {
+            bounds.low[axis] = std::int64_t{extent.low[axis]} << (level - extent.height);
+            bounds.high[axis] = (std::int64_t{extent.last[axis]} + 1) << (level - extent.height);
         }
         return bounds;
     }
 
 private:
-    struct Known { // of a block whose octants are as small as its levels allow
+    struct Extent { // of a block whose octants are as small as its levels allow
         std::array<std::uint16_t, 3> low{}, last{};
         std::uint8_t height = 0; // levels of the block; 0 where nothing is known yet
         bool solid = false;
@@ -104,9 +104,9 @@ private:
             const Word child = memory_.child(word, octant, level);
             of(child, level - 1);
             if (!is_leaf(child))
-                height = std::max(height, 1u + known_[(child - 1) / 8].height);
+                height = std::max(height, 1u + extents_[block_number(child)].height);
         }
-        Known found;
+        Extent found;
         found.height = static_cast<std::uint8_t>(height);
         for (unsigned octant = 0; octant < 8; ++octant) {
             const Box child = of(memory_.child(word, octant, level), height - 1);
@@ -121,11 +121,11 @@ private:
             }
             found.solid = true;
         }
-        known_[number] = found;
+        extents_[number] = found;
     }
 
     Memory memory_;
-    std::vector<Known> known_; // by block
+    std::vector<Extent> extents_; // by block
     voxelize::WorkCounter& work_ = voxelize::WorkCounter::current();
 };
 

@@ -124,7 +124,7 @@ bool DontCareSharing::merge(const MergedBlock& block, MergedBlock& merged) const
     return true;
 }
 
-// Of what blocks that specify `query` and merged blocks that specify `specified` have to agree on.
+// The key of the octants on which blocks that specify `query` and merged blocks that specify `specified` must agree.
 std::uint64_t DontCareSharing::key_of(const Block& children, unsigned specified, unsigned query) {
     std::uint64_t hash = specified << 8 | query;
     for (unsigned octant = 0; octant < 8; ++octant)

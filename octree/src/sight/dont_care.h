@@ -7,8 +7,8 @@
 
 namespace voxrt::octree {
 
-/// A don't-care: an octant that may be made of any solid voxels. No leaf: their third byte is 0xFF.
-constexpr Node kAnySolid = 0xFFFFFE00u;
+/// A don't-care: an octant that may be made of any solid voxels. It is no leaf, and no number of a block.
+constexpr Node kAnySolid = kTag - 0x100;
 
 /// Merges blocks with don't-care octants into few blocks (interior.h names the problem and its source).
 ///
@@ -37,7 +37,7 @@ private:
         Word number; // of a merged block
         Word next;   // entry in the same slot, or kNone
     };
-    static constexpr Word kNone = 0xFFFFFFFFu;
+    static constexpr Word kNone = ~Word{0};
 
     static std::uint64_t key_of(const Block& children, unsigned specified, unsigned query);
 

@@ -31,8 +31,8 @@ public:
         if (is_leaf(word))
             return material(word) == 0 ? kEmpty : kSolid;
         const std::uint64_t key = std::uint64_t{word} << 8 | level;
-        if (const auto known = nodes_.find(key); known != nodes_.end())
-            return known->second;
+        if (const auto entry = nodes_.find(key); entry != nodes_.end())
+            return entry->second;
         work_.count_step();
         Block children;
         for (unsigned octant = 0; octant < 8; ++octant)

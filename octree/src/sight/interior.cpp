@@ -54,8 +54,8 @@ private:
         if (is_leaf(word) && is_leaf(hidden))
             return word;
         const Pair pair{word, hidden, level};
-        if (const auto known = nodes_.find(pair); known != nodes_.end())
-            return known->second;
+        if (const auto entry = nodes_.find(pair); entry != nodes_.end())
+            return entry->second;
         work_.count_step();
         if (const auto shown = octants_.find(word); shown != octants_.end() && shown->second >= kept_)
             hidden = kEmpty;

@@ -183,11 +183,11 @@ bool is_sparse(const Look& look) {
 std::vector<std::uint8_t> mean_materials(const Memory& memory, const std::vector<LinearLight>& light) {
     const Words words = covered_voxels(memory);
     const Looks looks(memory, {words.data(), words.size(), memory.depth}, light);
-    std::vector<MeanLight> sums((memory.size - 1) / 8);
+    std::vector<MeanLight> sums(block_count(memory.size));
     std::vector<std::uint8_t> sparse(sums.size());
     looks.each_block([&](Word block, const Look& look, std::uint64_t octants) {
-        sums[block >> 3].add(look.light, __uint128_t{look.surface} * octants);
-        sparse[block >> 3] = is_sparse(look);
+        sums[block_number(block)].add(look.light, __uint128_t{look.surface} * octants);
+        sparse[block_number(block)] = is_sparse(look);
     });
     Palette palette(light);
     std::vector<std::uint8_t> means(sums.size());

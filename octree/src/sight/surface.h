@@ -8,7 +8,7 @@ namespace voxrt::octree {
 /// A voxel is on the surface where it is solid and one of its six neighbours is empty or outside the world.
 struct SurfaceChange {
     std::uint64_t surface; // voxels on the surface of the first
-    std::uint64_t changed; // of those: not on the surface of the second, or of another material there
+    std::uint64_t changed; // voxels of these that are not on the surface of the second, or have another material there
 };
 
 /// Compares the surface of `first` with that of `second`, voxel by voxel; both have one depth. Cost grows with the

@@ -13,7 +13,7 @@ std::vector<uint32_t> encoded_rows(const Word* words, size_t count, unsigned blo
         throw std::invalid_argument("an octree of " + std::to_string(count) + " words does not fit a memory of " +
                                     std::to_string(1 + rows.size()));
     for (size_t i = 1; i < count; ++i)
-        rows[i - 1] = words[i] >> 31 != 0 ? leaf | (words[i] & 0xFF) : words[i] >> 3;
+        rows[i - 1] = is_leaf(words[i]) ? leaf | material(words[i]) : static_cast<uint32_t>(block_number(words[i]));
     return rows;
 }
 

@@ -1,12 +1,14 @@
-// A view of the words of an octree memory. Words are described in words.h.
+// The words of an octree memory, and a view of them that checks each address. words.h describes a word.
 #pragma once
 
 #include "words.h"
 
-#include <cstddef>
-#include <stdexcept>
+#include <voxrt/voxelize/work/large_vector.h>
 
 namespace voxrt::octree {
+
+/// The words of a memory that was made.
+using Words = voxelize::LargeVector<Word>;
 
 /// Borrowed words that claim to be an octree of `depth` levels, 1 … kMaxDepth: a world of 2**depth voxels per side.
 ///

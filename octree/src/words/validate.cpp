@@ -9,14 +9,14 @@ namespace voxrt::octree {
 namespace {
 
 Verdict check_words(const Word* words, std::size_t size) {
-    if (size % 8 != 1)
+    if (!is_memory_size(size))
         return {Fault::length, size, 0};
     for (std::size_t address = 0; address < size; ++address) {
         const Word word = words[address];
         if (is_leaf(word)) {
-            if ((word & kTag) != kTag)
+            if (!is_tagged(word))
                 return {Fault::tag, address, 0};
-        } else if (word % 8 != 1) {
+        } else if (!is_block_address(word)) {
             return {Fault::misaligned, address, 0};
         } else if (word >= size) {
             return {Fault::range, address, 0};
@@ -28,7 +28,7 @@ Verdict check_words(const Word* words, std::size_t size) {
 // The longest path of pointers from each block down, by depth-first search with a stack of its own.
 class Heights {
 public:
-    Heights(const Word* words, std::size_t size) : words_(words), heights_(size / 8, kUnvisited) {}
+    Heights(const Word* words, std::size_t size) : words_(words), heights_(block_count(size), kUnvisited) {}
 
     // False where a cycle was met; `cycle_address` then holds the word that closes it.
     bool measure(std::size_t first) {
@@ -44,10 +44,10 @@ public:
                 stack_.pop_back();
                 continue;
             }
-            const std::size_t address = 1 + 8 * visit.block + visit.octant++;
+            const std::size_t address = block_address(visit.block) + visit.octant++;
             if (is_leaf(words_[address]))
                 continue;
-            const std::size_t below = words_[address] / 8;
+            const std::size_t below = block_number(words_[address]);
             if (heights_[below] == kOpen) {
                 cycle_address = address;
                 return false;
@@ -60,7 +60,7 @@ public:
         return true;
     }
 
-    std::size_t of(Word word) const { return is_leaf(word) ? 0 : heights_[word / 8]; }
+    std::size_t of(Word word) const { return is_leaf(word) ? 0 : heights_[block_number(word)]; }
 
     std::size_t cycle_address = 0;
 
@@ -69,13 +69,13 @@ private:
         std::size_t block;
         unsigned octant;
     };
-    static constexpr std::uint32_t kUnvisited = 0xFFFFFFFFu;
-    static constexpr std::uint32_t kOpen = 0xFFFFFFFEu;
+    static constexpr std::uint32_t kUnvisited = ~std::uint32_t{0};
+    static constexpr std::uint32_t kOpen = kUnvisited - 1;
 
     void close(std::size_t block) {
         std::size_t highest = 0;
         for (unsigned octant = 0; octant < 8; ++octant)
-            highest = std::max(highest, of(words_[1 + 8 * block + octant]));
+            highest = std::max(highest, of(words_[block_address(block) + octant]));
         heights_[block] = static_cast<std::uint32_t>(highest + 1);
     }
 
@@ -92,9 +92,9 @@ Verdict validate(const Word* words, std::size_t size, unsigned depth) {
     if (verdict.fault != Fault::none)
         return verdict;
     Heights heights(words, size);
-    if (!is_leaf(words[0]) && !heights.measure(words[0] / 8))
+    if (!is_leaf(words[0]) && !heights.measure(block_number(words[0])))
         return {Fault::cycle, heights.cycle_address, 0};
-    for (std::size_t block = 0; block < size / 8; ++block)
+    for (std::size_t block = 0; block < block_count(size); ++block)
         if (!heights.measure(block))
             return {Fault::cycle, heights.cycle_address, 0};
     const std::size_t levels = heights.of(words[0]);

@@ -34,10 +34,10 @@ using Cells = std::vector<std::uint8_t>; // z fastest, then y, then x
 
 bool good = true;
 
-void expect(bool held, const char* what, unsigned depth) {
-    if (!held)
+void expect(bool condition, const char* what, unsigned depth) {
+    if (!condition)
         std::printf("depth %u: %s\n", depth, what);
-    good = good && held;
+    good = good && condition;
 }
 
 std::size_t at(std::int64_t x, std::int64_t y, std::int64_t z, unsigned depth) {

@@ -28,11 +28,11 @@ template <typename T> nb::object to_numpy(std::unique_ptr<T[]> data, std::initia
 /// The same for a vector, without a copy. `Element`: T, or const T for a read-only array.
 template <typename Element, typename T, typename Allocator>
 nb::object array_of(std::vector<T, Allocator>&& values, std::initializer_list<std::size_t> shape) {
-    using Held = std::vector<T, Allocator>;
-    auto held = std::make_unique<Held>(std::move(values));
-    Element* raw = reinterpret_cast<Element*>(held->data());
-    nb::capsule owner(held.get(), [](void* p) noexcept { delete static_cast<Held*>(p); });
-    held.release();
+    using Array = std::vector<T, Allocator>;
+    auto owned = std::make_unique<Array>(std::move(values));
+    Element* raw = reinterpret_cast<Element*>(owned->data());
+    nb::capsule owner(owned.get(), [](void* p) noexcept { delete static_cast<Array*>(p); });
+    owned.release();
     return nb::cast(nb::ndarray<nb::numpy, Element>(raw, shape, owner));
 }
 template <typename T, typename Allocator>

@@ -19,7 +19,7 @@ inline constexpr int kTileSide = 64;
 struct CoveredRow {
     int y;
     int from, to;
-    int crossed_from, crossed_to; // of them, the columns whose rays cross the triangle, marked at lo
+    int crossed_from, crossed_to; // the columns whose rays cross the triangle; crossings are marked at lo
     bool enters;                  // how they cross
     alignas(16) int32_t lo[kTileSide], hi[kTileSide]; // inclusive
 

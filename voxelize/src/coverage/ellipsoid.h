@@ -35,7 +35,7 @@ public:
     int first(int axis) const { return int(std::floor(centre(axis) - extent(axis) - kSlack)); }
     int last(int axis) const { return int(std::floor(centre(axis) + extent(axis) + kSlack)); }
 
-    /// Of the voxels 0 … `top`: a needle may be far longer than the grid.
+    /// The span among the voxels 0 … `top`: a needle may be far longer than the grid.
     ColumnSpan column(int x, int y, int top) const {
         ColumnSpan span = bracket(x, y);
         span.lo = std::max(span.lo, 0);
@@ -260,7 +260,7 @@ private:
     double shape_[3][3];                // S in voxels
     double principal_[3][3], reach_[3]; // any three directions, and how far the ellipsoid reaches along them
     double rounding_, tolerance_;       // what float64 loses on Q, and on an end of a column's interval, voxels
-    bool is_round_;                     // so round that float64 finds such ends
+    bool is_round_;                     // float64 can tell the ends of columns
 };
 
 } // namespace voxrt::voxelize

@@ -65,7 +65,7 @@ public:
     /// The material of what is covered from now on, 1 … 255.
     void set_material(uint8_t material) { material_ = material; }
 
-    /// Of cover_triangle: voxels lo … hi of column (x, y) are shell. A voxel keeps the first material it gets.
+    /// Receives from cover_triangle that voxels lo … hi of column (x, y) are shell. A voxel keeps its first material.
     void cover(int x, int y, int lo, int hi) {
         const Position at_column = locate(x, y);
         for (int k = lo >> kBrickBits; k <= hi >> kBrickBits; ++k) {
@@ -110,7 +110,7 @@ public:
         transparent_[brick.transparent][z & (kBrickSide - 1)] |= uint64_t{1} << column_bit(x - x_, y - y_);
     }
 
-    /// Of cover_triangle: the ray of column (x, y) crosses the surface at voxel z.
+    /// Receives from cover_triangle that the ray of column (x, y) crosses the surface at voxel z.
     void cross(int x, int y, int z, bool enters) {
         const Position at_column = locate(x, y);
         add_crossings(at(at_column.column, z >> kBrickBits), at_column.row,
@@ -167,7 +167,7 @@ public:
     }
 
 private:
-    /// Of a column: its brick column, its row there, and where its byte begins.
+    /// A column of voxels: its brick column, its row there, and where its byte begins.
     struct Position {
         int column, row, shift;
     };

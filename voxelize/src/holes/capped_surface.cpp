@@ -13,13 +13,13 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr double kLargeOpening = 0.15;     // of a component's area: a larger loop opens it
+constexpr double kLargeOpening = 0.15;     // the share of a component's area above which a loop opens it
 constexpr double kClosedTogether = 0.87;   // open components close one another where so many directions do not lead out
-constexpr double kOpeningsTogether = 0.05; // Fill::automatic: of a component's area, all its loops
+constexpr double kOpeningsTogether = 0.05; // Fill::automatic: the same share for all its loops together
 constexpr double kTightTogether = 0.97;    // Fill::automatic: in place of kClosedTogether
-constexpr double kEnclosure = 0.75;        // they enclose space where so many do not; a plain sheet encloses none
+constexpr double kEnclosure = 0.75;        // they enclose space where so many directions do not lead out
 
-constexpr double kLeastOpening = 1e-300; // of a component that does not close
+constexpr double kLeastOpening = 1e-300; // a component that does not close has at least this
 
 /// Area, as a vector along the normal.
 Point area(const Point& a, const Point& b, const Point& c) {

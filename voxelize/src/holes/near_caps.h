@@ -43,7 +43,7 @@ public:
         void clear() { count = 0; }
     };
     void find_angles(Batch& batch);
-    /// Of one point alone.
+    /// Finds the angle of one point.
     double find_angle(const Point& point, bool& doubtful);
 
     /// How the angle changes inside a ball: to second order in the distance from its centre.

@@ -32,7 +32,7 @@ struct MeshAnalysis {
 
 /// Sums over triangles.
 struct TriangleSums {
-    uint64_t boundary = 0; // of boundary_key: zero where they close
+    uint64_t boundary = 0; // the sum of boundary_key(): zero where they close
     double volume6 = 0;    // six times the signed volume
     Bounds bounds;
 
@@ -43,7 +43,7 @@ struct TriangleSums {
     }
 };
 
-/// Over triangles from … to-1 of a mesh with snapped vertices.
+/// Sums over triangles from … to-1 of a mesh with snapped vertices.
 TriangleSums sum_triangles(const MeshView& mesh, const std::vector<Vertex>& vertices, size_t from, size_t to);
 
 /// What all instances of a mesh have in common, found from its own positions: equal positions are snapped to equal

@@ -92,11 +92,11 @@ std::vector<Face> convex_hull(const std::vector<Vertex>& points) {
         return flat_hull(points, order, base);
     const int32_t d = order[fourth];
 
-    struct Known {
+    struct Facet {
         Face face;
         Direction normal;
     };
-    std::vector<Known> faces;
+    std::vector<Facet> faces;
     auto add = [&](int32_t u, int32_t v, int32_t w) {
         faces.push_back({{u, v, w}, normal(points[u], points[v], points[w])});
     };
@@ -107,29 +107,29 @@ std::vector<Face> convex_hull(const std::vector<Vertex>& points) {
     add(q, p, d);
     add(p, a, d);
 
-    std::vector<Known> kept;
+    std::vector<Facet> unseen;
     for (int32_t point : order) {
-        kept.clear();
+        unseen.clear();
         std::set<std::pair<int32_t, int32_t>> seen_edges;
-        for (const Known& known : faces) {
-            if (side(known.normal, points[known.face[0]], points[point]) <= 0) {
-                kept.push_back(known);
+        for (const Facet& facet : faces) {
+            if (side(facet.normal, points[facet.face[0]], points[point]) <= 0) {
+                unseen.push_back(facet);
                 continue;
             }
             for (int i = 0; i < 3; ++i)
-                seen_edges.insert({known.face[i], known.face[(i + 1) % 3]});
+                seen_edges.insert({facet.face[i], facet.face[(i + 1) % 3]});
         }
         if (seen_edges.empty())
             continue;
-        faces.swap(kept);
+        faces.swap(unseen);
         for (const auto& [u, v] : seen_edges)
             if (!seen_edges.contains({v, u}))
                 add(u, v, point);
     }
     std::vector<Face> result;
     result.reserve(faces.size());
-    for (const Known& known : faces)
-        result.push_back(known.face);
+    for (const Facet& facet : faces)
+        result.push_back(facet.face);
     return result;
 }
 

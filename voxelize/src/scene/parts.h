@@ -36,13 +36,13 @@ struct MeshView {
 enum class PartKind : uint8_t { mesh = 0, box = 1, ball = 2, ellipsoid = 3 };
 
 struct PartView {
-    PartKind kind;
-    const MeshView* mesh; // null but for kind mesh
+    PartKind kind = PartKind::mesh;
+    const MeshView* mesh = nullptr; // null but for kind mesh
     /// 12 numbers in 1/4096 voxel. mesh, ellipsoid: rows of the affine map (3x4) from the mesh, or from the unit ball,
     /// to grid space. box: minimum and maximum. ball: centre and radius.
-    const double* frame;
-    uint8_t material; // of the whole part; 0: each triangle's own
-    uint32_t object;  // ascending from part to part
+    const double* frame = nullptr;
+    uint8_t material = 0; // the material of the whole part; 0: each triangle has its own
+    uint32_t object = 0;  // ascending from part to part
 };
 
 /// A part reaches beyond kCoordinateLimit, or has a coordinate that is not a number.

@@ -26,8 +26,8 @@ namespace voxrt::voxelize {
 
 class GeneralizedInside {
 public:
-    /// Of a brick. `capped`: inside where the winding number of the capped surface is not zero. `mixed`: voxel by
-    /// voxel. `rough`: likewise, and near the boundary of a hole.
+    /// How the voxels of a brick are decided. `capped`: a voxel is inside where the winding number of the capped
+    /// surface is not zero. `mixed`: voxel by voxel. `rough`: voxel by voxel, near the boundary of a hole.
     enum class Class : uint8_t { outside, inside, capped, mixed, rough };
     static bool is_mixed(Class c) { return c == Class::mixed || c == Class::rough; }
 
@@ -131,9 +131,9 @@ private:
     static constexpr double kCubeError = 1.0 / 256, kCoarsest = 1.0 / 64, kFine = 1.0 / (1 << 13);
     static constexpr double kFinest = 1.0 / (1 << 22), kFiner = 128;
     static constexpr size_t kManyCaps = 64;     // near a cube: its parts are asked instead
-    static constexpr double kRounding = 1e-7;   // of an angle, but for doubtful ones
+    static constexpr double kRounding = 1e-7;   // the error of an angle that is not doubtful
     static constexpr double kRoundable = 0.375; // error from which a whole number can be told
-    static constexpr int kFewVoxels = 16;       // are decided one by one
+    static constexpr int kFewVoxels = 16;       // so few are decided one by one
 
     struct Cell {
         int x, y, z, side; // in a brick

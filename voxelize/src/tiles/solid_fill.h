@@ -19,8 +19,8 @@ namespace voxrt::voxelize {
 
 struct Claim {
     int64_t voxels = 0; // that no earlier object had
-    int64_t shell = 0;  // voxels of the shell, and
-    int64_t inside = 0; // of what it encloses, whoever has them
+    int64_t shell = 0;  // voxels of the shell, whoever has them
+    int64_t inside = 0; // voxels that the shell encloses, whoever has them
     bool simple = true; // all winding numbers were 0 and 1, or 0 and -1
 };
 

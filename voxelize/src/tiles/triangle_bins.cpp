@@ -8,9 +8,11 @@
 namespace voxrt::voxelize {
 namespace {
 
-constexpr size_t kChunk = 16384;         // triangles or vertices per job
-constexpr size_t kWholeTiles = 4;        // a part in so few tiles is listed as a whole,
-constexpr size_t kWholeTriangles = 4096; // as is one with so few triangles over all its tiles
+constexpr size_t kChunk = 16384; // triangles or vertices per job
+
+/// A part is listed as a whole where it touches so few tiles, or where its tiles together list so few triangles.
+constexpr size_t kWholeTiles = 4;
+constexpr size_t kWholeTriangles = 4096;
 
 /// The bounds of a box, a ball or an ellipsoid; never too small.
 Bounds solid_bounds(const PartView& part) {
@@ -41,8 +43,8 @@ class PartBinning {
 public:
     PartBinning(const Tiling& tiling, Fill fill) : tiling_(tiling), fill_(fill) {}
 
-    /// One mesh part. `run(count, job)` calls job(index) for each index; `emit()` makes the next list of entries, in
-    /// authored order.
+    /// Adds one mesh part. `run(count, job)` calls job(index) for each index; `emit()` makes the next list of entries,
+    /// in authored order.
     template <class Run, class Emit>
     void add_mesh(MeshAnalysis& analysis, const PartView& part, uint32_t index, const SharedMesh* shared, Run&& run,
                   Emit&& emit) const {

@@ -179,8 +179,8 @@ SparseVoxels voxelize_in_blocks(int depth, const std::vector<PartView>& parts, s
 }
 
 struct BlockVoxelizer::State {
-    State(int depth, std::vector<PartView> given, size_t object_count, Fill how, int threads)
-        : depth(unsigned(depth)), side(1 << depth), parts(std::move(given)), objects(object_count), fill(how),
+    State(int depth, std::vector<PartView> scene_parts, size_t object_count, Fill how, int threads)
+        : depth(unsigned(depth)), side(1 << depth), parts(std::move(scene_parts)), objects(object_count), fill(how),
           workers(threads), scratch(size_t(workers.threads())) {}
 
     TileRange tiles_of(const ColumnBlock& block) const {

@@ -7,7 +7,7 @@
 //
 //     const MeshView mesh{positions, triangles, materials};            // spans, borrowed
 //     const double frame[12] = {s, 0, 0, x, 0, s, 0, y, 0, 0, s, z};   // mesh to grid space, in 1/4096 voxel
-//     const SparseVoxels voxels = voxelize(8, {{PartKind::mesh, &mesh, frame, 0, 0}}, 1, Fill::solid, 0);
+//     const SparseVoxels voxels = voxelize(8, {{.mesh = &mesh, .frame = frame}}, 1, Fill::solid, 0);
 //     const std::vector<octree::Word> words = octree::build(voxels.view(), 0);
 //
 // The grid is cut into tiles of 64 x 64 columns over its whole height. A column's voxels depend on that column's

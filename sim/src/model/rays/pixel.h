@@ -24,7 +24,8 @@ struct Shading {
     const uint8_t* mirrors;   // 256 flags
     int bounces = 0;          // 0: mirrors are shaded like other materials
     bool flat = false;
-    // 1/kFaceUnit, of the faces that look along -x, +x, -y, +y, -z, +z; none: by the angle. Not with flat.
+    // The brightness of the faces that look along -x, +x, -y, +y, -z, +z, in 1/kFaceUnit. Without it the angle decides.
+    // It must be absent where `flat` is set.
     std::optional<std::array<uint8_t, 6>> faces;
     std::optional<Light> light;
 };

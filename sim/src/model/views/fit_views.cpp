@@ -1,6 +1,6 @@
 #include "fit_views.h"
 
-#include "frame_tile.h"
+#include "../frames/frame_tile.h"
 #include "similarity.h"
 
 #include <algorithm>

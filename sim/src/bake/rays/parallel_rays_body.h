@@ -1,13 +1,13 @@
 // parallel_rays.h's open_rays for the instruction set of the including file, which defines VOXRT_OPEN_RAYS as its name.
 //
-// The traversal is that of model/tile.h: crossings of planes have keys, whole numbers held exactly in doubles, and a
-// ray visits a node where the largest key of its near planes is below the smallest of its far planes. Here all rays
-// have one direction. So plane p has the key p * scale + offset with one scale per axis for all of them, and the rays
-// differ in their offsets alone. The least and the largest offset bound them all: large nodes are tested against these
-// bounds, and only nodes of kRaySize voxels per side and less ray by ray. Any hit ends a ray.
+// The traversal is that of model/frames/tile.h: crossings of planes have keys, whole numbers held exactly in doubles,
+// and a ray visits a node where the largest key of its near planes is below the smallest of its far planes. Here all
+// rays have one direction. So plane p has the key p * scale + offset with one scale per axis for all of them, and the
+// rays differ in their offsets alone. The least and the largest offset bound them all: large nodes are tested against
+// these bounds, and only nodes of kRaySize voxels per side and less ray by ray. Any hit ends a ray.
 #include "parallel_rays.h"
 
-#include <voxrt/sim/lanes.h>
+#include <voxrt/sim/frames/lanes.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@
 namespace voxrt::sim {
 namespace {
 
-constexpr double kNeverKey = 0x1p56; // as in model/tile.h
+constexpr double kNeverKey = 0x1p56; // as in model/frames/tile.h
 constexpr double kStartKey = 3.5;
 constexpr double kRaySize = 8;
 

@@ -1,7 +1,7 @@
 #include "views_bindings.h"
 
-#include "beam.h"
-#include "orbit.h"
+#include "../views/beam.h"
+#include "../views/orbit.h"
 
 #include <voxrt/voxelize/bindings/python.h>
 

@@ -1,9 +1,9 @@
 // voxrt.sim._model: the exact model for Python.
-#include "fit_views.h"
-#include "frame.h"
-#include "frame_tile.h"
-#include "ray.h"
-#include "similarity.h"
+#include "../frames/frame.h"
+#include "../frames/frame_tile.h"
+#include "../rays/ray.h"
+#include "../views/fit_views.h"
+#include "../views/similarity.h"
 #include "views_bindings.h"
 
 #include <voxrt/voxelize/bindings/python.h>
@@ -122,7 +122,7 @@ Lod lod_of(const OwnedMemory& memory, const std::optional<Means>& means, int sca
         throw std::invalid_argument("lod_scale is " + std::to_string(scale) + ", not 0 ... 2**20 - 1");
     if (scale == 0)
         return {};
-    const size_t blocks = (memory.verified().memory().size - 1) / 8;
+    const size_t blocks = voxrt::octree::block_count(memory.verified().memory().size);
     if (!means || means->shape(0) != blocks)
         throw std::invalid_argument("means must have a material for each of the " + std::to_string(blocks) + " blocks");
     return {means->data(), static_cast<uint32_t>(scale)};

@@ -1,7 +1,7 @@
 #include "frame.h"
 
+#include "../rays/ray.h"
 #include "frame_tile.h"
-#include "ray.h"
 
 #include <voxrt/voxelize/work/workers.h>
 

@@ -35,7 +35,7 @@ struct BeamFit {
 /// The largest pictures that a board traces in time, of eight views of an orbit.
 class BeamSearch {
 public:
-    /// `cameras`: of the orbit, for pictures of 640 x 480; one or more. `clock_hz`: of the board's ray tracer.
+    /// `cameras`: those of the orbit, for pictures of 640 x 480; one or more. `clock_hz`: the clock of the ray tracer.
     /// `buffer_lines`: of its line buffer, one or more.
     BeamSearch(const std::vector<Camera>& cameras, double clock_hz, int buffer_lines);
 

@@ -7,11 +7,11 @@
 // them, and the octree is built again. Voxels that are not exposed keep their materials.
 #pragma once
 
+#include "../surface/exposed_bricks.h"
+#include "../surface/surface_points.h"
 #include "daylight.h"
-#include "exposed_bricks.h"
-#include "surface_points.h"
 
-#include <voxrt/octree/words/words.h>
+#include <voxrt/octree/words/memory.h>
 #include <voxrt/voxelize/colour/palette.h>
 #include <voxrt/voxelize/scene/material_table.h>
 
@@ -49,7 +49,7 @@ struct BakedMemory {
     std::vector<voxelize::TableMaterial> materials;
 };
 
-// Borrowed: ExposedBricks.
+// ExposedBricks whose arrays are borrowed.
 struct BricksView {
     unsigned depth;
     std::span<const std::uint64_t> codes;

@@ -1,8 +1,8 @@
 // The light that points receive from directions from which they see no solid voxel.
 #pragma once
 
-#include "parallel_rays.h"
-#include "sweep.h"
+#include "../rays/parallel_rays.h"
+#include "../rays/sweep.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Cameras that see all of a memory, as voxrt.octree.camera and voxrt.views.viewpoint make them.
 #pragma once
 
-#include "frame.h"
+#include "../frames/frame.h"
 
 #include <array>
 #include <cstdint>

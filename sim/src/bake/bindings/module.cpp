@@ -1,11 +1,11 @@
 // voxrt.sim._bake: the light that surface voxels receive, for Python. The headers are the manual.
-#include "baked_light.h"
-#include "brick_triangles.h"
-#include "daylight.h"
-#include "exposed_bricks.h"
-#include "placed_triangles.h"
-#include "received_light.h"
-#include "surface_points.h"
+#include "../light/baked_light.h"
+#include "../light/daylight.h"
+#include "../light/received_light.h"
+#include "../surface/brick_triangles.h"
+#include "../surface/exposed_bricks.h"
+#include "../surface/placed_triangles.h"
+#include "../surface/surface_points.h"
 
 #include <voxrt/octree/query/query.h>
 #include <voxrt/voxelize/bindings/python.h>

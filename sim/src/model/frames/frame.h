@@ -3,7 +3,7 @@
 // Long calls count their work: the caller's interrupt check may end them (voxrt/voxelize/work/interrupt.h).
 #pragma once
 
-#include "pixel.h"
+#include "../rays/pixel.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,8 @@
 // Level of detail: cells not wider than a pixel are hit as they stand. docs/lod.md defines the rule.
 #pragma once
 
+#include <voxrt/octree/words/words.h>
+
 #include <algorithm>
 #include <cstdint>
 
@@ -12,8 +14,8 @@ struct Lod {
     uint32_t scale = 0;
 
     bool on() const { return scale != 0; }
-    // Of the block that a word points to.
-    uint8_t mean(uint32_t pointer) const { return means[pointer >> 3]; }
+    // The mean material of the block that a word points to.
+    uint8_t mean(uint32_t pointer) const { return means[octree::block_number(pointer)]; }
 };
 
 constexpr uint32_t kLodScaleLimit = 1 << 20;
