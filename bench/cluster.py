@@ -48,10 +48,10 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
-    asked = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
+    runs = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
     costs = ["| asset | side | one process, s | two workers, s | more |", "|---|--:|--:|--:|--:|"]
     print("\n".join(costs))
-    for asset, depth in asked:
+    for asset, depth in runs:
         costs.append(compare(asset, depth, options.fill, options.rounds))
         print(costs[-1], flush=True)
     plans = [
@@ -59,7 +59,7 @@ def main() -> None:
         "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     print("\n" + "\n".join(plans))
-    for asset, depth in asked:
+    for asset, depth in runs:
         for workers in options.workers:
             plans.append(plan(asset, depth, options.fill, workers))
             print(plans[-1], flush=True)

@@ -14,6 +14,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from voxrt.octree.words import move_pointers
 
 from ..device import Counters, Frame, Identity
 from ..errors import DeviceError, Refused
@@ -145,7 +146,7 @@ class SerialDevice:
             if end <= len(words):
                 break
             more = self.read_memory(start, root + end - start)
-            words = np.concatenate([words, np.where(more >> 31 == 0, more - np.uint32(root), more)])
+            words = np.concatenate([words, move_pointers(more, -root)])
             end = octree_span(words, 0, depth)[1]
         try:
             words = words[: octree_span(words, 0, depth)[1]]

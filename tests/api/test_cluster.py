@@ -39,8 +39,8 @@ end = time.monotonic() + 100
 while not list(folder.glob("*.tile")) and child.poll() is None and time.monotonic() < end:
     os.sched_yield()
 os.killpg(child.pid, number)
-_, said = child.communicate(timeout=100)
-sys.stderr.buffer.write(said)
+_, errors = child.communicate(timeout=100)
+sys.stderr.buffer.write(errors)
 sys.exit(child.returncode)
 """
 
@@ -117,14 +117,14 @@ def test_squares_of_tiles_that_workers_join_give_the_same_bytes(on_a_cluster, tm
 
 @pytest.mark.parametrize("workers", [1, 2, 4])
 def test_workers_give_the_bytes_of_one_machine(workers, alone, tmp_path):
-    told = []
+    reports = []
     built = voxrt.build(
-        EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, workers=workers, clustered=told.append
+        EXAMPLES / "dog.usda", tmp_path / "dog.mem", depth=DEPTH, workers=workers, clustered=reports.append
     )
     same(built, alone)
-    assert [one.done for one in told] == list(range(1, told[-1].tiles + 1))
-    assert {one.workers for one in told} == {workers}
-    assert told[-1].bytes > 0
+    assert [one.done for one in reports] == list(range(1, reports[-1].tiles + 1))
+    assert {one.workers for one in reports} == {workers}
+    assert reports[-1].bytes > 0
 
 
 def test_a_worker_that_is_killed_is_survived(alone, tmp_path):

@@ -108,9 +108,9 @@ def _mem_with_manifest(folder: Path, data: bytes) -> Path:
     """Words, then a manifest whose checksum of them is right."""
     words, _, manifest = data.partition(_BETWEEN)
     try:
-        said = json.loads(manifest)
-        said["rom"]["crc32"] = f"{zlib.crc32(words):08x}"
-        manifest = json.dumps(said).encode()
+        document = json.loads(manifest)
+        document["rom"]["crc32"] = f"{zlib.crc32(words):08x}"
+        manifest = json.dumps(document).encode()
     except (ValueError, TypeError, KeyError, RecursionError):
         pass
     (folder / "a.json").write_bytes(manifest)
@@ -137,9 +137,9 @@ def _read_scene(path: Path) -> None:
 def _read_rom(path: Path) -> None:
     """Read as told nothing, and as told a depth and a dialect."""
     refusals = []
-    for said in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}, {"depth": 3, "dialect": "lod"}):
+    for options in ({}, {"depth": 3}, {"depth": 3, "dialect": "report"}, {"depth": 3, "dialect": "lod"}):
         try:
-            blob, _ = export.read_any(path, **said)
+            blob, _ = export.read_any(path, **options)
         except REFUSALS as error:
             refusals.append(error)
             continue

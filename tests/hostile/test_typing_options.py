@@ -81,9 +81,9 @@ def test_lengths(typed, length, metres):
 def test_names_in_any_case(typed):
     arguments = ("--depth", "3", "--up", "Z", "--fill", "Surface", "--board", "PYNQ_Z1", "--dialect", "SEED_RTL")
     assert typed("build", "house.obj", *arguments).code == 0
-    told = manifest()
-    assert (told["source"]["settings"]["up"], told["source"]["settings"]["fill"]) == ("z", "surface")
-    assert told["dialect"] == "seed-rtl"
+    document = manifest()
+    assert (document["source"]["settings"]["up"], document["source"]["settings"]["fill"]) == ("z", "surface")
+    assert document["dialect"] == "seed-rtl"
 
 
 @pytest.mark.parametrize(
@@ -201,15 +201,15 @@ def test_an_estimate_before_a_long_build(capfd):
 
 
 def test_estimates_grow_with_the_surface():
-    told = []
+    results = []
     for depth in (6, 8, 14):
         built: list[BuildEstimate] = []
         scene = build(EXAMPLES / "house.obj", depth=4).scene
         from voxrt import fit_grid
 
         built.append(estimate_build(scene, fit_grid(scene, depth=depth), BuildOptions(depth=depth)))
-        told += built
-    assert told[0].seconds < told[1].seconds < 10
-    assert told[2].seconds > 60
+        results += built
+    assert results[0].seconds < results[1].seconds < 10
+    assert results[2].seconds > 60
     large = BuildOptions(preview=True, size=(8192, 8192))
     assert estimate_build(scene, fit_grid(scene, depth=4), large).seconds > 60

@@ -233,9 +233,9 @@ def test_page(run):
             for name in (b"nothing", b"../server.py", b"%2e%2e/server.py", b"page_files.py"):
                 assert b" 404 " in await http(server.port, b"GET /%b HTTP/1.1\r\nHost: x\r\n\r\n" % name)
             # The page asks why it was refused: it would be, under a name that is not this machine's.
-            asked = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
-            assert b" 426 " in await http(server.port, asked % (b"127.0.0.1:%d" % server.port))
-            refused = await http(server.port, asked % b"x")
+            request = b"GET /v2 HTTP/1.1\r\nHost: %b\r\n\r\n"
+            assert b" 426 " in await http(server.port, request % (b"127.0.0.1:%d" % server.port))
+            refused = await http(server.port, request % b"x")
             assert refused.startswith(b"HTTP/1.1 403 ")
             assert b"pages of http://x may not connect; start the server with --origin http://x" in refused
 

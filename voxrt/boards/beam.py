@@ -30,7 +30,7 @@ SMALL = (160, 120)
 _VIEWS = 8
 _CACHED = 2  # rtl/voxrt_pkg.sv
 SDRAM_CLOCKS = (40, 30)
-"""Of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
+"""Times of an SDRAM that a screen reads too: clocks from a line's address to its first beat, and from line to line."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -218,7 +218,7 @@ def pack(board: PlacedBoard, config: str) -> bytes:
         return Path(folder, "scene.bit").read_bytes()
 
 
-def load_bitstream(board: PlacedBoard, file: Path, said: Callable[[str], None] = lambda _line: None) -> None:
+def load_bitstream(board: PlacedBoard, file: Path, progress: Callable[[str], None] = lambda _line: None) -> None:
     """Load a bitstream into a board by openFPGALoader. The board forgets it when it is switched off.
 
     Raises
@@ -246,7 +246,7 @@ def load_bitstream(board: PlacedBoard, file: Path, said: Callable[[str], None] =
             f"check the cable, and that the board is a {board.title}"
         )
     if lines:
-        said(lines[-1])
+        progress(lines[-1])
 
 
 def _placed(name: str, design: BaseDesign, config: str) -> PlacedBoard:

@@ -190,6 +190,6 @@ def _run_yosys(configuration: Configuration, folder: Path, progress: Callable[[s
             process.kill()
             raise
     if process.returncode:
-        said = [line for line in (folder / "errors").read_text().splitlines() if "ERROR" in line]
-        raise ToolError(f"yosys has failed: {said[0] if said else f'exit code {process.returncode}'}")
+        messages = [line for line in (folder / "errors").read_text().splitlines() if "ERROR" in line]
+        raise ToolError(f"yosys has failed: {messages[0] if messages else f'exit code {process.returncode}'}")
     return (folder / "core.v").read_text()
