@@ -6,8 +6,9 @@ import json
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
-from ..board.errors import Refused
-from ..board.view import FEATURES, Camera, Lighting, Shading, Triple, View
+from voxrt.board.errors import Refused
+from voxrt.board.view import FEATURES, Camera, Lighting, Shading, Triple, View
+from voxrt.octree.camera import DIRECTION_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +17,6 @@ _REQUEST_LIMIT = (1 << 32) - 1
 _FILES = 64
 _SHADINGS: tuple[Shading, ...] = get_args(Shading)
 _NAME = 200
-_DIRECTION_LIMIT = (1 << 20) - 1
 _BOUNCES = 4  # of mirrors that are turned on without a number
 
 
@@ -213,7 +213,7 @@ _READERS: dict[str, Callable[[dict[str, Any]], Request]] = {
     "cancel": lambda _: CancelUpload(),
     "ray": lambda message: CastRay(
         _position("origin", message.pop("origin", None)),
-        _triple("direction", message.pop("direction", None), -_DIRECTION_LIMIT, _DIRECTION_LIMIT),
+        _triple("direction", message.pop("direction", None), 1 - DIRECTION_LIMIT, DIRECTION_LIMIT - 1),
     ),
     "registers": lambda _: ReadRegisters(),
     "counters": lambda _: ReadCounters(),

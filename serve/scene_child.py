@@ -16,13 +16,13 @@ from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
-from ..board.errors import Refused
+from voxrt.board.errors import Refused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ..board.scene import Scene
-    from ..board.scene_memory import Progress
+    from voxrt.board.scene import Scene
+    from voxrt.board.scene_memory import Progress
 
 _NICE = 10
 

@@ -18,17 +18,16 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ..board.errors import Refused
-from ..board.scene import Scene
-from ..board.view import Camera, Lighting
-from .scene_files import MEMORY_SUFFIXES
-from .shown_text import shown_line
+from voxrt.board.errors import Refused
+from voxrt.board.scene import Scene
+from voxrt.board.view import Camera, Lighting
+from voxrt.serve.shown_text import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ..board.scene_memory import Progress
+    from voxrt.board.scene_memory import Progress
 
 READ_SECONDS = 600.0
 """The longest time that the files of a scene may take."""
@@ -87,7 +86,7 @@ class ChildReader:
         try:
             with tempfile.TemporaryDirectory(prefix="voxrt-scene-") as scratch:
                 return await asyncio.wait_for(self._read(paths, progress, scratch), self.seconds)
-        except asyncio.TimeoutError:  # noqa: UP041 - Python 3.10, which boards have, has two of this name
+        except TimeoutError:
             raise Refused(
                 f"the scene takes more than {self.seconds:.0f} s to build; build it before: voxrt build"
             ) from None
@@ -114,11 +113,6 @@ class ChildReader:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             await process.wait()
-
-
-def memory_reader() -> ChildReader:
-    """Return the reader of octree memories, which needs no other part of voxrt."""
-    return ChildReader(MEMORY_SUFFIXES, ("-m", f"{__package__}.scene_files"))
 
 
 async def _receive(process: asyncio.subprocess.Process, progress: Progress) -> Scene:

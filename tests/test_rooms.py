@@ -17,16 +17,16 @@ MAY_IMPORT = {
     "export": {"voxelize", "octree"},
     "sim": {"voxelize", "octree", "export"},
     "view": {"voxelize", "octree", "export", "sim"},
-    "board": {"voxelize", "octree", "export", "sim"},
-    "serve": {"board"},
+    "board": {"voxelize", "octree", "export", "sim", "rtl"},
+    "serve": {"voxelize", "octree", "export", "sim", "board"},
 }
-"""Room: the rooms that it may import, besides itself. The front door, voxrt's own modules, may import all."""
+"""Room: the rooms that it may import, besides itself, and `rtl` for the registers. The front door may import all."""
 
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
 """The folders of ``voxrt/``, each of which imports itself and those before it."""
 
 OUTSIDE = ("bench", "examples", "docs", "rtl", "tests")
-"""Folders whose scripts import the rooms and each other. No room imports them; ``voxrt.rtl`` is for the front door."""
+"""Folders whose scripts import the rooms and each other. No room imports them, but for ``voxrt.rtl``."""
 
 
 def module_of(path: Path) -> str:

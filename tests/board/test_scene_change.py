@@ -11,13 +11,13 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.errors import DeviceError
-from voxrt.board.pynq_device import open_pynq
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import EMPTY_LEAF, Scene
 from voxrt.board.scene_memory import SceneMemory
 from voxrt.board.simulated.core import open_rtl
 from voxrt.board.simulated.model import ModelDevice
 from voxrt.board.view import View, frame_world
+from voxrt.boards.core_files import each_write
 
 SIZE = (32, 24)
 NAMES = {address: name for name, (address, _) in REGISTERS.items()}
@@ -34,12 +34,12 @@ class Recorder:
         self._device, self._registers, self._memory = device, device._registers, device._memory
         device._registers = device._memory = self
 
-    def read(self, offset):
-        return self._registers.read(offset)
+    def read(self, offsets):
+        return self._registers.read(offsets)
 
-    def write(self, offset, value):
-        self.writes.append((NAMES.get(offset, "materials"), value))
-        self._registers.write(offset, value)
+    def write(self, writes):
+        self.writes += [(NAMES.get(offset, "materials"), value) for offset, value in each_write(writes)]
+        self._registers.write(writes)
 
     def __len__(self):
         return len(self._memory)
@@ -86,13 +86,13 @@ def ignore(_stage, _done, _total):
 
 
 @pytest.fixture(params=["simulated core", "PYNQ", "PYNQ, external memory"])
-def open_device(request, monkeypatch):
+def open_device(request, monkeypatch, open_board):
     """A function that opens the same hardware, again at every call."""
     pytest.importorskip("voxrt.sim._rtl", reason="the verilated core is not in this installation")
     core = Core("cached1" if request.param == "PYNQ, external memory" else "tiny")
     if request.param != "simulated core":
         install(monkeypatch, core)
-        return lambda: open_pynq("voxrt.bit")
+        return open_board
 
     class Module:
         CORES = ("tiny",)

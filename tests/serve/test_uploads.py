@@ -7,8 +7,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from fakes.blob import mem_files
 from fakes.device import FakeDevice, scene, wide_scene
-from fakes.frame_server import frame_where, ignore, mem_files, pixel, served
+from fakes.frame_server import frame_where, ignore, pixel, served
 from fakes.scene_reader import ReadyScenes
 
 from voxrt.board.errors import Refused
