@@ -176,7 +176,7 @@ def serve(listener: socket.socket, board: Board, token: str) -> None:
             proof = _receive(connection, 32, time.monotonic() + PROOF_SECONDS)
             if not hmac.compare_digest(proof, hmac.new(token.encode(), nonce, "sha256").digest()):
                 _answer(connection, 1, b"the token is another one; VOXRT_BOARD_TOKEN must hold that of the agent")
-            elif not busy.acquire(timeout=1):
+            elif not busy.acquire(timeout=2 * VDMA_SECONDS):  # so long the work for a client that has left may take
                 _answer(connection, 1, b"another client uses the board; end it")
             else:
                 threading.Thread(target=_serve_client, args=(connection, board, busy), daemon=True).start()

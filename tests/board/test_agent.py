@@ -22,6 +22,7 @@ from voxrt.board.tcp_device import open_tcp
 
 TOKEN = "as secret as tests can be"
 WORDS = 0x10000 // 4
+LEAVES = struct.pack("<2I", 0xFFFFFF06, 0xFFFFFF07)
 
 
 @pytest.fixture
@@ -33,7 +34,8 @@ def core(monkeypatch):
 
 
 @pytest.fixture
-def agent(core):  # noqa: ARG001 - it is in the board
+def agent(core, monkeypatch):  # noqa: ARG001 - it is in the board
+    monkeypatch.setattr(voxrt_board, "VDMA_SECONDS", 0.5)
     with running_agent(TOKEN) as (address, _):
         yield address
 
@@ -133,8 +135,8 @@ def test_what_is_refused_leaves_the_connection(agent, request_of, problem):
         one.prove()
         status, text = one.ask(*request_of)
         assert (status, text[: len(problem)]) == (1, problem.encode())
-        assert one.ask(3, 5, 2, struct.pack("<2I", 6, 7)) == (0, b"")
-        assert one.ask(2, 5, 2) == (0, struct.pack("<2I", 6, 7))
+        assert one.ask(3, 5, 2, LEAVES) == (0, b"")
+        assert one.ask(2, 5, 2) == (0, LEAVES)
 
 
 @pytest.mark.parametrize("request_of", [(6,), (2**32 - 1,), (1, 2**15 + 1), (2, 0, 2**16 + 1), (3, 0, 2**32 - 1)])
@@ -194,7 +196,7 @@ def test_an_idle_client_stays(monkeypatch):
 def test_the_memory_in_bursts(agent, monkeypatch):
     monkeypatch.setattr(tcp_device, "_BURST", 100)
     device = open_tcp(agent, TOKEN)
-    words = np.random.default_rng(1).integers(0, 1 << 32, 1001, dtype=np.uint32)
+    words = np.random.default_rng(1).integers(0xFFFFFF00, 1 << 32, 1001, dtype=np.uint32)
     device.write_memory(9, words)
     assert (device.read_memory(9, 1001) == words).all()
     assert len(device.read_memory(9, 0)) == 0

@@ -11,6 +11,7 @@ from oracles import worlds
 from oracles.cuts import memory_of
 
 from voxrt.board.errors import DeviceError
+from voxrt.board.register_writes import decode_fields
 from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import EMPTY_LEAF, Scene
 from voxrt.board.scene_memory import SceneMemory
@@ -81,6 +82,10 @@ def expected(scene, view):
     return model.frame(view).colour
 
 
+def fields_of(device, name):
+    return decode_fields(name, device.registers()[name])
+
+
 def ignore(_stage, _done, _total):
     pass
 
@@ -148,7 +153,7 @@ def test_words_written_during_a_frame(open_device, monkeypatch):
 
     def write_and_advance():
         nonlocal steps
-        if steps < 3 and device._fields("status")["busy"]:
+        if steps < 3 and fields_of(device, "status")["busy"]:
             next(loading)
             steps += 1
         advance()
@@ -216,7 +221,7 @@ def test_scenes_that_do_not_fit_together(open_device):
         view = view_of(scene)
         recorder.writes.clear()
         assert (device.frame(view).colour == expected(scene, view)).all()
-        flushes = [HOLD | FLUSH] if device._fields("configuration")["cached"] else []
+        flushes = [HOLD | FLUSH] if fields_of(device, "configuration")["cached"] else []
         assert [value for name, value in recorder.writes if name == "control"] == [*flushes, START]
         assert device.registers()["root"] == 0
 

@@ -35,15 +35,15 @@ class Boards:
 
     def __init__(self, stack) -> None:
         self._stack = stack
-        self._agents = {}
+        self._pynq, self._address = None, ""
         self._device = None
 
     def __call__(self):
         self.close()
-        pynq = sys.modules.get("pynq")
-        if pynq not in self._agents:
-            self._agents[pynq], _ = self._stack.enter_context(running_agent())
-        self._device = open_tcp(self._agents[pynq], "")
+        if self._pynq is None or self._pynq is not sys.modules["pynq"]:
+            self._address, _ = self._stack.enter_context(running_agent())
+            self._pynq = sys.modules["pynq"]
+        self._device = open_tcp(self._address, "")
         return self._device
 
     def close(self) -> None:
