@@ -228,7 +228,7 @@ class RegisterDevice:
         self._video.expect(view.size)
         self._registers.write(writes + register_writes("control", start=1))
         self._wait("frame_done", 1, "the frame does not end", seconds, drop)
-        status, *counts = self._read("status", "rays", "words_read", "cycles")
+        status, rays, words_read, cycles = self._read("status", "rays", "words_read", "cycles")
         if problem := tell_problems(decode_fields("status", status)):
             raise DeviceError(problem)
         colour = np.ascontiguousarray(self._video.take()[..., _TO_RED_GREEN_BLUE])
@@ -236,7 +236,7 @@ class RegisterDevice:
             raise DeviceError(
                 f"the frame has {colour.shape[1]}x{colour.shape[0]} pixels instead of {columns}x{rows}; try again"
             )
-        return Frame(colour, Counters(*counts, time.perf_counter() - started))
+        return Frame(colour, Counters(rays, words_read, cycles, time.perf_counter() - started))
 
     def stop(self) -> None:
         """End the frame in progress; further frames and writes to the memory fail."""

@@ -192,7 +192,7 @@ class _Memory:
         self.base = link.memory_base
 
     def __len__(self) -> int:
-        return self._link.memory_words
+        return int(self._link.memory_words)
 
     def __getitem__(self, words: slice) -> NDArray[np.uint32]:
         bursts = [(start, min(_BURST, words.stop - start)) for start in range(words.start, words.stop, _BURST)]

@@ -29,8 +29,6 @@ PACKAGES = (
     "voxrt.board",
     "voxrt.serve",
 )
-OPTIONAL = frozenset({"pynq"})
-"""Packages that only a board has: a module that needs one of them is left out where it is missing."""
 
 
 def exports(package: str) -> list[str]:
@@ -52,13 +50,8 @@ def _modules(module: ModuleType) -> list[ModuleType]:
         return [module]
     found = []
     for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}."):
-        if any(part.startswith("_") for part in info.name.split(".")):
-            continue
-        try:
+        if not any(part.startswith("_") for part in info.name.split(".")):
             found.append(import_module(info.name))
-        except ModuleNotFoundError as error:
-            if error.name not in OPTIONAL:
-                raise
     return found
 
 
