@@ -48,11 +48,8 @@ def exports(package: str) -> list[str]:
 def _modules(module: ModuleType) -> list[ModuleType]:
     if not hasattr(module, "__path__"):
         return [module]
-    found = []
-    for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}."):
-        if not any(part.startswith("_") for part in info.name.split(".")):
-            found.append(import_module(info.name))
-    return found
+    names = [info.name for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}.")]
+    return [import_module(name) for name in names if not any(part.startswith("_") for part in name.split("."))]
 
 
 def _own_names(module: ModuleType) -> list[str]:

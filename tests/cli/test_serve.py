@@ -12,7 +12,9 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from fakes.blob import blob_of
 from fakes.board_agent import running_agent
+from fakes.device import wide_scene
 from fakes.pynq import Core, install
 
 from voxrt.serve.frame_client import open_client
@@ -147,15 +149,15 @@ def test_a_server_on_a_board_shows_what_the_model_shows(folder, board):
     assert len(np.unique(colour.reshape(-1, 3), axis=0)) > 4
 
 
-def test_upload_to_a_board(voxrt, board, monkeypatch):
+def test_upload_to_a_board(voxrt, folder, board, monkeypatch):
     assert voxrt("build", "house.obj", "--depth", 4).code == 0
     for options, done in (([], "loaded"), (["--dry-run"], "checked; nothing was written")):
         finished = voxrt("upload", "house.mem", "--to", board, *options)
         assert finished.code == 0
         assert f"house.mem: {done}" in finished.err
-    assert voxrt("build", "house.obj", "--depth", 7).code == 0
-    finished = voxrt("upload", "house.mem", "--to", board)
-    assert (finished.code, "words and board at 127" in finished.error) == (4, True)
+    (folder / "wide.blob").write_bytes(blob_of(wide_scene("wide", 3000)))
+    finished = voxrt("upload", "wide.blob", "--to", board)
+    assert (finished.code, "wide has 24001 words and board at 127" in finished.error) == (4, True)
     monkeypatch.setenv("VOXRT_BOARD_TOKEN", "another")
     finished = voxrt("upload", "house.mem", "--to", board)
     assert (finished.code, "the token is another one" in finished.error) == (5, True)
