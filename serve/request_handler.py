@@ -73,8 +73,7 @@ class RequestHandler:
                 self._handle_chunk(message)
             else:
                 number = request_number(message)
-                number, request = read_request(message)
-                await self._handle_request(number, request)
+                await self._handle_request(read_request(message))
         except (Refused, DeviceError) as error:
             self._refuse(number, str(error))
 
@@ -82,8 +81,8 @@ class RequestHandler:
         """Release control; an incomplete upload ends with it, and what is made of one."""
         self._session.control.release(self._client.number)
 
-    async def _handle_request(self, number: int, request: Request) -> None:
-        session, client = self._session, self._client
+    async def _handle_request(self, request: Request) -> None:
+        session, client, number = self._session, self._client, request.request
         answer: dict[str, Any] = {"type": "done", "request": number}
         match request:
             case TakeControl():

@@ -33,7 +33,7 @@ def one_voxel():
     ],
 )
 def test_hits(origin, direction, face, point):
-    hit = _cast_ray(one_voxel(), 0, CastRay(origin, direction))
+    hit = _cast_ray(one_voxel(), 0, CastRay(origin=origin, direction=direction))
     assert hit == {"voxel": list(SOLID), "material": 7, "face": face, "point": pytest.approx(point, abs=1e-9)}
 
 
@@ -41,14 +41,14 @@ def test_hits(origin, direction, face, point):
     ("origin", "direction"), [((-16, 40, 152), (-3, 0, 0)), ((8, 8, 8), (0, 0, 0)), ((-16, 40, 152), (0, 0, 0))]
 )
 def test_misses(origin, direction):
-    assert _cast_ray(one_voxel(), 0, CastRay(origin, direction)) is None
+    assert _cast_ray(one_voxel(), 0, CastRay(origin=origin, direction=direction)) is None
 
 
 def test_the_frame_of_an_animation():
     frames = scene(blocks=2, material=3, roots=(1, 2))  # word 1 leads to the second block, word 2 is a leaf
-    assert _cast_ray(frames, 1, CastRay((-16, 40, 8), (1, 0, 0)))["voxel"] == [0, 2, 0]
+    assert _cast_ray(frames, 1, CastRay(origin=(-16, 40, 8), direction=(1, 0, 0)))["voxel"] == [0, 2, 0]
 
 
 def test_a_ray_from_farther_than_registers_reach():
     with pytest.raises(Refused, match="must be multiples of 1/16 voxel below"):
-        _cast_ray(one_voxel(), 0, CastRay((-(1 << 31), 0, 0), (1, 0, 0)))
+        _cast_ray(one_voxel(), 0, CastRay(origin=(-(1 << 31), 0, 0), direction=(1, 0, 0)))
