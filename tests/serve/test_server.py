@@ -74,7 +74,7 @@ def test_the_frames_of_an_animation(run):
         ({"features": ["mirrors"]}, "fake has no mirrors"),
         ({"camera": {**CAMERA, "position": [1 << 20, 0, 0]}}, "the camera is more than 65536 voxels"),
         ({"camera": {**CAMERA, "right": [32767, 0, 0], "up": [32767, 0, 0]}}, "directions reach 1802185"),
-        ({"bounces": 16}, "bounces 16"),
+        ({"bounces": 16}, r"<= 15 - at `\$.bounces`"),
     ],
 )
 def test_views_out_of_range(run, fields, problem):
