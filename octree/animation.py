@@ -278,6 +278,8 @@ def check_roots(octree: Octree, roots: Sequence[int], *, source: str = "") -> in
     """
     label = source or "memory"
     words, levels = octree.words, _levels(len(roots))
+    if not roots:
+        raise RomError(f"{label}: it has no frame; build it again")
     for row, root in enumerate(roots):
         if not 0 <= root < len(words):
             raise RomError(f"{label}: frame {row} has its root at word {root} of {len(words)}; build it again")

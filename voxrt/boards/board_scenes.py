@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,9 @@ import numpy as np
 from voxrt import voxelize
 from voxrt.board.errors import Refused
 from voxrt.board.scene import Scene
-from voxrt.building.pipeline import build
 from voxrt.export import Blob, read_any
 from voxrt.octree import RomError
 from voxrt.options.build_options import PREVIEW_SIZE
-from voxrt.serve.blob import read_blob
 from voxrt.serve.scene_process import ChildReader
 from voxrt.views.pictures import animation_camera
 from voxrt.voxelize.assets import SUFFIXES
@@ -26,7 +25,8 @@ if TYPE_CHECKING:
 
 _STAGES = ("load", "fit", "colour", "voxelize", "octree")
 
-ASSET_READER_SUFFIXES = (".blob", ".mem", *sorted(SUFFIXES))
+_MEMORY_SUFFIXES = (".blob", ".mem")
+ASSET_READER_SUFFIXES = (*_MEMORY_SUFFIXES, *sorted(SUFFIXES))
 """Suffixes of the files that hold a scene."""
 
 
@@ -66,10 +66,11 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
     RomError, AssetError, DoesNotFitError
         The file is malformed or too large.
     """
-    if path.suffix.lower() == ".blob":
-        return read_blob(path.read_bytes())
-    if path.suffix.lower() == ".mem":
-        return board_scene(read_any(path, depth=depth)[0])
+    if path.suffix.lower() in _MEMORY_SUFFIXES:
+        blob = read_any(path, depth=depth)[0]
+        scene = board_scene(blob)
+        return scene if path.suffix.lower() == ".mem" else replace(scene, camera=blob.view)
+    from voxrt.building.pipeline import build  # noqa: PLC0415 - a memory does not wait for what builds
 
     def begin(stage: str) -> None:
         if progress is not None and stage in _STAGES:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base_design import read_block_rams
+from voxrt.board.designs.base_design import read_block_rams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
