@@ -22,8 +22,9 @@ from typing import NamedTuple
 
 import voxrt
 from voxrt import octree
-from voxrt.plans.blockwise import block_voxelizer, plan_build
-from voxrt.plans.cluster import cluster_side
+from voxrt.plans.by_workers import cluster_side
+from voxrt.plans.plan import plan_build
+from voxrt.plans.tile_making import block_voxelizer
 
 FAN_IN = 4
 MOST_PIECES = 16
@@ -117,7 +118,7 @@ def plan(asset: Path, depth: int, fill: str, workers: int) -> str:
     voxelizer = block_voxelizer(scene, grid, options)
     voxelizer.prepare()
     analysis = process_time() - begun
-    blocks = voxelizer.blocks(cluster_side(voxelizer, grid, plan_build(scene, grid, options, on_disk=True), workers))
+    blocks = voxelizer.blocks(cluster_side(voxelizer, plan_build(scene, grid, options, on_disk=True), workers))
     tiles: dict[tuple[int, int], Made] = {}
     for block in blocks:
         begun = process_time()

@@ -95,7 +95,6 @@ __all__ = [
 
 _HOMES = {
     "voxrt.building.animation": ("build_animation",),
-    "voxrt.building.animation_takes": ("frame_times",),
     "voxrt.building.baking": ("Bake",),
     "voxrt.options.build_options": ("BuildOptions",),
     "voxrt.building.result": ("BuildResult",),
@@ -108,6 +107,7 @@ _HOMES = {
         "BudgetFit",
         "InteriorFit",
     ),
+    "voxrt.sources.frames": ("frame_times",),
     "voxrt.sources.from_arrays": ("mesh_scene",),
     "voxrt.views.depth_likeness": (
         "LikenessAtDepth",
@@ -179,7 +179,6 @@ _ROOMS = ("board", "export", "octree", "serve", "sim", "view", "voxelize")
 if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one is an error
     from voxrt import board, export, octree, serve, sim, view, voxelize
     from voxrt.building.animation import build_animation
-    from voxrt.building.animation_takes import frame_times
     from voxrt.building.baking import Bake
     from voxrt.building.fitting import BudgetFit, InteriorFit
     from voxrt.building.pipeline import build, voxelize_mesh
@@ -203,6 +202,7 @@ if TYPE_CHECKING:  # type checkers see these names and no others: a misspelt one
         follow_ray,
         shader_features,
     )
+    from voxrt.sources.frames import frame_times
     from voxrt.sources.from_arrays import mesh_scene
     from voxrt.view import ViewerError
     from voxrt.views.depth_likeness import LikenessAtDepth, draw_likeness_curve, likeness_curve

@@ -75,8 +75,7 @@ def load_scene(path: Path, depth: int | None = None, progress: Progress | None =
         if progress is not None and stage in _STAGES:
             progress(stage, _STAGES.index(stage), len(_STAGES))
 
-    built = build(path, depth=depth, progress=begin)
-    return board_scene(Blob(built.rom, built.view, built.lighting))
+    return board_scene(build(path, depth=depth, progress=begin).blob)
 
 
 def read_files(paths: Sequence[Path], progress: Progress, depth: int | None, memory_depth: int | None) -> Scene:

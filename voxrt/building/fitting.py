@@ -86,8 +86,15 @@ def find_material(asset: object, materials: Sequence[Material], wanted: int | st
     )
 
 
-def fit_interior(rom: Rom, material: int | None) -> tuple[Rom, InteriorFit]:
-    """Give the hidden voxels of `rom` the material, or each what lets most blocks be shared."""
+def fit_interior(rom: Rom, wanted: int | str, asset: object) -> tuple[Rom, InteriorFit]:
+    """Give hidden voxels the material that is asked for, or with ``"any"`` each what lets most blocks be shared.
+
+    Raises
+    ------
+    AssetError
+        The memory has no such material; `asset` is what the message calls it.
+    """
+    material = None if wanted == "any" else find_material(asset, rom.materials, wanted)
     whole, hidden = rom.octree, octree.hidden_voxels(rom.octree)
     tree = octree.share_hidden(whole, hidden) if material is None else octree.fill_hidden(whole, hidden, material)
     found = octree.census(hidden).solid_voxels

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from voxrt.export.atomic import write_atomically
-from voxrt.octree import Octree
+from voxrt.octree import Assembly, DiskAssembly, Octree
 from voxrt.outputs import OutputError
 from voxrt.voxelize import AssetError, DoesNotFitError
 
@@ -27,6 +27,7 @@ except ImportError:  # no POSIX system: nobody tells whether another build uses 
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
     from types import TracebackType
 
@@ -38,6 +39,7 @@ _HEADER = struct.Struct("<8s16sIIqq")  # magic, key, depth, 0, words, rows of ta
 _MAGIC = b"voxrtil2"
 _CRC32 = struct.Struct("<I")
 _TALLIES = 5  # numbers per row: the object, and its tally
+_BYTES_OF_BLOCK = 32
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -130,6 +132,34 @@ def tile_name(block: ColumnBlock) -> str:
     '0-4096'
     """
     return f"{block.x}-{block.y}"
+
+
+class MemoryTiles:
+    """Tiles for which there is no folder: they are joined in memory as they are made.
+
+    Parameters
+    ----------
+    depth
+        The levels of the world.
+    """
+
+    def __init__(self, depth: int) -> None:
+        self._whole = Assembly(depth)
+
+    def claim(self, _key: str, side: int) -> int:
+        """Return `side`: no tile is there yet."""
+        return side
+
+    def read(self, _name: str) -> None:
+        """Return None: no tile is there yet."""
+
+    def write(self, _name: str, tile: Tile) -> None:
+        """Join a tile to those before it."""
+        self._whole.add(tile.octree)
+
+    def join(self, _names: Iterable[str], _depth: int, _cache: int) -> Octree:
+        """Return the octree of all tiles."""
+        return self._whole.octree()
 
 
 _locks: set[int] = set()
@@ -231,8 +261,8 @@ class TileStore:
         """Return a finished tile, or None."""
         return read_tile(self.path(name), self.key)
 
-    def write(self, name: str, tile: Tile) -> int:
-        """Keep a finished tile; returns its bytes.
+    def write(self, name: str, tile: Tile) -> None:
+        """Keep a finished tile.
 
         Raises
         ------
@@ -240,12 +270,45 @@ class TileStore:
             The disk is full, most often.
         """
         try:
-            return write_tile(self.path(name), self.key, tile)
+            write_tile(self.path(name), self.key, tile)
         except OSError as error:
-            raise OutputError(
-                f"{self.path(name)}: cannot be written: {error.strerror or error}; finished tiles stay, and the same "
-                "build goes on from them"
-            ) from error
+            raise _unwritten(self.path(name), error) from error
+
+    def missing(self, name: str) -> str:
+        """Return what errors say of a tile that should be there."""
+        return f"{self.path(name)}: is missing or damaged; build again, which makes it anew"
+
+    def join(self, names: Iterable[str], depth: int, cache: int) -> Octree:
+        """Join finished tiles to the octree of the world.
+
+        Parameters
+        ----------
+        names, depth
+            The tiles, and the levels of the world.
+        cache
+            Bytes of memory for blocks: these go to the disk, and the words to the file `words`. 0 to join in memory.
+
+        Raises
+        ------
+        OutputError
+            A tile is missing or damaged, or the disk is full.
+        """
+        try:
+            whole: DiskAssembly | Assembly
+            if cache:
+                whole = DiskAssembly(depth, self.folder, cache=cache)
+            else:
+                names = tuple(names)
+                sizes = (path.stat().st_size for path in map(self.path, names) if path.exists())
+                whole = Assembly(depth, expected_blocks=min(sum(sizes) // _BYTES_OF_BLOCK, 1 << 28))
+            for name in names:
+                tile = self.read(name)
+                if tile is None:
+                    raise OutputError(self.missing(name))
+                whole.add(tile.octree)
+            return whole.octree() if isinstance(whole, Assembly) else whole.octree(self.words)
+        except OSError as error:
+            raise _unwritten(self.folder, error) from error
 
     def _take(self, lock: int, side: int) -> int:
         if fcntl is not None:
@@ -281,3 +344,10 @@ class TileStore:
     @property
     def _key_file(self) -> Path:
         return self.folder / "key"
+
+
+def _unwritten(path: Path, error: OSError) -> OutputError:
+    return OutputError(
+        f"{path}: cannot be written: {error.strerror or error}; finished tiles stay, and the same build goes on from "
+        "them"
+    )

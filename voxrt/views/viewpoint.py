@@ -13,7 +13,6 @@ import numpy as np
 
 from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
-from voxrt.voxelize import AssetError
 from voxrt.voxelize.arguments import instance, whole_array
 
 if TYPE_CHECKING:
@@ -143,31 +142,6 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
         return look_at(eye, target, size=size, up=up, **wanted)
     except ValueError as error:
         raise ViewpointError(f"the scene's camera: {error}") from error
-
-
-def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
-    """Return the author's camera with a name, or with a number, counted from 0.
-
-    Raises
-    ------
-    AssetError
-        The scene has no such camera; `label` is what the message calls it.
-
-    Examples
-    --------
-    >>> from voxrt.voxelize import EMPTY, Scene, Viewpoint
-    >>> cameras = Viewpoint((1, 1, 1), (0, 0, 0), name="left"), Viewpoint((9, 1, 1), (0, 0, 0), name="right")
-    >>> named_camera("yard", Scene("yard", (), (EMPTY,), cameras=cameras), "right").eye
-    (9.0, 1.0, 1.0)
-    """
-    found = [camera for camera in scene.cameras if camera.name == name]
-    if not found and name.isdecimal() and int(name) < len(scene.cameras):
-        found = [scene.cameras[int(name)]]
-    if not found:
-        names = ", ".join(camera.name or str(number) for number, camera in enumerate(scene.cameras))
-        there, fix = (f"there are {names}", "name one of these") if names else ("it has none", "leave it out")
-        raise AssetError(label, f"there is no camera {name!r}: {there}", fix=fix)
-    return found[0]
 
 
 def stands_inside(rom: Rom, camera: Camera) -> bool:
