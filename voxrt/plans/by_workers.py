@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -26,13 +26,15 @@ if TYPE_CHECKING:
     from voxrt.sources.source import Source
     from voxrt.voxelize import BlockVoxelizer, ColumnBlock, Scene, VoxelizationReport
 
-_FAN_IN = 4
+T = TypeVar("T")
+
+FAN_IN = 4
 """Tiles along each side of a square that one task joins."""
 
-_MOST_PIECES = 16
+MOST_PIECES = 16
 """This process joins up to so many octrees alone."""
 
-_JOINERS = 8
+JOINERS = 8
 """With fewer workers, this process joins all tiles: joins by few workers take longer than they save."""
 
 _TILES_PER_WORKER = 4
@@ -129,12 +131,18 @@ def _made(
         if clustered is not None:
             clustered(ClusterProgress(len(made), len(places), workers.count, size))
     pieces, level = {place: made[place] for place in places}, 0
-    while workers.count >= _JOINERS and len(pieces) > _MOST_PIECES:
+    while workers.count >= JOINERS and len(pieces) > MOST_PIECES:
         level += 1
-        squares: dict[tuple[int, int], list[TileDone]] = {}
-        for (x, y), piece in pieces.items():
-            squares.setdefault((x // _FAN_IN, y // _FAN_IN), []).append(piece)
-        calls = [(f"joined-{level}-{x}-{y}", parts) for (x, y), parts in squares.items()]
+        groups = squares(pieces)
+        calls = [(f"joined-{level}-{x}-{y}", parts) for (x, y), parts in groups.items()]
         joined = dict(workers.completed(partial(merge_tiles, job), calls))
-        pieces = {place: joined[number] for number, place in enumerate(squares)}
+        pieces = {place: joined[number] for number, place in enumerate(groups)}
     return list(pieces.values())
+
+
+def squares(pieces: dict[tuple[int, int], T]) -> dict[tuple[int, int], list[T]]:
+    """Return the pieces of each square that one task joins, by the square's place."""
+    groups: dict[tuple[int, int], list[T]] = {}
+    for (x, y), piece in pieces.items():
+        groups.setdefault((x // FAN_IN, y // FAN_IN), []).append(piece)
+    return groups

@@ -29,14 +29,14 @@ class DaskWorkers(Workers):
     """The workers of a cluster. `remedy` is what errors say to do where it is lost."""
 
     def __init__(self, client: Client, remedy: str) -> None:
-        self._client, self._remedy = client, remedy
-        self._count, self._looked = 0, -inf
+        super().__init__()
+        self._client, self._remedy, self._counted = client, remedy, -inf
 
     @property
     def count(self) -> int:
         """How many they are, counted anew after half a second."""
-        if monotonic() - self._looked > _LOOK:
-            self._count, self._looked = len(self._client.scheduler_info(n_workers=-1)["workers"]), monotonic()
+        if monotonic() - self._counted > _LOOK:
+            self._count, self._counted = len(self._client.scheduler_info(n_workers=-1)["workers"]), monotonic()
         return self._count
 
     def completed(

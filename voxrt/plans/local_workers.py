@@ -44,9 +44,6 @@ _shared: list[object] = []
 class LocalWorkers(Workers):
     """So many processes of this machine, each of which does one task at a time."""
 
-    def __init__(self, count: int) -> None:
-        self.count = count
-
     def completed(
         self, task: Callable[..., T], calls: Sequence[tuple[object, ...]], shared: tuple[object, ...] = ()
     ) -> Iterator[tuple[int, T]]:

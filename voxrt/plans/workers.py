@@ -16,13 +16,19 @@ T = TypeVar("T")
 class Workers:
     """The present process, which does one task after another.
 
-    Attributes
+    Parameters
     ----------
     count
-        How many workers there are now.
+        How many workers there are.
     """
 
-    count = 1
+    def __init__(self, count: int = 1) -> None:
+        self._count = count
+
+    @property
+    def count(self) -> int:
+        """How many workers there are now."""
+        return self._count
 
     def completed(
         self, task: Callable[..., T], calls: Sequence[tuple[object, ...]], shared: tuple[object, ...] = ()
