@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from voxrt import sim
 from voxrt.building.fitting import fit_budget
+from voxrt.export import BakedLight as Bake
 from voxrt.octree.camera import Lighting
 from voxrt.sim.baking.bake import MOST_COLOURS, bake_light
 from voxrt.sim.baking.daylight import Daylight, sky_light
@@ -24,44 +27,6 @@ FLAT = Lighting(flat=True)
 
 _PALETTES = (MOST_COLOURS, 64, 16)
 """Colours that are tried where a memory does not fit its budget with all of them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Bake:
-    """What was baked, and what it took.
-
-    Attributes
-    ----------
-    sun
-        The direction towards the sun, scene frame.
-    sky
-        Linear light of the sky: red, green, blue.
-    samples
-        Rays to the sky per voxel.
-    voxels
-        Voxels with baked colours.
-    colours
-        The most baked colours of the memory.
-    words_before
-        Words of the memory without baked light.
-    words
-        Words of the memory with it, before it is fitted to a budget.
-
-    Examples
-    --------
-    >>> import voxrt
-    >>> baked = voxrt.build("examples/house.obj", depth=5, bake=True).bake
-    >>> baked.samples, baked.words > baked.words_before
-    (64, True)
-    """
-
-    sun: tuple[float, float, float]
-    sky: tuple[float, float, float]
-    samples: int
-    voxels: int
-    colours: int
-    words_before: int
-    words: int
 
 
 def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, BakedLight, Bake]:
@@ -95,7 +60,7 @@ def fit_baked(
         shown = picture(fitted).colour
         psnr = sim.peak_signal_to_noise(whole.colour, shown)
         ssim = sim.structural_similarity(whole.colour, shown)
-        found.append((psnr, fitted, replace(fit, psnr=psnr, ssim=ssim), replace(made, colours=colours)))
+        found.append((psnr, fitted, replace(fit, psnr=psnr, ssim=ssim), msgspec.structs.replace(made, colours=colours)))
         if not fit.fit.changed:
             break
     _, fitted, fit, described = max(found, key=lambda one: one[0])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from voxrt import sim
 from voxrt.errors import ToolError
 from voxrt.plans.open_workers import open_workers
 from voxrt.plans.workers import in_order
@@ -116,15 +117,13 @@ def take_picture(job: PictureJob, number: int, camera: Camera) -> PathPicture:
     ToolError
         It cannot be rendered.
     """
-    from voxrt.sim import check  # noqa: PLC0415 - most paths do without
-
     arguments: dict[str, Any] = {field.name: getattr(job, field.name) for field in fields(job)}
     both = arguments.pop("check")
     try:
         if not both:
             return PathPicture(number, render(camera=camera, **arguments), None)
         engine = arguments.pop("engine")
-        checked = check(camera=camera, **arguments)
+        checked = sim.check(camera=camera, **arguments)
         return PathPicture(number, getattr(checked, engine), checked.wrong_pixels)
     except Exception as error:
         raise ToolError(f"camera {number}: {error}") from error

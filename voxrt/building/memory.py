@@ -38,21 +38,7 @@ def make_memory(
     store: TileStore | None = None,
     clustered: Callable[[ClusterProgress], None] | None = None,
 ) -> BuildResult:
-    """Voxelize a scene, build its octree, and finish the memory as the options of its source ask.
-
-    Parameters
-    ----------
-    name
-        The name of the memory.
-    loaded
-        The scene as it was loaded.
-    plan, source, clock, store, clustered
-        As :func:`voxrt.plans.run_plan.run_plan` takes them.
-
-    Returns
-    -------
-    BuildResult
-        The memory, not yet seen nor written. Its scene has its colours reduced to materials.
+    """Voxelize a scene as it was loaded, build its octree, and finish the memory as the options of its source ask.
 
     Raises
     ------

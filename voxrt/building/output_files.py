@@ -48,18 +48,7 @@ def output_files(
     output: str | os.PathLike[str] | None,
     preview: str | os.PathLike[str] | bool,
 ) -> OutputFiles:
-    """Return the files of a build, which can be written.
-
-    Parameters
-    ----------
-    name
-        The name of the asset, as text.
-    file_name
-        The name of its file; None for an asset in memory.
-    output
-        The folder, the file of words, or None.
-    preview
-        The picture's file, or whether one is wanted.
+    """Return the files of a build, which can be written. `file_name`: that of the asset; None for one in memory.
 
     Raises
     ------

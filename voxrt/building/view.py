@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from voxrt import sim
 from voxrt.options.build_options import PREVIEW_SIZE
 from voxrt.views.viewpoint import ViewpointError, aim_camera, authored_camera, authored_lighting, stands_inside
 from voxrt.voxelize import SceneWarning
@@ -81,6 +82,4 @@ def _camera(result: BuildResult, size: tuple[int, int]) -> Camera:
         return authored_camera(viewpoint, grid, size)
     if result.animation is None:
         return aim_camera(result.rom, size)
-    from voxrt.sim import frame_animation  # noqa: PLC0415 - slow to import
-
-    return frame_animation(result.rom, result.animation.roots, size)
+    return sim.frame_animation(result.rom, result.animation.roots, size)

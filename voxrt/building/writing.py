@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from voxrt.plans.stage_clock import StageClock
 
 
+_NAMED = ("fill", "interior", "geometry", "pow2", "up", "unit", "time", "animation", "variants", "colours", "bake")
+"""The options that every manifest names."""
+
+
 def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool | None]:
     """Return the options that the manifest names.
 
@@ -31,19 +35,8 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
     >>> named_settings(BuildOptions(colours=8))["colours"]
     8
     """
-    settings: dict[str, str | int | float | bool | None] = {
-        "fill": options.fill,
-        "interior": options.interior,
-        "geometry": options.geometry,
-        "pow2": options.pow2,
-        "up": options.up,
-        "unit": options.unit,
-        "time": options.time,
-        "animation": options.animation,
-        "variants": ", ".join(options.variants) or None,
-        "colours": options.colours,
-        "bake": options.bake,
-    }
+    settings: dict[str, str | int | float | bool | None] = {name: getattr(options, name) for name in _NAMED}
+    settings["variants"] = ", ".join(options.variants) or None
     if options.ignore:
         settings["ignore"] = ", ".join(options.ignore)
     if options.bounds is not None:
@@ -54,18 +47,7 @@ def named_settings(options: BuildOptions) -> dict[str, str | int | float | bool 
 def write_result(
     files: OutputFiles, result: BuildResult, options: BuildOptions, clock: StageClock
 ) -> tuple[BuildResult, Exception | None]:
-    """Render the preview of a build and write its files, all of them or none.
-
-    Parameters
-    ----------
-    files
-        Where they go.
-    result
-        What was made.
-    options
-        How it was made.
-    clock
-        Counts the stages "preview" and "write".
+    """Render the preview of a build and write its files, all of them or none, in the stages "preview" and "write".
 
     Returns
     -------
@@ -121,7 +103,7 @@ def _write(files: OutputFiles, result: BuildResult, dialect: str) -> dict[str, P
                 source=result.source,
                 view=result.view,
                 lighting=result.lighting,
-                baked=result.baked,
+                baked=result.bake,
                 animation=result.animation,
                 beside=pictures,
             )

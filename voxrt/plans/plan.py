@@ -57,26 +57,12 @@ class BuildPlan:
 def fit_plan(scene: Scene, options: BuildOptions, clock: StageClock, *, on_disk: bool) -> BuildPlan:
     """Fit the grid that options ask for to a scene, and plan its build, in the stage "fit".
 
-    Parameters
-    ----------
-    scene, options, on_disk
-        As for :func:`plan_build`.
-    clock
-        Counts the stage.
-
     Raises
     ------
     AssetError
         The scene has nothing to voxelize, or a coordinate that is not finite.
     DoesNotFitError
         The scene needs more than 2**16 voxels per side.
-
-    Examples
-    --------
-    >>> from voxrt import BuildOptions, load
-    >>> from voxrt.plans.stage_clock import StageClock
-    >>> fit_plan(load("examples/house.obj"), BuildOptions(), StageClock(None), on_disk=True).grid.depth
-    7
     """
     with clock.stage("fit"):
         grid = voxelize.fit_grid(

@@ -37,23 +37,15 @@ def run_plan(
 
     Parameters
     ----------
-    plan, clock
-        What is to be done, and what counts the stages.
-    scene
-        The scene of `source`, with its colours reduced to materials.
+    plan, scene, clock
+        What is to be done, with colours reduced to materials, and what counts the stages.
     source
         Its options name who runs the plan: this process, several of this machine, or a cluster.
     store
-        Where tiles and words go that do not fit the memory; None to keep them in memory all the same.
+        Where tiles and words go that do not fit the memory; None to keep them in memory all the same. The words of the
+        octree may be those of a file there.
     clustered
         Called as workers finish tiles.
-
-    Returns
-    -------
-    octree
-        The octree. Its words may be those of a file in `store`.
-    report
-        How each object was voxelized.
 
     Raises
     ------

@@ -135,13 +135,7 @@ def tile_name(block: ColumnBlock) -> str:
 
 
 class MemoryTiles:
-    """Tiles for which there is no folder: they are joined in memory as they are made.
-
-    Parameters
-    ----------
-    depth
-        The levels of the world.
-    """
+    """Tiles for which there is no folder: they are joined in memory as they are made."""
 
     def __init__(self, depth: int) -> None:
         self._whole = Assembly(depth)
@@ -262,13 +256,7 @@ class TileStore:
         return read_tile(self.path(name), self.key)
 
     def write(self, name: str, tile: Tile) -> None:
-        """Keep a finished tile.
-
-        Raises
-        ------
-        OutputError
-            The disk is full, most often.
-        """
+        """Keep a finished tile; OutputError if it cannot be written, most often because the disk is full."""
         try:
             write_tile(self.path(name), self.key, tile)
         except OSError as error:
@@ -279,19 +267,10 @@ class TileStore:
         return f"{self.path(name)}: is missing or damaged; build again, which makes it anew"
 
     def join(self, names: Iterable[str], depth: int, cache: int) -> Octree:
-        """Join finished tiles to the octree of the world.
+        """Join finished tiles to the octree of the world; OutputError if one is missing, or the disk is full.
 
-        Parameters
-        ----------
-        names, depth
-            The tiles, and the levels of the world.
-        cache
-            Bytes of memory for blocks: these go to the disk, and the words to the file `words`. 0 to join in memory.
-
-        Raises
-        ------
-        OutputError
-            A tile is missing or damaged, or the disk is full.
+        `cache` is the bytes of memory for blocks: these go to the disk, and the words to the file `words`. With 0 all
+        are joined in memory.
         """
         try:
             whole: DiskAssembly | Assembly

@@ -84,16 +84,7 @@ def inherited_scene(key: str, voxelizer: BlockVoxelizer) -> Iterator[None]:
 
 
 def make_tile(job: TileJob, block: ColumnBlock, objects: tuple[int, ...]) -> TileDone:
-    """Voxelize a tile and build its octree, if nobody did yet.
-
-    Parameters
-    ----------
-    job
-        The build.
-    block
-        The tile.
-    objects
-        Numbers of the objects that reach it.
+    """Voxelize a tile that these objects reach and build its octree, if nobody did yet.
 
     Raises
     ------
@@ -108,13 +99,7 @@ def make_tile(job: TileJob, block: ColumnBlock, objects: tuple[int, ...]) -> Til
 
 
 def merge_tiles(job: TileJob, name: str, parts: Sequence[TileDone]) -> TileDone:
-    """Join finished tiles to one, if nobody did yet.
-
-    Raises
-    ------
-    ToolError
-        A tile is missing or damaged.
-    """
+    """Join finished tiles to one, if nobody did yet; ToolError if one is missing or damaged."""
     with _ONE_AT_A_TIME:
         tile = job.store.read(name)
         if tile is None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from voxrt import octree, sim
 from voxrt.octree import Rom
 from voxrt.octree.camera import THREE_QUARTER, Camera, Lighting, eye_that_sees, focal_length, look_at
 from voxrt.voxelize.arguments import instance, whole_array
@@ -84,12 +85,8 @@ def aim_camera(
     position = _triple("position", position, 1 << 31)
     look, right, up = _triple("look", look), _triple("right", right), _triple("up", up)
     if position is None and (look, right, up) == (None, None, None):
-        from voxrt.sim import frame_scene  # noqa: PLC0415 - slow to import, and most builds make no picture
-
-        return frame_scene(rom, size)
-    from voxrt.sim import outline  # noqa: PLC0415 - as above
-
-    points = outline(rom.octree)
+        return sim.frame_scene(rom, size)
+    points = sim.outline(rom.octree)
     if look is None or right is None or up is None:
         sight = np.array(THREE_QUARTER)
         if position is not None:
@@ -146,10 +143,7 @@ def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> 
 
 def stands_inside(rom: Rom, camera: Camera) -> bool:
     """Tell whether a camera stands inside a solid voxel: its picture would show nothing else."""
-    voxel = [[place >> 4 for place in camera.position]]
-    from voxrt.octree import material_at  # noqa: PLC0415 - as above
-
-    return bool(material_at(rom.octree, voxel)[0])
+    return bool(octree.material_at(rom.octree, [[place >> 4 for place in camera.position]])[0])
 
 
 def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
