@@ -18,7 +18,7 @@ from voxrt.building.writing import named_settings, write_result
 from voxrt.octree import Animation, AnimationFrame
 from voxrt.options.build_options import DEFAULT_DEPTH, merge_options
 from voxrt.plans.plan import fit_plan, plan_build
-from voxrt.plans.run_plan import run_plan
+from voxrt.plans.run_plan import run_here
 from voxrt.plans.stage_clock import StageClock
 from voxrt.sources.frames import open_frames
 from voxrt.sources.object_selection import crowded_out, refuse_empty
@@ -146,9 +146,9 @@ def _join_frames(name: str, frames: FrameSources, scenes: SceneFrames, grid: Gri
 
     def octrees() -> Iterator[Octree]:
         nonlocal solid
-        for number, source in enumerate(frames.sources):
+        for number in range(len(frames.sources)):
             scene = scenes.scene(number)
-            tree, report = run_plan(plan_build(scene, grid, options, on_disk=False), scene, source, clock)
+            tree, report = run_here(plan_build(scene, grid, options, on_disk=False), scene, clock, options=options)
             if options.interior != "keep":
                 with clock.stage("interior"):
                     rom = octree.Rom("", tree, union.materials)

@@ -13,6 +13,7 @@ from voxrt.building.view import with_view
 from voxrt.building.writing import named_settings, write_result
 from voxrt.options.build_options import merge_options
 from voxrt.plans.plan import fit_plan
+from voxrt.plans.run_plan import choose_runner
 from voxrt.plans.stage_clock import StageClock
 from voxrt.plans.tile_store import TileStore
 from voxrt.sources.source import open_source
@@ -105,7 +106,8 @@ def build(
         plan = fit_plan(scene, options, clock, on_disk=store is not None)
         if estimated is not None:
             estimated(plan.estimate)
-        result = make_memory(files.name, scene, plan, source, clock, store=store, clustered=clustered)
+        run = choose_runner(source, store, clustered)
+        result = make_memory(scene, plan, options, clock, run, name=files.name, label=source.label)
         result = with_view(result, options)
         source.refuse_warnings(result.warnings)
         result = replace(result, source=export.Source(files.source, named_settings(options)))

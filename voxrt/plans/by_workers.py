@@ -66,13 +66,13 @@ class ClusterProgress:
 def run_by_workers(
     plan: BuildPlan,
     scene: Scene,
-    source: Source,
     clock: StageClock,
     *,
+    source: Source,
     store: TileStore,
-    clustered: Callable[[ClusterProgress], None] | None = None,
+    clustered: Callable[[ClusterProgress], None] | None,
 ) -> tuple[Octree, VoxelizationReport]:
-    """Run a plan as :func:`voxrt.plans.run_plan.run_plan` does, by the workers that the options name.
+    """Run a plan by the workers that the options of the source name, as :data:`voxrt.plans.run_plan.RunPlan` does.
 
     The workers load the file of `source`, at the same path as here, and write to `store`'s folder.
     """

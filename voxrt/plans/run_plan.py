@@ -1,8 +1,9 @@
-"""Plans become octrees here, whoever runs them."""
+"""Who runs a plan: this process, or others."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -23,42 +24,40 @@ if TYPE_CHECKING:
     from voxrt.sources.source import Source
     from voxrt.voxelize import Scene
 
+RunPlan: TypeAlias = "Callable[[BuildPlan, Scene, StageClock], tuple[Octree, VoxelizationReport]]"
+"""Voxelizes a scene, whose colours are reduced to materials, and builds its octree as planned.
 
-def run_plan(
-    plan: BuildPlan,
-    scene: Scene,
-    source: Source,
-    clock: StageClock,
-    *,
-    store: TileStore | None = None,
-    clustered: Callable[[ClusterProgress], None] | None = None,
-) -> tuple[Octree, VoxelizationReport]:
-    """Voxelize a scene and build its octree, in the stages "voxelize" and "octree": the same bytes whoever does so.
+The stages are "voxelize" and "octree". The bytes are the same whoever runs the plan. The words may be those of a file
+in the folder of the tiles. It raises OutputError where the disk is full or the folder is in use, and ToolError where
+there is no cluster, it is lost, or a worker fails.
+"""
+
+
+def choose_runner(
+    source: Source, store: TileStore | None, clustered: Callable[[ClusterProgress], None] | None
+) -> RunPlan:
+    """Choose who runs the plan of a source by its options: this process, several of this machine, or a cluster.
 
     Parameters
     ----------
-    plan, scene, clock
-        What is to be done, with colours reduced to materials, and what counts the stages.
     source
-        Its options name who runs the plan: this process, several of this machine, or a cluster.
+        What is built.
     store
-        Where tiles and words go that do not fit the memory; None to keep them in memory all the same. The words of the
-        octree may be those of a file there.
+        Where tiles and words go that do not fit the memory; None to keep them in memory all the same.
     clustered
         Called as workers finish tiles.
-
-    Raises
-    ------
-    OutputError
-        The disk is full, or the folder is in use.
-    ToolError
-        There is no cluster, it is lost, or a worker fails.
     """
-    options = source.options
-    if store is not None and (options.scheduler, options.workers) != (None, None):
-        from voxrt.plans.by_workers import run_by_workers  # noqa: PLC0415 - few builds do this
+    if store is None or (source.options.scheduler, source.options.workers) == (None, None):
+        return partial(run_here, options=source.options, store=store)
+    from voxrt.plans.by_workers import run_by_workers  # noqa: PLC0415 - few builds do this
 
-        return run_by_workers(plan, scene, source, clock, store=store, clustered=clustered)
+    return partial(run_by_workers, source=source, store=store, clustered=clustered)
+
+
+def run_here(
+    plan: BuildPlan, scene: Scene, clock: StageClock, *, options: BuildOptions, store: TileStore | None = None
+) -> tuple[Octree, VoxelizationReport]:
+    """Run a plan by this process, as :data:`RunPlan` does."""
     if plan.side is not None:
         tiles = MemoryTiles(plan.grid.depth) if store is None else store
         return _run_in_tiles(plan, scene, options, clock, tiles)
