@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
 from voxrt import sim
 from voxrt.building.fitting import fit_budget
-from voxrt.export import BakedLight as Bake
+from voxrt.export import BakedLight
 from voxrt.octree.camera import Lighting
 from voxrt.sim.baking.bake import MOST_COLOURS, bake_light
 from voxrt.sim.baking.daylight import Daylight, sky_light
@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     from voxrt.building.fitting import BudgetFit
     from voxrt.octree import Rom
     from voxrt.options.build_options import BuildOptions
-    from voxrt.sim.baking.bake import BakedLight
+    from voxrt.sim.baking.bake import BakedLight as Light
     from voxrt.voxelize import Scene
+
+Bake: TypeAlias = BakedLight
+"""What was baked, and what it took: what the manifest says of it."""
 
 FLAT = Lighting(flat=True)
 """The lighting of memories with baked light."""
@@ -29,7 +32,7 @@ _PALETTES = (MOST_COLOURS, 64, 16)
 """Colours that are tried where a memory does not fit its budget with all of them."""
 
 
-def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, BakedLight, Bake]:
+def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, Light, Bake]:
     """Bake the light that `options` describe into the colours of `rom`."""
     daylight = Daylight(options.sun, sky_light(options.sky), options.bake_samples)
     light = bake_light(rom, scene, daylight, geometry=options.geometry, threads=options.threads)
@@ -39,9 +42,7 @@ def bake(rom: Rom, scene: Scene, options: BuildOptions) -> tuple[Rom, BakedLight
     return baked, light, Bake(daylight.sun, daylight.sky, daylight.samples, voxels, MOST_COLOURS, words_before, words)
 
 
-def fit_baked(
-    baked: Rom, light: BakedLight, made: Bake, words: int, options: BuildOptions
-) -> tuple[Rom, BudgetFit, Bake]:
+def fit_baked(baked: Rom, light: Light, made: Bake, words: int, options: BuildOptions) -> tuple[Rom, BudgetFit, Bake]:
     """Fit a memory with baked light to a budget: with all its colours, or with fewer where that looks more alike.
 
     Fewer colours let more blocks be shared, so less detail is given up. Likeness is the PSNR of the default picture,
