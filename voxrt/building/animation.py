@@ -131,13 +131,7 @@ def _refuse_options(options: BuildOptions) -> None:
 
 
 def _join_frames(name: str, frames: FrameSources, scenes: SceneFrames, grid: Grid, clock: StageClock) -> BuildResult:
-    """Build the memory of all frames; their voxels are released frame by frame.
-
-    Raises
-    ------
-    DoesNotFitError
-        All frames are empty.
-    """
+    """Build the memory of all frames, whose voxels are released frame by frame; DoesNotFitError if all are empty."""
     first, options, union = frames.sources[0], frames.sources[0].options, scenes.union
     words: list[int] = []  # of each frame alone
     objects: list[ObjectReport] = []  # of the first frame

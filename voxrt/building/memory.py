@@ -30,25 +30,10 @@ _MUCH = 10
 def make_memory(
     loaded: Scene, plan: BuildPlan, options: BuildOptions, clock: StageClock, run: RunPlan, *, name: str, label: str
 ) -> BuildResult:
-    """Voxelize a scene as it was loaded, build its octree, and finish the memory as the options ask.
+    """Voxelize a scene as it was loaded, build its octree by `run`, and finish the memory as the options ask.
 
-    Parameters
-    ----------
-    loaded, plan, options, clock
-        What is built and how, and what counts the stages.
-    run
-        Runs the plan.
-    name, label
-        The name of the memory, and what errors call the asset.
-
-    Raises
-    ------
-    AssetError
-        The scene has no such material for its interior.
-    DoesNotFitError
-        No object has a voxel, or the budget is too small.
-    OutputError, ToolError
-        As `run` does.
+    `name` is that of the memory, `label` what errors call the asset. AssetError if the scene has no such material for
+    its interior, DoesNotFitError if no object has a voxel or the budget is too small; and the errors of `run`.
     """
     with clock.stage("colour"):
         scene = voxelize.assign_colours(loaded, plan.grid, colours=options.colours, geometry=options.geometry)

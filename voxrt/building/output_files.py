@@ -17,24 +17,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OutputFiles:
-    """Where a build writes.
+    """Where a build writes."""
 
-    Attributes
-    ----------
-    name
-        The name of the memory.
-    source
-        What the manifest calls the asset.
-    words
-        The file of words, its manifest beside it; None to write neither.
-    preview
-        The picture; None for none.
-    """
-
-    name: str
-    source: str
-    words: Path | None
-    preview: Path | None
+    name: str  # the name of the memory
+    source: str  # what the manifest calls the asset
+    words: Path | None  # the file of words, its manifest beside it; None to write neither
+    preview: Path | None  # the picture; None for none
 
     @property
     def tiles(self) -> Path | None:
@@ -50,10 +38,7 @@ def output_files(
 ) -> OutputFiles:
     """Return the files of a build, which can be written. `file_name`: that of the asset; None for one in memory.
 
-    Raises
-    ------
-    OutputError
-        A folder cannot be written to, or it has a memory that was built from another asset of the same stem.
+    OutputError if a folder cannot be written to, or has a memory that was built from another asset of the same stem.
     """
     words, named = None, False
     if output is not None:

@@ -51,12 +51,8 @@ def with_view(result: BuildResult, options: BuildOptions) -> BuildResult:
 def preview(result: BuildResult, options: BuildOptions) -> Picture:
     """Render the preview of a build: of an animation the first frame.
 
-    Raises
-    ------
-    SimulatorError
-        The engine cannot hold the memory, the camera or the light.
-    ViewpointError
-        There is no camera for a picture of this size.
+    SimulatorError if the engine cannot hold the memory, the camera or the light; ViewpointError if there is no camera
+    for a picture of this size.
     """
     from voxrt.views.pictures import Picture, render  # noqa: PLC0415 - most builds make no picture
 

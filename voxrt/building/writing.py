@@ -49,17 +49,9 @@ def write_result(
 ) -> tuple[BuildResult, Exception | None]:
     """Render the preview of a build and write its files, all of them or none, in the stages "preview" and "write".
 
-    Returns
-    -------
-    result
-        With its preview and its outputs.
-    error
-        Why there is no preview. The memory is sound, so it is written, and an older preview is removed.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written. Old files stay as they were.
+    Returns the result with its preview and its outputs, and the error why there is no preview. The memory is sound
+    then, so it is written, and an older preview is removed. OutputError if a file cannot be written: old files stay as
+    they were.
     """
     error: Exception | None = None
     if files.preview is not None:

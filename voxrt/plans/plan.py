@@ -34,35 +34,19 @@ _COPIES_ON_DISK = 3  # the tiles, the blocks that are joined, and the words
 
 @dataclass(frozen=True, slots=True)
 class BuildPlan:
-    """How a scene becomes an octree, and what that takes.
-
-    Attributes
-    ----------
-    grid
-        The place of the voxels in the scene.
-    side
-        Columns per side of a tile; None for all voxels at once.
-    cache
-        Bytes of memory for blocks, where they are joined on the disk.
-    estimate
-        What the build takes so.
-    """
+    """How a scene becomes an octree, and what that takes."""
 
     grid: Grid
-    side: int | None
-    cache: int
+    side: int | None  # columns per side of a tile; None for all voxels at once
+    cache: int  # bytes of memory for blocks, where they are joined on the disk
     estimate: BuildEstimate
 
 
 def fit_plan(scene: Scene, options: BuildOptions, clock: StageClock, *, on_disk: bool) -> BuildPlan:
     """Fit the grid that options ask for to a scene, and plan its build, in the stage "fit".
 
-    Raises
-    ------
-    AssetError
-        The scene has nothing to voxelize, or a coordinate that is not finite.
-    DoesNotFitError
-        The scene needs more than 2**16 voxels per side.
+    AssetError if the scene has nothing to voxelize or a coordinate that is not finite, DoesNotFitError if it needs more
+    than 2**16 voxels per side.
     """
     with clock.stage("fit"):
         grid = voxelize.fit_grid(
@@ -79,12 +63,7 @@ def fit_plan(scene: Scene, options: BuildOptions, clock: StageClock, *, on_disk:
 def plan_build(scene: Scene, grid: Grid, options: BuildOptions, *, on_disk: bool) -> BuildPlan:
     """Choose the tiles for a build: such that their voxels fit the memory; none where all voxels do.
 
-    Parameters
-    ----------
-    scene, grid, options
-        What is built, on which grid, and how.
-    on_disk
-        Whether tiles may go to the disk.
+    `on_disk`: whether tiles may go to the disk.
 
     Examples
     --------

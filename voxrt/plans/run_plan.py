@@ -38,14 +38,8 @@ def choose_runner(
 ) -> RunPlan:
     """Choose who runs the plan of a source by its options: this process, several of this machine, or a cluster.
 
-    Parameters
-    ----------
-    source
-        What is built.
-    store
-        Where tiles and words go that do not fit the memory; None to keep them in memory all the same.
-    clustered
-        Called as workers finish tiles.
+    `store` takes tiles and words that do not fit the memory; with None they are kept in memory all the same.
+    `clustered` is called as workers finish tiles.
     """
     if store is None or (source.options.scheduler, source.options.workers) == (None, None):
         return partial(run_here, options=source.options, store=store)

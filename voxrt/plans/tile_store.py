@@ -46,13 +46,8 @@ _BYTES_OF_BLOCK = 32
 class Tile:
     """A finished tile, or several that were joined.
 
-    Attributes
-    ----------
-    octree
-        The octree of the whole world, empty outside of the tile.
-    tallies
-        What the tile has of the objects that it reaches: int64, shape (N, 5), the number of an object and its row of
-        :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
+    The octree is of the whole world, empty outside of the tile. The tallies are of the objects that it reaches: int64,
+    shape (N, 5), the number of an object and its row of :meth:`voxrt.voxelize.BlockVoxelizer.voxelize`.
     """
 
     octree: Octree
@@ -85,13 +80,7 @@ def sum_tallies(tallies: NDArray[np.int64], objects: int) -> NDArray[np.int64]:
 
 
 def write_tile(path: Path, key: str, tile: Tile) -> int:
-    """Write a tile, whole or not at all; returns its bytes.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write a tile, whole or not at all, and return its bytes; OSError if the file cannot be written."""
     tallies = np.ascontiguousarray(tile.tallies, "<i8")
     words = np.ascontiguousarray(tile.octree.words, "<u4")
     header = _HEADER.pack(_MAGIC, bytes.fromhex(key), tile.octree.depth, 0, len(words), len(tallies))
@@ -174,15 +163,9 @@ if hasattr(os, "register_at_fork"):
 class TileStore:
     """The folder of the tiles of one build, locked from :meth:`claim` to the end of the ``with`` block.
 
-    The folder goes when the block ends, or fails because the asset is unsound. It stays if the block is interrupted or
-    fails otherwise.
-
-    Parameters
-    ----------
-    folder
-        ``NAME.tiles`` beside the output.
-    key
-        What tells builds apart, for whoever reads and writes tiles while another process has the folder locked.
+    The folder, ``NAME.tiles`` beside the output, goes when the block ends, or fails because the asset is unsound. It
+    stays if the block is interrupted or fails otherwise. Whoever reads and writes tiles while another process has the
+    folder locked gives the key of the build.
     """
 
     def __init__(self, folder: Path, key: str = "") -> None:
@@ -208,24 +191,10 @@ class TileStore:
         self._lock = None
 
     def claim(self, key: str, side: int) -> int:
-        """Make the folder, lock it, and remove the tiles of another key.
+        """Make the folder, lock it, and remove the tiles of another key: 32 hexadecimal digits that tell builds apart.
 
-        Parameters
-        ----------
-        key
-            What tells builds apart: 32 hexadecimal digits.
-        side
-            Columns per side of a tile, for new tiles.
-
-        Returns
-        -------
-        int
-            Columns per side of the tiles that are there, if these take at most four times the memory; else `side`.
-
-        Raises
-        ------
-        OutputError
-            The folder cannot be made, is somebody else's, or another build uses it.
+        Returns the columns per side of the tiles that are there, if these take at most four times the memory; else
+        `side`. OutputError if the folder cannot be made, is somebody else's, or another build uses it.
         """
         self.key = key
         try:

@@ -33,38 +33,21 @@ if TYPE_CHECKING:
 class TileJob:
     """What all tiles of a build have in common.
 
-    Attributes
-    ----------
-    source
-        What each worker loads: a file by its absolute path.
-    grid
-        The grid of the build.
-    store
-        Where tiles go. A worker that finds another key for them has another asset or program.
+    A worker that finds another key than that of the store has another asset or program.
     """
 
-    source: Source
+    source: Source  # what each worker loads: a file by its absolute path
     grid: Grid
-    store: TileStore
+    store: TileStore  # where tiles go
 
 
 @dataclass(frozen=True, slots=True)
 class TileDone:
-    """A tile, or several that were joined, in the folder.
+    """A tile, or several that were joined, in the folder."""
 
-    Attributes
-    ----------
-    name
-        Its name there.
-    bytes
-        The size of its words.
-    tallies
-        As :class:`voxrt.plans.tile_store.Tile` has them.
-    """
-
-    name: str
-    bytes: int
-    tallies: NDArray[np.int64]
+    name: str  # its name there
+    bytes: int  # the size of its words
+    tallies: NDArray[np.int64]  # as :class:`voxrt.plans.tile_store.Tile` has them
 
 
 _ONE_AT_A_TIME = Lock()
@@ -86,10 +69,7 @@ def inherited_scene(key: str, voxelizer: BlockVoxelizer) -> Iterator[None]:
 def make_tile(job: TileJob, block: ColumnBlock, objects: tuple[int, ...]) -> TileDone:
     """Voxelize a tile that these objects reach and build its octree, if nobody did yet.
 
-    Raises
-    ------
-    ToolError
-        The scene is another one than that of the job.
+    ToolError if the scene is another one than that of the job.
     """
     with _ONE_AT_A_TIME:
         tile = job.store.read(tile_name(block))

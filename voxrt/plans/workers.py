@@ -14,13 +14,7 @@ T = TypeVar("T")
 
 
 class Workers:
-    """The present process, which does one task after another.
-
-    Parameters
-    ----------
-    count
-        How many workers there are.
-    """
+    """The present process, which does one task after another. `count`: how many workers there are."""
 
     def __init__(self, count: int = 1) -> None:
         self._count = count
@@ -35,19 +29,8 @@ class Workers:
     ) -> Iterator[tuple[int, T]]:
         """Call task(*shared, *call) for each call, and yield its number and the result as tasks are done.
 
-        Parameters
-        ----------
-        task
-            A function of a module.
-        calls
-            Its last arguments, for each call.
-        shared
-            Its first arguments for all calls, which each process gets once.
-
-        Raises
-        ------
-        ToolError
-            A task fails in a worker, or workers are lost.
+        The task is a function of a module; each process gets its `shared` arguments once. ToolError if a task fails in
+        a worker, or workers are lost.
         """
         yield from enumerate(task(*shared, *call) for call in calls)
 

@@ -25,35 +25,19 @@ _MOST_FRAMES = 4096
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameSources:
-    """The opened assets of an animation.
+    """The opened assets of an animation."""
 
-    Attributes
-    ----------
-    name
-        The name that the files of the build get.
-    file_name
-        The name of the file or the folder that has all frames; None where there is none.
-    sources
-        One per frame. Their options have the time.
-    names
-        The names of the frames; empty texts where all frames are of one asset.
-    """
-
-    name: str
-    file_name: str | None
-    sources: tuple[Source, ...]
-    names: tuple[str, ...]
+    name: str  # what the files of the build are called
+    file_name: str | None  # that of the file or the folder that has all frames; None where there is none
+    sources: tuple[Source, ...]  # one per frame; their options have the time
+    names: tuple[str, ...]  # those of the frames; empty texts where all frames are of one asset
 
 
 def open_frames(assets: Asset | Sequence[Asset], options: BuildOptions, times: Sequence[float] | None) -> FrameSources:
     """Open the assets of an animation.
 
-    Raises
-    ------
-    TypeError, ValueError
-        There is no frame, or times are given for several assets.
-    AssetError
-        A folder has no asset.
+    TypeError or ValueError if there is no frame, or times are given for several assets; AssetError if a folder has no
+    asset.
 
     Examples
     --------
@@ -117,10 +101,7 @@ def frame_times(start: float, stop: float, count: int) -> tuple[float, ...]:
 def frame_files(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     """Find the assets of a folder, in the natural order of their names: ``walk_2`` comes before ``walk_10``.
 
-    Raises
-    ------
-    AssetError
-        It is no folder, or has no asset.
+    AssetError if it is no folder, or has no asset.
 
     Examples
     --------

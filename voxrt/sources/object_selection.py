@@ -18,17 +18,7 @@ if TYPE_CHECKING:
 def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
     """Return a scene without the objects of these names, and without those below these prim paths.
 
-    Parameters
-    ----------
-    label
-        What errors call the asset.
-    scene, names
-        The scene, and the names.
-
-    Raises
-    ------
-    AssetError
-        No object has such a name, or none is left.
+    AssetError if no object has such a name, or none is left; `label` is what the message calls the asset.
 
     Examples
     --------
@@ -53,10 +43,7 @@ def without_objects(label: str, scene: Scene, names: Sequence[str]) -> Scene:
 def named_camera(label: str, scene: Scene, name: str) -> Viewpoint:
     """Return the author's camera with a name, or with a number, counted from 0.
 
-    Raises
-    ------
-    AssetError
-        The scene has no such camera; `label` is what the message calls it.
+    AssetError if the scene has no such camera; `label` is what the message calls it.
 
     Examples
     --------
@@ -99,12 +86,7 @@ def crowded_out(scene: Scene, grid: Grid, options: BuildOptions) -> tuple[SceneW
 
 
 def refuse_empty(label: str, grid: Grid, objects: Sequence[ObjectReport]) -> None:
-    """Refuse a scene of which no object got a voxel.
-
-    Raises
-    ------
-    DoesNotFitError
-        There is no solid voxel.
+    """Refuse a scene of which no object got a voxel, with a DoesNotFitError.
 
     Examples
     --------

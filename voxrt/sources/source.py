@@ -27,19 +27,6 @@ Asset: TypeAlias = Union[
 class Source:
     """An asset that is opened, and the options of its build.
 
-    Attributes
-    ----------
-    options
-        How the asset is loaded and built.
-    name
-        The name that the files of the build get.
-    label
-        What errors call the asset: the path of its file as it was given, else its name.
-    file
-        The file; None for an asset in memory.
-    value
-        The asset in memory; None for a file.
-
     Examples
     --------
     >>> from voxrt import BuildOptions
@@ -48,11 +35,11 @@ class Source:
     ('house', 'examples/house.obj', 'house')
     """
 
-    options: BuildOptions
-    name: str
-    label: str
-    file: Path | None = None
-    value: object = None
+    options: BuildOptions  # how the asset is loaded and built
+    name: str  # what the files of the build are called
+    label: str  # what errors call the asset: the path of its file as it was given, else its name
+    file: Path | None = None  # None for an asset in memory
+    value: object = None  # the asset in memory; None for a file
 
     @property
     def file_name(self) -> str | None:

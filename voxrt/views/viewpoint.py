@@ -103,21 +103,9 @@ def aim_camera(
 
 
 def authored_camera(viewpoint: Viewpoint, grid: Grid, size: tuple[int, int]) -> Camera:
-    """Make the camera of the scene's author.
+    """Make the camera of the scene's author (scene frame) for pictures of `size` pixels, on a grid.
 
-    Parameters
-    ----------
-    viewpoint
-        The author's camera, scene frame.
-    grid
-        The place of the voxels in the scene.
-    size
-        Width and height of the picture, pixels.
-
-    Raises
-    ------
-    ViewpointError
-        The camera is too far away for the registers, or its `up` points along the line of sight.
+    ViewpointError if it is too far away for the registers, or its `up` points along the line of sight.
 
     Examples
     --------
@@ -149,10 +137,7 @@ def stands_inside(rom: Rom, camera: Camera) -> bool:
 def authored_lighting(scene: Scene, grid: Grid) -> Lighting | None:
     """Make the lighting of the scene's author: the light if there is one, mirrors if materials are mirrors.
 
-    Raises
-    ------
-    ViewpointError
-        The light is too far away for the registers.
+    ViewpointError if the light is too far away for the registers.
     """
     bounces = _BOUNCES if any(material.mirror for material in scene.materials) else 0
     if scene.light is None:
