@@ -24,7 +24,7 @@ MAY_IMPORT = {
 """Room: the rooms that it may import, besides itself, and ``rtl`` for the registers; ``voxrt/`` may import all."""
 
 INSIDE_VOXRT = ("options", "sources", "views", "plans", "building", "boards", "cli")
-"""The folders of ``voxrt/``, each of which imports itself and those before it."""
+"""The folders of ``voxrt/``, each of which imports itself and those before it; modules beside them import none."""
 
 INSIDE_SOURCES = {
     "voxelize/src": ("work", "grid", "scene", "coverage", "holes", "mesh", "tiles", "colour", "bindings"),
@@ -136,7 +136,7 @@ def test_the_folders_of_voxrt_import_in_one_direction(graph):
     wrong = [
         f"{name} imports {target}"
         for name, targets in graph.items()
-        if place(name) >= 0
+        if name.startswith("voxrt.") and name != "voxrt.__main__"
         for target in targets
         if place(target) > place(name)
     ]

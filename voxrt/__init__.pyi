@@ -6,7 +6,7 @@ from voxrt import sim as sim
 from voxrt import view as view
 from voxrt import voxelize as voxelize
 from voxrt.building.animation import build_animation as build_animation
-from voxrt.building.animation_takes import frame_times as frame_times
+from voxrt.sources.frames import frame_times as frame_times
 from voxrt.building.baking import Bake as Bake
 from voxrt.building.fitting import BudgetFit as BudgetFit
 from voxrt.building.fitting import InteriorFit as InteriorFit

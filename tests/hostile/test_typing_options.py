@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import json
-import shutil
-import signal
 import sys
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 from PIL import Image
@@ -15,35 +12,15 @@ from PIL import Image
 from voxrt import BuildOptions, build, export
 from voxrt.building.fitting import fit_budget
 from voxrt.cli import progress
-from voxrt.cli.run import run
 from voxrt.plans.estimate import BuildEstimate, estimate_build
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
-class Finished(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
 @pytest.fixture
-def typed(tmp_path, monkeypatch, capfd):
+def typed(voxrt):
     """Runs a command line in a folder with house.obj and dog.usda."""
-    for name in ("house.obj", "house.mtl", "dog.usda"):
-        shutil.copy(EXAMPLES / name, tmp_path)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
-
-    def command(*arguments: str) -> Finished:
-        capfd.readouterr()
-        code = run(arguments)
-        return Finished(int(code), *capfd.readouterr())
-
-    yield command
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
+    return voxrt
 
 
 def names(folder: str = ".") -> list[str]:
