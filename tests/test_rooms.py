@@ -144,7 +144,9 @@ def test_the_folders_of_voxrt_import_in_one_direction(graph):
 
 
 def native_sources() -> list[Path]:
-    return [path for root in INSIDE_SOURCES for path in sorted((ROOT / root).rglob("*")) if path.suffix in {".cpp", ".h"}]
+    return [
+        path for root in INSIDE_SOURCES for path in sorted((ROOT / root).rglob("*")) if path.suffix in {".cpp", ".h"}
+    ]
 
 
 def includes_of(path: Path) -> set[Path]:

@@ -6,7 +6,6 @@ from voxrt import sim as sim
 from voxrt import view as view
 from voxrt import voxelize as voxelize
 from voxrt.building.animation import build_animation as build_animation
-from voxrt.sources.frames import frame_times as frame_times
 from voxrt.building.baking import Bake as Bake
 from voxrt.building.fitting import BudgetFit as BudgetFit
 from voxrt.building.fitting import InteriorFit as InteriorFit
@@ -39,6 +38,7 @@ from voxrt.sim import compare as compare
 from voxrt.sim import comparison_sheet as comparison_sheet
 from voxrt.sim import follow_ray as follow_ray
 from voxrt.sim import shader_features as shader_features
+from voxrt.sources.frames import frame_times as frame_times
 from voxrt.sources.from_arrays import mesh_scene as mesh_scene
 from voxrt.view import ViewerError as ViewerError
 from voxrt.views.depth_likeness import LikenessAtDepth as LikenessAtDepth

@@ -14,7 +14,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from voxrt.octree.words import move_pointers
 
 from voxrt.board.designs.boot_table import (
     BOARD_REGISTERS,
@@ -47,6 +46,7 @@ from voxrt.board.registers import MATERIALS, REGISTERS
 from voxrt.board.scene import Scene, check_memory, octree_span
 from voxrt.board.scene_memory import LoadedScene
 from voxrt.board.view import FEATURES, refit
+from voxrt.octree.words import move_pointers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
