@@ -67,7 +67,7 @@ class AgentLink:
     Attributes
     ----------
     name
-        Of the board, shown to users.
+        The board's address, shown to users.
     memory_words, memory_base, size, width_step
         What the agent says of the board.
     """
@@ -134,7 +134,7 @@ class AgentLink:
         magic, version, nonce = struct.unpack("<8sI16s", self._receive(28))
         if (magic, version) != (_MAGIC, _VERSION):
             raise DeviceError(f"{self.name} is no agent of this version; install voxrt-board anew on the board")
-        self._socket.sendall(hmac.digest(token.encode(), nonce, "sha256"))
+        self._socket.sendall(hmac.digest(token.encode(errors="surrogateescape"), nonce, "sha256"))
         return self._answer(20)
 
     def _answer(self, expected: int) -> bytes:
@@ -162,7 +162,7 @@ def _split(address: str) -> tuple[str, int]:
         host, port = parts.hostname, parts.port
     except ValueError:
         host = port = None
-    if host is None or port is None:
+    if host is None or port is None or address != f"tcp://{parts.netloc}" or "@" in address:
         raise DeviceError(f"{address} is no address of a board; name it as tcp://BOARD:PORT")
     return host, port
 

@@ -26,7 +26,7 @@ PRODUCT = (
     "examples",
 )
 NOT_READ = ("rtl/benches/", "rtl/formal/", "rtl/generated/")
-"""Tests have literals of their own: they prove the homes. Masks of registers are generated."""
+"""Benches and proofs have literals of their own, to check the homes. Masks of registers are generated."""
 
 HOMES = {
     "Python": ((".py", ".pyi"), "octree/words.py"),

@@ -28,7 +28,7 @@ def exports_of(package: str) -> tuple[Callable[[str], object], Callable[[], list
         if not homes:
             with open(f"{module.__file__}i", encoding="utf-8") as stub:  # noqa: PTH123 - as above
                 rows = [line.split() for line in stub if line.startswith("from ")]
-            homes.update((row[-1], row[1]) for row in rows)
+            homes.update({row[-1]: row[1] for row in rows})  # at once: another thread finds all names or none
         return homes
 
     def get_name(name: str) -> object:

@@ -37,10 +37,11 @@ from typing import Any
 NOTHING, REGISTERS, READ, WRITE, EXPECT, TAKE = range(6)
 DATA_LIMIT = 1 << 18
 PROOF_SECONDS, IDLE_SECONDS, SEND_SECONDS, VDMA_SECONDS = 5.0, 60.0, 20.0, 2.0
+GUESTS = 32  # connections that have proved nothing yet
 PARTS = ("core", "memory", "vdma")  # of rtl/vivado/build.tcl; octrees in DRAM need no `memory`
 SIZE, WIDTH_STEP = (1920, 1080), 8  # the VDMA writes words of 64 bits: 8 pixels of 3 bytes are 3 of them
 WORDS_BEFORE = 7  # in a buffer in DRAM: word 0 of the octree is the last of a line, so blocks are lines
-MOST_WORDS, FEWEST_WORDS = 8 + (8 << 24), 1 << 15  # what the largest core can address; what a block RAM holds
+WORDS = [(8 + (8 << 24)) * 3**step // 4**step for step in range(29)]  # from what the core can address to a block RAM
 
 # The VDMA's channel from the stream into memory, as in AMD's product guide PG020. PYNQ's own driver waits for four
 # frames before it returns the first one, and the ray tracer starts every frame by itself.
@@ -68,10 +69,9 @@ class Board:
             raise RefusedError(
                 f"{bitstream}: no ray tracer ({error!r}); on a PYNQ board, load one of rtl/vivado"
             ) from error
-        self._allocate = pynq.allocate
-        self._frame: Any = None
-        self._expected = False
-        buffer = None if "memory" in parts else self._allocate_octree()
+        self._frame = _allocate(pynq, [3 * SIZE[0] * SIZE[1]], "u1")  # for all sizes: PYNQ 3 may free no buffer
+        self._size, self._expected = (0, 0), False
+        buffer = None if "memory" in parts else _allocate(pynq, WORDS, "u4")
         self._base = 0 if buffer is None else int(buffer.physical_address)
         self._words = parts["memory"].array if buffer is None else buffer[WORDS_BEFORE:]
         self.description = struct.pack("<5I", len(self._words), self._base, *SIZE, WIDTH_STEP)
@@ -89,11 +89,10 @@ class Board:
         return self._take() if operation == TAKE else b""
 
     def stop(self) -> None:
-        """Stop the VDMA and free the frame."""
-        if self._frame is not None:
-            self._reset()
-            self._frame.freebuffer()
-            self._frame = None
+        """Stop the VDMA."""
+        self._vdma.write(_CONTROL, _RESET)
+        self._wait(_CONTROL, _RESET, _RESET)
+        self._size, self._expected = (0, 0), False
 
     def _access(self, data: bytes) -> bytes:
         values = b""
@@ -116,10 +115,9 @@ class Board:
     def _expect(self, columns: int, rows: int) -> None:
         if not (0 < columns <= SIZE[0] and 0 < rows <= SIZE[1]) or columns % WIDTH_STEP:
             raise RefusedError(f"no frame has {columns}x{rows} pixels")
-        if self._expected or self._frame is None or self._frame.shape != (rows, columns, 3):
+        if self._expected or self._size != (columns, rows):
             self.stop()
-            self._frame = self._allocate(shape=(rows, columns, 3), dtype="u1")
-            self._reset()
+            self._size = columns, rows
             self._vdma.write(_CONTROL, self._vdma.read(_CONTROL) | _RUN)
             writes = [(register, int(self._frame.physical_address)) for register in _BUFFERS]
             for register, value in [*writes, (_STRIDE, 3 * columns), (_ROW_BYTES, 3 * columns), (_ROWS, rows)]:
@@ -132,13 +130,9 @@ class Board:
         if errors := [problem for bit, problem in _ERRORS.items() if status >> bit & 1]:
             raise RefusedError(f"the VDMA reports an error ({', '.join(errors)}); the frame was dropped, try again")
         self._expected = False
-        self._frame.invalidate()
-        return bytes(self._frame.tobytes())
-
-    def _reset(self) -> None:
-        self._vdma.write(_CONTROL, _RESET)
-        self._wait(_CONTROL, _RESET, _RESET)
-        self._expected = False
+        frame = self._frame[: 3 * self._size[0] * self._size[1]]
+        frame.invalidate()
+        return bytes(frame.tobytes())
 
     def _wait(self, register: int, bits: int, present: int) -> int:
         end = time.monotonic() + VDMA_SECONDS
@@ -148,61 +142,67 @@ class Board:
             time.sleep(0.0005)
         return value
 
-    def _allocate_octree(self) -> Any:  # noqa: ANN401 - pynq is there on boards alone
-        """Allocate most of the contiguous memory that is free; a frame still fits beside it."""
-        words = MOST_WORDS
-        while words >= FEWEST_WORDS:
-            with contextlib.suppress(RuntimeError, MemoryError, OSError), contextlib.ExitStack() as kept:
-                memory = self._allocate(shape=(words,), dtype="u4")
-                kept.callback(memory.freebuffer)
-                self._allocate(shape=(SIZE[1], SIZE[0], 3), dtype="u1").freebuffer()
-                if memory.physical_address + memory.nbytes > 1 << 32:
-                    raise RefusedError("contiguous memory is beyond the 4 GiB of the ray tracer; reserve some below")
-                kept.pop_all()
-                return memory
-            words = words * 3 // 4
-        raise RefusedError("contiguous memory is too small for an octree and a frame; give Linux more by cma=")
+
+def _allocate(pynq: Any, counts: list[int], kind: str) -> Any:  # noqa: ANN401 - pynq is there on boards alone
+    """Allocate contiguous memory for the first of these counts that there is room for."""
+    for count in counts:
+        with contextlib.suppress(RuntimeError, MemoryError, OSError):  # which one depends on the version of pynq
+            memory = pynq.allocate(shape=(count,), dtype=kind)
+            if memory.physical_address + memory.nbytes > 1 << 32:
+                raise RefusedError("contiguous memory is beyond the 4 GiB of the ray tracer; reserve some below")
+            return memory
+    raise RefusedError("contiguous memory is too small for an octree and a frame; give Linux more by cma=")
 
 
 def serve(listener: socket.socket, board: Board, token: str) -> None:
     """Serve one client at a time, without end."""
-    busy = threading.Lock()
+    busy, guests = threading.Lock(), threading.Semaphore(GUESTS)
     while True:
         connection, _ = listener.accept()
-        with contextlib.suppress(OSError):  # the client has left, or is too slow
+        if guests.acquire(blocking=False):
+            threading.Thread(target=_greet, args=(connection, board, token, busy, guests), daemon=True).start()
+        else:
+            connection.close()
+
+
+def _greet(connection: socket.socket, board: Board, token: str, busy: threading.Lock, guests: Any) -> None:  # noqa: ANN401
+    """Let a guest in who proves that it has the token, and serve it."""
+    with contextlib.suppress(OSError), connection:  # it has left, or is too slow
+        try:
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             nonce = secrets.token_bytes(16)
             connection.sendall(struct.pack("<8sI16s", b"VXRTAGNT", 1, nonce))
             proof = _receive(connection, 32, time.monotonic() + PROOF_SECONDS)
-            if not hmac.compare_digest(proof, hmac.new(token.encode(), nonce, "sha256").digest()):
-                _answer(connection, 1, b"the token is another one; VOXRT_BOARD_TOKEN must hold that of the agent")
-            elif not busy.acquire(timeout=2 * VDMA_SECONDS):  # so long the work for a client that has left may take
-                _answer(connection, 1, b"another client uses the board; end it")
-            else:
-                threading.Thread(target=_serve_client, args=(connection, board, busy), daemon=True).start()
-                continue
-        connection.close()
+            welcome = hmac.compare_digest(proof, hmac.new(token.encode(), nonce, "sha256").digest())
+        finally:
+            guests.release()
+        if not welcome:
+            _answer(connection, 1, b"the token is another one; VOXRT_BOARD_TOKEN must hold that of the agent")
+        elif not busy.acquire(timeout=2 * VDMA_SECONDS):  # so long the work for a client that has left may take
+            _answer(connection, 1, b"another client uses the board; end it")
+        else:
+            with contextlib.ExitStack() as leaving:
+                leaving.callback(busy.release)
+                leaving.enter_context(contextlib.suppress(Exception))
+                leaving.callback(board.stop)
+                _serve_client(connection, board)
 
 
-def _serve_client(connection: socket.socket, board: Board, busy: threading.Lock) -> None:
-    with contextlib.suppress(OSError), connection:  # the client has left, or is too slow
-        _answer(connection, 0, board.description)
-        while True:
-            end = time.monotonic() + IDLE_SECONDS
-            operation, a, b = struct.unpack("<3I", _receive(connection, 12, end))
-            size = {NOTHING: 0, REGISTERS: 8 * a, READ: 4 * b, WRITE: 4 * b, EXPECT: 0, TAKE: 0}.get(operation, 1 << 40)
-            if size > DATA_LIMIT:
-                _answer(connection, 1, b"the request is unknown or too large; update this side or the other")
-                break
-            data = _receive(connection, 0 if operation == READ else size, end)
-            try:
-                status, result = 0, board.execute(operation, a, b, data)
-            except Exception as error:  # noqa: BLE001 - whatever pynq raises, the client gets an answer
-                status, result = 1, " ".join((str(error) or repr(error)).split())[:500].encode()
-            _answer(connection, status, result)
-    with contextlib.suppress(Exception):
-        board.stop()
-    busy.release()
+def _serve_client(connection: socket.socket, board: Board) -> None:
+    _answer(connection, 0, board.description)
+    while True:
+        end = time.monotonic() + IDLE_SECONDS
+        operation, a, b = struct.unpack("<3I", _receive(connection, 12, end))
+        size = {NOTHING: 0, REGISTERS: 8 * a, READ: 4 * b, WRITE: 4 * b, EXPECT: 0, TAKE: 0}.get(operation, 1 << 40)
+        if size > DATA_LIMIT:
+            _answer(connection, 1, b"the request is unknown or too large; update this side or the other")
+            break
+        data = _receive(connection, 0 if operation == READ else size, end)
+        try:
+            status, result = 0, board.execute(operation, a, b, data)
+        except Exception as error:  # noqa: BLE001 - whatever pynq raises, the client gets an answer
+            status, result = 1, " ".join((str(error) or repr(error)).split())[:500].encode()
+        _answer(connection, status, result)
 
 
 def _receive(connection: socket.socket, count: int, end: float) -> bytes:
@@ -230,7 +230,7 @@ def main() -> None:
     parser.add_argument("--token-file", type=Path, help="its first line is the token; default: a random one is made")
     arguments = parser.parse_args()
     try:
-        token = arguments.token_file.read_text().split("\n")[0].strip() if arguments.token_file else ""
+        token = arguments.token_file.read_text("utf-8").split("\n")[0].strip() if arguments.token_file else ""
         with socket.create_server((arguments.host, arguments.port)) as listener:
             host, port = listener.getsockname()
             if not token and (arguments.token_file or not host.startswith("127.")):
@@ -241,7 +241,7 @@ def main() -> None:
             serve(listener, board, token)
     except KeyboardInterrupt:
         pass
-    except (RefusedError, OSError, OverflowError) as error:
+    except (RefusedError, OSError, OverflowError, UnicodeError) as error:
         sys.exit(f"voxrt-board: error: {error}")
 
 

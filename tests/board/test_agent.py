@@ -174,6 +174,29 @@ def test_clients_that_send_nothing_are_left(agent, monkeypatch):
             assert one.answer() is None
 
 
+def test_guests_that_stall_keep_nobody_out(agent, monkeypatch):
+    monkeypatch.setattr(voxrt_board, "PROOF_SECONDS", 30)
+    with client(agent), client(agent), client(agent) as one:
+        one.line.sendall(bytes(31))
+        open_tcp(agent, TOKEN).close()
+
+
+def test_a_token_that_is_no_text_is_another_one(agent):
+    with pytest.raises(DeviceError, match="the token is another one"):
+        open_tcp(agent, "\udcff")
+
+
+@pytest.mark.usefixtures("core")
+def test_guests_are_few(monkeypatch):
+    monkeypatch.setattr(voxrt_board, "GUESTS", 1)
+    with running_agent() as (address, _):
+        with client(address) as one:
+            with client(address) as other:
+                assert other.greeting is None
+            assert one.prove("")[0] == 0
+        open_tcp(address, "").close()
+
+
 @pytest.mark.usefixtures("core")
 def test_an_idle_client_stays(monkeypatch):
     monkeypatch.setattr(tcp_device, "_KEEP_SECONDS", 0.01)
@@ -252,7 +275,10 @@ def test_an_agent_that_ends(agent):
             device.registers()
 
 
-@pytest.mark.parametrize("address", ["tcp://", "tcp://host", "tcp://host:99999", "tcp://[::1", "tcp://:1"])
+@pytest.mark.parametrize(
+    "address",
+    ["tcp://", "tcp://host", "tcp://host:99999", "tcp://[::1", "tcp://:1", "tcp://host:1/scene", "tcp://me@host:1"],
+)
 def test_what_is_no_address(address):
     with pytest.raises(DeviceError, match="is no address of a board; name it as tcp://BOARD:PORT"):
         open_tcp(address, "")
@@ -272,9 +298,9 @@ def token_of(monkeypatch, *arguments):
     return tokens[0]
 
 
-@pytest.mark.usefixtures("core")
-def test_tokens(monkeypatch, tmp_path, capsys):
+def test_tokens(core, monkeypatch, tmp_path, capsys):
     """A token is compulsory on all addresses but loopback, and one that is made is shown."""
+    install(monkeypatch, core, contiguous=1 << 26)
     mine, empty = tmp_path / "mine", tmp_path / "empty"
     mine.write_text("mine\nrest\n")
     empty.write_text("\n")
@@ -282,6 +308,9 @@ def test_tokens(monkeypatch, tmp_path, capsys):
     assert token_of(monkeypatch, "--token-file", str(mine)) == "mine"
     assert token_of(monkeypatch, "--token-file", str(mine), "--host", "0.0.0.0") == "mine"
     assert "VOXRT_BOARD_TOKEN" not in capsys.readouterr().out
+    mine.write_bytes(b"\xff")
+    with pytest.raises(SystemExit, match=r"^voxrt-board: error: 'utf-8' codec can't decode"):
+        token_of(monkeypatch, "--token-file", str(mine))
     for arguments in (("--host", "0.0.0.0"), ("--token-file", str(empty))):
         token = token_of(monkeypatch, *arguments)
         assert len(token) > 20

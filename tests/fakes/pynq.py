@@ -6,7 +6,7 @@ addresses are whole words of a 64-bit bus. It reports a frame by its status bit.
 core.
 
 A buffer of `allocate` is what the processor's caches hold of it, beside what is in the memory: `flush` and `invalidate`
-copy one to the other. VDMA and core see the memory alone.
+copy one to the other. VDMA and core see the memory alone. As in PYNQ 3, no buffer is freed before the process ends.
 """
 
 from __future__ import annotations
@@ -173,7 +173,6 @@ class Board:
         buffer.dram = np.full(size, 0x5A, dtype=np.uint8)
         buffer.physical_address = self.next_address
         self.next_address += -(-size // PAGE) * PAGE
-        buffer.board = self
         self.vdma.memory[buffer.physical_address] = buffer
         if self.core.cached and buffer.dtype == np.uint32 and self.next_address < 1 << 32:
             self.core.map_external(buffer.physical_address, buffer.dram.view(np.uint32))
@@ -192,10 +191,6 @@ class PynqBuffer(np.ndarray):
 
     def invalidate(self):
         self.reshape(-1).view(np.uint8)[:] = self.dram
-
-    def freebuffer(self):
-        del self.board.vdma.memory[self.physical_address]
-        self.board.free += self.nbytes
 
 
 def install(monkeypatch, core, memory_bytes=0x10000, contiguous=1 << 24, first_address=0x10000000):
