@@ -23,7 +23,9 @@ return [...document.querySelectorAll("button, input:not([type=file]), select, su
 }).map((element) => element.outerHTML);
 """
 # The script lists visible elements with text of their own: the text, and its contrast with what is behind.
+# It ends every transition first, so that no colour is read on its way from one to the other.
 CONTRASTS = """
+document.getAnimations().forEach((animation) => animation.finish());
 const parse = (colour) => { const n = colour.match(/[\\d.]+/g).map(Number); return [...n.slice(0, 3), n[3] ?? 1]; };
 const over = ([r, g, b, a], back) => [r, g, b].map((part, i) => part * a + back[i] * (1 - a));
 const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
