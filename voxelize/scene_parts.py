@@ -31,13 +31,7 @@ _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32
 
 
 class SceneParts:
-    """The parts of a scene as arrays for the native voxelizer, in authored order.
-
-    Parameters
-    ----------
-    scene, grid, fill, geometry, pow2
-        As :func:`voxrt.voxelize.voxelize` takes them.
-    """
+    """The parts of a scene as arrays for the native voxelizer, in authored order."""
 
     def __init__(self, scene: Scene, grid: Grid, fill: str, geometry: Geometry, pow2: Pow2) -> None:
         arguments.instance("scene", scene, Scene)

@@ -19,22 +19,10 @@ if TYPE_CHECKING:
 def quantize(
     colours: NDArray[np.uint8], weights: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Choose at most `count` colours that represent `colours`, deterministically.
+    """Choose at most `count` colours, 1 … 255, that represent `colours`, deterministically.
 
-    Where there are no more than `count` distinct colours, each is its own entry.
-
-    Parameters
-    ----------
-    colours
-        uint8, shape (N, 3): sRGB.
-    weights
-        float64, shape (N,), not negative: the area that each covers.
-    count
-        The most entries of the palette, 1 … 255.
-
-    Returns
-    -------
-    palette, rows
-        uint8, shape (K, 3), sRGB, in ascending order; and uint8, shape (N,): each colour's entry.
+    `colours` are uint8, shape (N, 3), sRGB; `weights`, float64, shape (N,), are the areas that each covers. Where there
+    are no more than `count` distinct colours, each is its own entry. Return the palette (uint8, shape (K, 3),
+    ascending) and each colour's entry (uint8, shape (N,)).
     """
     return _native.quantize(np.ascontiguousarray(colours), np.ascontiguousarray(weights, np.float64), count)

@@ -11,13 +11,7 @@ if TYPE_CHECKING:
 
 
 def read_asset(path: Path) -> bytes:
-    """Read a file whole.
-
-    Raises
-    ------
-    AssetError
-        It cannot be read.
-    """
+    """Read a file whole; raise AssetError where it cannot be read."""
     try:
         return path.read_bytes()
     except OSError as error:

@@ -11,18 +11,10 @@ ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (i
 
 @dataclass(frozen=True, slots=True)
 class ExternalFiles:
-    """The folders in which the files that an asset refers to may be.
+    """The folders in which the files that an asset refers to may be."""
 
-    Attributes
-    ----------
-    folder
-        The asset's folder, with links resolved.
-    allow_outside
-        Whether files outside that folder may be opened.
-    """
-
-    folder: Path
-    allow_outside: bool = False
+    folder: Path  # the asset's folder, with links resolved
+    allow_outside: bool = False  # whether files outside that folder may be opened
 
     @classmethod
     def of(cls, asset: Path, *, allow_outside: bool) -> ExternalFiles:

@@ -24,23 +24,10 @@ _BROKEN = (OSError, SyntaxError, ValueError, EOFError, IndexError, struct.error)
 
 
 def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:
-    """Decode an image.
+    """Decode an image file to uint8, shape (H, W, 4): sRGB colour and linear alpha; row 0 is the top.
 
-    Parameters
-    ----------
-    data
-        The image file's bytes.
-    path, place
-        The asset, and where it refers to the image, for errors.
-
-    Returns
-    -------
-    uint8, shape (H, W, 4): sRGB colour and linear alpha; row 0 is the top.
-
-    Raises
-    ------
-    AssetError
-        The image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`.
+    Raise AssetError where the image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`; `path` is the
+    asset, and `place` where it refers to the image.
     """
     from PIL import Image  # noqa: PLC0415 - many files have no images, and it is slow to import
 

@@ -20,23 +20,10 @@ _TURNS = {
 
 
 def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:
-    """Return the matrix from a file's frame to the scene frame.
+    """Return the matrix from a file's frame to the scene frame: float64, shape (4, 4), column vectors.
 
-    Parameters
-    ----------
-    up
-        The file's up axis, ``"x"``, ``"y"`` or ``"z"``; None for y.
-    unit
-        Metres per unit of the file; None for 1.
-
-    Returns
-    -------
-    float64, shape (4, 4), column vectors: a rotation by quarter turns times a uniform scale.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Another axis, or a unit that is not a positive number.
+    `up` is the file's up axis, ``"x"``, ``"y"`` or ``"z"``, None for y; `unit` is metres per unit of the file, None for
+    1. The matrix is a rotation by quarter turns times a uniform scale.
     """
     axis = "y" if up is None else arguments.choice("up", up, tuple(_TURNS))
     scale = 1.0 if unit is None else arguments.real("unit", unit, above=0)

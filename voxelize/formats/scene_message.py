@@ -236,19 +236,9 @@ def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
 
 
 def read_message(text: bytes, arrays: NDArray[np.uint8]) -> Scene | Failure:
-    """Return what a message says.
+    """Return what a message says: `text` is its JSON, and `arrays`, uint8, shape (N,), the bytes of its arrays.
 
-    Parameters
-    ----------
-    text
-        Its JSON.
-    arrays
-        uint8, shape (N,): the bytes of its arrays. The scene's arrays are views of them.
-
-    Raises
-    ------
-    BadMessageError
-        It contradicts itself.
+    The scene's arrays are views of them. Raise BadMessageError where the message contradicts itself.
     """
     try:
         message = msgspec.json.decode(text, type=Message)

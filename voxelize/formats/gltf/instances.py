@@ -21,11 +21,6 @@ def read_instances(document: Document, index: int) -> NDArray[np.float64] | None
     """Return the transforms of the instances of node `index` in its frame, float64, shape (N, 4, 4).
 
     None where the node is not instanced.
-
-    Raises
-    ------
-    AssetError
-        The attributes disagree on how many instances there are.
     """
     place = f"nodes[{index}]"
     instances = document.extension(document.gltf.nodes[index], INSTANCING, Instances, place)

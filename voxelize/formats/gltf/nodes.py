@@ -23,29 +23,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Hierarchy:
-    """The transforms and the visible nodes of a file.
+    """The transforms and the visible nodes of a file."""
 
-    Attributes
-    ----------
-    shown
-        The visible nodes of the scene, parents before children, siblings in authored order.
-    transforms
-        float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
-    """
-
-    shown: tuple[int, ...]
+    shown: tuple[int, ...]  # the visible nodes of the scene, parents before children, siblings in authored order
+    # float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
     transforms: NDArray[np.float64]
 
 
 def place_nodes(document: Document) -> Hierarchy:
     """Return the transforms of all nodes, and the visible nodes of the file's scene.
 
-    The scene is the file's default scene, else its first. A file without scenes shows every root node.
-
-    Raises
-    ------
-    AssetError
-        The hierarchy is not a forest, or a transform is not affine and finite.
+    The scene is the file's default scene, else its first. A file without scenes shows every root node. Raise AssetError
+    where the hierarchy is not a forest, or a transform is not affine and finite.
     """
     nodes = document.gltf.nodes
     parents = _parents(document)

@@ -11,13 +11,7 @@ if TYPE_CHECKING:
 
 
 def check_required_extensions(document: Document) -> None:
-    """Refuse a file that requires an unsupported extension; count unsupported ones that it only uses.
-
-    Raises
-    ------
-    AssetError
-        The file requires an extension that is not supported.
-    """
+    """Refuse a file that requires an unsupported extension; count unsupported ones that it only uses."""
     gltf = document.gltf
     known = SUPPORTED | WITHOUT_EFFECT
     for at, name in enumerate(gltf.extensions_required):

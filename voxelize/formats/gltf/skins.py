@@ -20,16 +20,7 @@ if TYPE_CHECKING:
 def joint_matrices(document: Document, index: int, transforms: NDArray[np.float64], place: str) -> NDArray[np.float64]:
     """Return the transform of each joint from the bind pose to the scene frame: float64, shape (J, 4, 4).
 
-    Parameters
-    ----------
-    document
-        The open asset.
-    index
-        The skin's index.
-    transforms
-        float64, shape (N, 4, 4): the transforms of the file's nodes.
-    place
-        The JSON path that refers to the skin.
+    `transforms`, float64, shape (N, 4, 4), are those of the file's nodes. The JSON path `place` refers to the skin.
     """
     skin = document.item(document.gltf.skins, index, place, "skin")
     here = f"skins[{index}]"

@@ -11,13 +11,7 @@ if TYPE_CHECKING:
 
 
 def refuse_broken_parts(document: Document) -> None:
-    """Read all accessors and all buffers, used or not.
-
-    Raises
-    ------
-    AssetError
-        An accessor or buffer refers to something that does not exist, exceeds it, or contradicts itself.
-    """
+    """Read all accessors and all buffers, used or not; raise AssetError where one contradicts itself or the file."""
     for index, accessor in enumerate(document.gltf.accessors):
         place = f"accessors[{index}]"
         if accessor.buffer_view is None and accessor.byte_offset is not None:

@@ -33,38 +33,20 @@ OPAQUE_FROM = 0.5
 
 @dataclass(eq=False, slots=True)
 class FaceAppearance:
-    """The appearance of each face.
+    """The appearance of each face."""
 
-    Attributes
-    ----------
-    materials
-        uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.
-    rows
-        int32, shape (F,): indices into `entries`; -1 where a face has a plain material.
-    entries
-        The appearances.
-    image_placements
-        Of each entry, how texture coordinates are scaled and moved: ``map_Kd -s`` and ``-o``.
-    """
-
+    # uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.
     materials: NDArray[np.uint8]
-    rows: NDArray[np.int32]
+    rows: NDArray[np.int32]  # int32, shape (F,): indices into `entries`; -1 where a face has a plain material
     entries: list[Appearance] = field(default_factory=list)
+    # How each entry scales and moves texture coordinates: ``map_Kd -s`` and ``-o``.
     image_placements: list[MtlTexture | None] = field(default_factory=list)
 
 
 def appearance_of_faces(
     text: Text, statements: Statements, external_files: ExternalFiles, table: MaterialTable, log: WarningLog
 ) -> FaceAppearance:
-    """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``.
-
-    Raises
-    ------
-    AssetError
-        A library or an image is broken.
-    DoesNotFitError
-        More than 255 materials.
-    """
+    """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``."""
     library = _libraries(external_files, statements, log)
     lines = np.array([line for line, _ in statements.materials], dtype=np.int64)
     turn = np.searchsorted(lines, statements.face_lines) - 1  # the last usemtl before each face; -1 for none
@@ -97,16 +79,9 @@ def surface_appearance(
 ) -> SurfaceAppearance | None:
     """Return the appearance of triangles; None where all of them have plain materials.
 
-    Parameters
-    ----------
-    statements, face_appearance
-        The file's statements, and the appearance of its faces.
-    uv
-        float64, shape (corners of the file, 2), v upwards; None where no face is textured.
-    corners
-        int64, shape (T, 3): each triangle's corners, among all corners of the file's faces.
-    faces
-        int64, shape (T,): its face.
+    `uv`, float64, shape (corners of the file, 2), points v upwards; None where no face is textured. `corners`, int64,
+    shape (T, 3), are each triangle's corners among all corners of the file's faces, and `faces`, int64, shape (T,), its
+    face.
     """
     rows = face_appearance.rows[faces]
     if not (rows >= 0).any():

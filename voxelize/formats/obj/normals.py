@@ -21,16 +21,10 @@ _IGNORED = "normals that cannot be read, or do not exist, were ignored"
 def read_normals(
     text: Text, statements: Statements, log: WarningLog
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
-    """Read the normals of all corners.
+    """Read the normals of all corners; None where the file has none.
 
-    Returns
-    -------
-    vectors
-        float64, shape (N, 3); NaN where a number could not be read.
-    rows
-        int32, shape (corners,): the row of each corner of the faces; -1 for a corner without a normal.
-
-    None where the file has no normals.
+    Return the vectors, float64, shape (N, 3), NaN where a number could not be read, and the row of each corner of the
+    faces, int32, -1 for a corner without a normal.
     """
     second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
     is_normal = (text.buffer[text.starts] == ord("v")) & (second == ord("n"))

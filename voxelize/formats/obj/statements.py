@@ -32,44 +32,26 @@ _WITHOUT_EFFECT = frozenset(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Statements:
-    """The file's content, faces in authored order.
+    """The file's content, faces in authored order."""
 
-    Attributes
-    ----------
-    positions
-        float64, shape (V, 3), in the file's frame; NaN where a number could not be read.
-    colours
-        float64, shape (V, 3): sRGB of 0 … 1, white where a vertex has none; None where no vertex has one.
-    counts
-        int64, shape (F,): corners per face, each at least 3.
-    corners
-        int64, flat: rows of `positions`.
-    face_lines
-        int64, shape (F,): the line of each face, an index into the text's lines.
-    objects, groups, materials
-        (line, name) of each ``o``, ``g`` and ``usemtl``.
-    libraries
-        (line, name) of each ``mtllib``.
-    """
-
-    positions: NDArray[np.float64]
+    positions: NDArray[np.float64]  # float64, shape (V, 3), in the file's frame; NaN where a number could not be read
+    # float64, shape (V, 3): sRGB of 0 … 1, white where a vertex has none; None where no vertex has one.
     colours: NDArray[np.float64] | None
-    counts: NDArray[np.int64]
-    corners: NDArray[np.int64]
-    face_lines: NDArray[np.int64]
+    counts: NDArray[np.int64]  # int64, shape (F,): corners per face, each at least 3
+    corners: NDArray[np.int64]  # int64, flat: rows of `positions`
+    face_lines: NDArray[np.int64]  # int64, shape (F,): the line of each face, an index into the text's lines
+    # (line, name) of each ``o``, ``g`` and ``usemtl``.
     objects: tuple[tuple[int, str], ...]
     groups: tuple[tuple[int, str], ...]
     materials: tuple[tuple[int, str], ...]
-    libraries: tuple[tuple[int, str], ...]
+    libraries: tuple[tuple[int, str], ...]  # (line, name) of each ``mtllib``
 
 
 def read_statements(text: Text, log: WarningLog) -> Statements:
     """Read all statements.
 
-    Raises
-    ------
-    AssetError
-        A vertex of fewer than three numbers, a face with a corner that is not a vertex, or a file without faces.
+    Raise AssetError for a vertex of fewer than three numbers, a face with a corner that is not a vertex, or a file
+    without faces.
     """
     first = text.buffer[text.starts]
     # A line ends with a line feed, so it has a second character, except the last line.
@@ -106,17 +88,8 @@ def read_statements(text: Text, log: WarningLog) -> Statements:
 def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Read the texture coordinates (``vt``) of all corners.
 
-    Returns
-    -------
-    uv
-        float64, shape (corners, 2), v upwards; 0 where a corner has none.
-    given
-        bool, shape (F,): whether all corners of a face have coordinates.
-
-    Raises
-    ------
-    AssetError
-        A corner refers to coordinates that do not exist.
+    Return uv, float64, shape (corners, 2), v upwards and 0 where a corner has none, and whether all corners of a face
+    have coordinates: bool, shape (F,). Raise AssetError where a corner refers to coordinates that do not exist.
     """
     first, second = text.buffer[text.starts], text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
     is_texture = (first == ord("v")) & (second == ord("t"))

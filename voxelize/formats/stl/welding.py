@@ -13,17 +13,8 @@ if TYPE_CHECKING:
 def weld(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return the distinct corners as vertices, and the triangles over them.
 
-    Parameters
-    ----------
-    corners
-        float64, shape (3 * T, 3): the corners of triangle after triangle.
-
-    Returns
-    -------
-    positions
-        float64, shape (V, 3), in order of first appearance.
-    triangles
-        int32, shape (T, 3).
+    `corners`, float64, shape (3 * T, 3), are those of triangle after triangle. The vertices, float64, shape (V, 3), are
+    in order of first appearance; the triangles are int32, shape (T, 3).
     """
     exact = np.ascontiguousarray(corners + 0.0)  # -0 becomes 0, which it equals
     _, first, inverse = np.unique(_hashes(exact), return_index=True, return_inverse=True)

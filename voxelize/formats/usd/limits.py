@@ -28,21 +28,11 @@ _DAYTIME_FACTOR = 4
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a small file may take, and what no file may.
+    """What a small file may take, and what no file may."""
 
-    Attributes
-    ----------
-    memory
-        Bytes that a small file may take.
-    most_memory
-        Bytes that no file may exceed.
-    seconds
-        Seconds of the processor that a small file may take.
-    """
-
-    memory: int
-    most_memory: int
-    seconds: float = _SECONDS
+    memory: int  # bytes that a small file may take
+    most_memory: int  # bytes that no file may exceed
+    seconds: float = _SECONDS  # seconds of the processor that a small file may take
 
     @classmethod
     def of_this_machine(cls) -> Limits:
