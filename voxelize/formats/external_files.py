@@ -1,12 +1,22 @@
-"""Files that an asset refers to. They are opened in its folder and below; elsewhere only where the user allows it."""
+"""Assets, and the files that they refer to: those in their folder and below; others only where the user allows it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from voxrt.voxelize.errors import AssetError
+
 ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (in Python: allow_outside=True)"
 """How to fix a reference to a file outside the asset's folder."""
+
+
+def read_asset(path: Path) -> bytes:
+    """Read a file whole; raise AssetError where it cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The transform from a file's axes and unit to the scene frame (right-handed, metres, y up)."""
+"""Coordinates of files: those in range, and their transform to the scene frame (right-handed, metres, y up)."""
 
 from __future__ import annotations
 
@@ -17,6 +17,16 @@ _TURNS = {
     "y": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     "z": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
 }
+
+
+FARTHEST = 1e70
+"""Products of four larger coordinates, as in the square of a normal, overflow float64."""
+
+
+def in_range(positions: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Tell which positions, shape (…, 3), have three coordinates that are numbers below :data:`FARTHEST`."""
+    inside: NDArray[np.bool_] = (np.abs(positions) < FARTHEST).all(axis=-1)
+    return inside
 
 
 def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:

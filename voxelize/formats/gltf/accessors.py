@@ -131,6 +131,17 @@ def normalized(stored: NDArray[Any]) -> NDArray[np.float64]:
     return elements
 
 
+def refuse_broken_parts(document: Document) -> None:
+    """Read all accessors and all buffers, used or not; raise AssetError where one contradicts itself or the file."""
+    for index, accessor in enumerate(document.gltf.accessors):
+        place = f"accessors[{index}]"
+        if accessor.buffer_view is None and accessor.byte_offset is not None:
+            raise document.error(place, "has a byteOffset and no bufferView to count it in")
+        read_accessor(document, index, place, {accessor.type})
+    for index in range(len(document.gltf.buffers)):
+        document.buffer(index)
+
+
 def _strided(
     document: Document, source: Accessor | SparseIndices | SparseValues, count: int, layout: Layout, place: str
 ) -> NDArray[Any]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.external_files import read_asset
 from voxrt.voxelize.formats.gltf.schema import Gltf
 from voxrt.voxelize.formats.gltf.schema_errors import explain
 

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.formats.gltf.appearance import AppearanceKey
-from voxrt.voxelize.formats.gltf.deform import Pose
+from voxrt.voxelize.formats.gltf.deform import Pose, joint_matrices
 from voxrt.voxelize.formats.gltf.extras import node_extras
-from voxrt.voxelize.formats.gltf.instances import read_instances
 from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, MaterialKey, material_names
 from voxrt.voxelize.formats.gltf.meshes import read_surface
+from voxrt.voxelize.formats.gltf.nodes import read_instances
 from voxrt.voxelize.formats.gltf.physics import physics_collider, read_shapes
-from voxrt.voxelize.formats.gltf.skins import joint_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.warning_log import WarningLog
 
+
 # Keywords of curves and free-form surfaces, which have no faces.
 _FREE_FORM = frozenset(
     {
@@ -113,6 +114,39 @@ def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.
     missing |= ~np.isfinite(uv).all(axis=1)
     uv[missing] = 0.0
     return uv, ~np.logical_or.reduceat(missing, np.cumsum(counts) - counts)
+
+
+_IGNORED = "normals that cannot be read, or do not exist, were ignored"
+
+
+def read_normals(
+    text: Text, statements: Statements, log: WarningLog
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    """Read the normals of all corners; None where the file has none.
+
+    Return the vectors, float64, shape (N, 3), NaN where a number could not be read, and the row of each corner of the
+    faces, int32, -1 for a corner without a normal.
+    """
+    second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
+    is_normal = (text.buffer[text.starts] == ord("v")) & (second == ord("n"))
+    lines = np.flatnonzero(is_normal)
+    if not len(lines):
+        return None
+    values, widths = real_rows(text, lines, 2)
+    if (widths != 3).any():
+        log.add("normals", _IGNORED, int((widths != 3).sum()))
+        return None
+    try:
+        numbers, counts = index_rows(text, statements.face_lines, 1, 2)
+    except AssetError:
+        log.add("normals", _IGNORED)
+        return None
+    before = np.repeat(np.cumsum(is_normal)[statements.face_lines], counts)
+    rows = np.where(numbers < 0, before + numbers, numbers - 1)
+    wrong = (numbers != 0) & ((rows < 0) | (rows >= len(lines)))
+    log.add("normals", _IGNORED, int(wrong.sum()))
+    rows[wrong] = -1
+    return values.reshape(-1, 3), rows.astype(np.int32)
 
 
 def _vertices(

@@ -10,7 +10,7 @@ from pxr import Usd, UsdGeom
 
 from voxrt.voxelize import primitive_meshes
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
+from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.formats.usd import values
 

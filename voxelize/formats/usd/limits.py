@@ -16,6 +16,8 @@ import resource
 import signal
 from dataclasses import dataclass
 
+import msgspec
+
 from voxrt.voxelize.free_memory import free_memory
 
 _MEMORY = 2 << 30
@@ -39,6 +41,18 @@ class Limits:
         """Return 2 GiB for small files, half of the free memory for any, and 30 seconds."""
         most = max(free_memory() // 2, _LEAST_MEMORY)
         return cls(min(_MEMORY, most), most)
+
+
+class Request(msgspec.Struct, frozen=True, kw_only=True):
+    """The options and limits of ``read_isolated``, and the process id of its caller."""
+
+    parent: int
+    variants: tuple[str, ...]
+    time: float | None
+    allow_outside: bool
+    memory: int
+    most_memory: int
+    seconds: float
 
 
 class Allowance:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.external_files import read_asset
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
