@@ -12,6 +12,8 @@ import numpy as np
 from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
 MOST_PIXELS = 1 << 26
@@ -21,6 +23,16 @@ _FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
 
 # What Pillow's decoders raise on broken images.
 _BROKEN = (OSError, SyntaxError, ValueError, EOFError, IndexError, struct.error)
+
+
+def read_image(file: Path, path: Path, place: str) -> NDArray[np.uint8]:
+    """Read an image file as :func:`decode_image` does."""
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror}"
+        raise AssetError(path, problem, place=place, fix="check its permissions") from None
+    return decode_image(data, path, place)
 
 
 def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:

@@ -10,8 +10,7 @@ import numpy as np
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
-from voxrt.voxelize.formats.image_file import decode_image
+from voxrt.voxelize.formats.image_file import read_image
 from voxrt.voxelize.formats.obj.mtl import MtlMaterial, MtlTexture, read_mtl
 from voxrt.voxelize.materials import DEFAULT_COLOUR
 
@@ -156,17 +155,12 @@ class _AppearanceBuilder:
         """Return the pixels of a texture; None, with a warning for `faces` faces, where it cannot be read."""
         if placement is None:
             return None
-        found = self._external_files.find_exported(placement.name)
+        files, name, instead = self._external_files, placement.name, "; its material's own value was used"
+        found = files.reported(files.find_exported(name), "texture", name, self._log, count=faces, instead=instead)
         if found is None:
-            problem = f"texture {placement.name!r} was not found; its material's own value was used"
-            self._log.add("missing-texture", problem, faces)
-            return None
-        if not self._external_files.allows(found):
-            problem = f"texture {placement.name!r} is outside the file's folder and was not opened"
-            self._log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", faces)
             return None
         if found not in self._images:
-            self._images[found] = decode_image(found.read_bytes(), self._text.path, f"{keyword} {placement.name}")
+            self._images[found] = read_image(found, self._text.path, f"{keyword} {name}")
         return self._images[found]
 
     def add_coloured(self, faces: NDArray[np.int64], name: str, material: MtlMaterial | None) -> None:
@@ -237,12 +231,8 @@ def _libraries(external_files: ExternalFiles, statements: Statements, log: Warni
         words = argument.split()
         names = [(whole, argument)] if whole else [(external_files.find_exported(word), word) for word in words]
         for found, name in names:
-            if found is None:
-                log.add("missing-library", f"material library {name!r} was not found")
-            elif not external_files.allows(found):
-                problem = f"material library {name!r} is outside the file's folder and was not opened"
-                log.add("outside", f"{problem}; {ALLOW_OUTSIDE}")
-            elif found not in seen:
-                seen.add(found)
-                library |= read_mtl(found, log)
+            file = external_files.reported(found, "material library", name, log)
+            if file is not None and file not in seen:
+                seen.add(file)
+                library |= read_mtl(file, log)
     return library

@@ -55,18 +55,14 @@ def read_statements(text: Text, log: WarningLog) -> Statements:
     without faces.
     """
     first = text.buffer[text.starts]
-    # A line ends with a line feed, so it has a second character, except the last line.
-    second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
-    alone = second <= ord(" ")
-    is_vertex = (first == ord("v")) & alone
-    is_face = (first == ord("f")) & alone
-    attribute = (first == ord("v")) & ((second == ord("n")) | (second == ord("t")))
+    is_vertex, is_face = text.is_statement("v "), text.is_statement("f ")
+    attribute = text.is_statement("vn") | text.is_statement("vt")
     other = np.flatnonzero(~(is_vertex | is_face | attribute | (first == ord("#")) | (first == ord("\n"))))
     vertex_lines = np.flatnonzero(is_vertex)
     face_lines = np.flatnonzero(is_face)
     positions, colours = _vertices(text, vertex_lines, log)
     named = _named(text, other, log)
-    counts, corners = _faces(text, face_lines, np.cumsum(is_vertex)[face_lines], len(positions))
+    counts, corners = _faces(text, face_lines, np.cumsum(is_vertex, dtype=np.int64)[face_lines], len(positions))
     if not len(counts):
         raise AssetError(text.path, "has no faces", fix="export it with its polygons")
     keep = counts >= 3
@@ -92,18 +88,15 @@ def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.
     Return uv, float64, shape (corners, 2), v upwards and 0 where a corner has none, and whether all corners of a face
     have coordinates: bool, shape (F,). Raise AssetError where a corner refers to coordinates that do not exist.
     """
-    first, second = text.buffer[text.starts], text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
-    is_texture = (first == ord("v")) & (second == ord("t"))
+    is_texture = text.is_statement("vt")
     values, widths = real_rows(text, np.flatnonzero(is_texture), 2)
     begins = np.cumsum(widths) - widths
     stored = np.zeros((len(widths), 2))
     for column in range(2):  # v is 0 where a line has u alone
         wide = widths > column
         stored[wide, column] = values[begins[wide] + column]
-    numbers, counts = index_rows(text, statements.face_lines, 1, 1)
-    before = np.repeat(np.cumsum(is_texture)[statements.face_lines], counts)
-    rows = np.where(numbers < 0, before + numbers, numbers - 1)
-    wrong = np.flatnonzero((numbers != 0) & ((rows < 0) | (rows >= len(stored))))
+    numbers, counts, rows, is_wrong = _attribute_rows(text, statements, 1, is_texture)
+    wrong = np.flatnonzero(is_wrong)
     if len(wrong):
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
         problem = f"texture coordinate {numbers[wrong[0]]} of a face does not exist: the file has {len(stored)}"
@@ -127,8 +120,7 @@ def read_normals(
     Return the vectors, float64, shape (N, 3), NaN where a number could not be read, and the row of each corner of the
     faces, int32, -1 for a corner without a normal.
     """
-    second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
-    is_normal = (text.buffer[text.starts] == ord("v")) & (second == ord("n"))
+    is_normal = text.is_statement("vn")
     lines = np.flatnonzero(is_normal)
     if not len(lines):
         return None
@@ -137,16 +129,23 @@ def read_normals(
         log.add("normals", _IGNORED, int((widths != 3).sum()))
         return None
     try:
-        numbers, counts = index_rows(text, statements.face_lines, 1, 2)
+        _, _, rows, wrong = _attribute_rows(text, statements, 2, is_normal)
     except AssetError:
         log.add("normals", _IGNORED)
         return None
-    before = np.repeat(np.cumsum(is_normal)[statements.face_lines], counts)
-    rows = np.where(numbers < 0, before + numbers, numbers - 1)
-    wrong = (numbers != 0) & ((rows < 0) | (rows >= len(lines)))
     log.add("normals", _IGNORED, int(wrong.sum()))
     rows[wrong] = -1
     return values.reshape(-1, 3), rows.astype(np.int32)
+
+
+def _attribute_rows(
+    text: Text, statements: Statements, field: int, is_attribute: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """Return the numbers in a field of all corners, corners per face, rows of the attribute, and which do not exist."""
+    numbers, counts = index_rows(text, statements.face_lines, 1, field)
+    before = np.repeat(np.cumsum(is_attribute)[statements.face_lines], counts)
+    rows = np.where(numbers < 0, before + numbers, numbers - 1)
+    return numbers, counts, rows, (numbers != 0) & ((rows < 0) | (rows >= np.count_nonzero(is_attribute)))
 
 
 def _vertices(

@@ -51,6 +51,14 @@ class Text:
         """Return the line number of line `line` (an index into `starts`), for people: ``line 12``."""
         return f"line {int(np.searchsorted(self.newlines, self.starts[line])) + 1}"
 
+    def is_statement(self, keyword: str) -> NDArray[np.bool_]:
+        """Tell which lines begin with a keyword of two characters; a blank stands for the end of a word."""
+        # A line ends with a line feed, so it has a second character, except the last line.
+        first, second = self.buffer[self.starts], self.buffer[np.minimum(self.starts + 1, len(self.buffer) - 1)]
+        ends = second <= ord(" ") if keyword[1] == " " else second == ord(keyword[1])
+        found: NDArray[np.bool_] = (first == ord(keyword[0])) & ends
+        return found
+
     def words(self, line: int) -> str:
         """Return the text of line `line` without its comment and surrounding blanks."""
         raw = self.data[self.starts[line] : self.ends[line]]

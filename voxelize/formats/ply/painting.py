@@ -13,9 +13,7 @@ import numpy as np
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
-from voxrt.voxelize.formats.image_file import decode_image
+from voxrt.voxelize.formats.image_file import read_image
 from voxrt.voxelize.formats.ply.format import ListColumn
 
 if TYPE_CHECKING:
@@ -39,19 +37,8 @@ def read_textures(
     """Return the textures that a file names; None, with a warning, for one that cannot be opened, and none for none."""
     textures: list[Texture | None] = []
     for name in names:
-        found = external_files.find_exported(name)
-        textures.append(None)
-        if found is None:
-            log.add("missing-texture", f"texture {name!r} was not found")
-        elif not external_files.allows(found):
-            log.add("outside", f"texture {name!r} is outside the file's folder and was not opened; {ALLOW_OUTSIDE}")
-        else:
-            try:
-                data = found.read_bytes()
-            except OSError as error:
-                problem = f"cannot be read: {error.strerror}"
-                raise AssetError(path, problem, place=f"texture {name}", fix="check its permissions") from None
-            textures[-1] = Texture(decode_image(data, path, f"texture {name}"))
+        found = external_files.reported(external_files.find_exported(name), "texture", name, log)
+        textures.append(None if found is None else Texture(read_image(found, path, f"texture {name}")))
     return textures if any(textures) else []
 
 
