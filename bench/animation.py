@@ -7,15 +7,14 @@ gallery, and the animated assets that are there.
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import time
 from pathlib import Path
 from runpy import run_path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from report import ASSETS, ROOT, options_of, write_page
 
 import voxrt
 from voxrt import octree
@@ -23,9 +22,6 @@ from voxrt import octree
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[1]
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
-RESULTS = ROOT / "bench" / "results" / "animation.md"
 HEAD = ("scene", "moves", "frames", "depth", "words alone", "words together", "ratio", "seconds")
 FRAMES = 24
 
@@ -107,8 +103,7 @@ def plot(found: list[tuple[str, voxrt.BuildResult]], file: Path) -> None:
 
 def main() -> None:
     """Build the animations and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true", help="write bench/results/animation.md")
+    parser = options_of(__doc__)
     parser.add_argument("--plot", type=Path, help="draw words against frames into this file")
     parser.add_argument("--depth", type=int, nargs="+", default=[7, 8], help="levels of the grids")
     options = parser.parse_args()
@@ -122,7 +117,7 @@ def main() -> None:
     page = table(rows)
     print(page, f"{time.perf_counter() - started:.0f} s")
     if options.write:
-        RESULTS.write_text(page, encoding="utf-8")
+        write_page("animation.md", page)
     if options.plot:
         plot(found, options.plot)
 

@@ -6,13 +6,12 @@ well. Seconds are the least of three runs, wall clock and CPU; 64 directions to 
 
 from __future__ import annotations
 
-import argparse
 import os
-import platform
 import resource
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+from report import ROOT, machine, options_of, write_page
 
 import voxrt
 from voxelize import displaced_sphere
@@ -21,8 +20,6 @@ from voxrt.sim.baking.bake import bake_light
 if TYPE_CHECKING:
     from voxrt.voxelize import Scene
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "bake.md"
 HEAD = "| scene | triangles | side | lit voxels | light | palette, memory | in all | CPU | words | words without |"
 RUNS = 3
 
@@ -55,9 +52,8 @@ def measure(scene: Scene, depth: int, threads: int) -> str:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--threads", type=int, default=0)
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     rows = []
     for scene, depth in (
@@ -69,11 +65,8 @@ def main() -> None:
         rows.append(measure(scene, depth, options.threads))
         print(rows[-1], flush=True)
     if options.write:
-        about = (
-            f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
-            f"threads: {options.threads or 'all'}; load average {os.getloadavg()[0]:.1f}\n"
-        )
-        RESULTS.write_text("\n".join(["# Baked light", "", about, HEAD, "|---|" + "--:|" * 9, *rows]) + "\n")
+        about = f"{machine()}; threads: {options.threads or 'all'}; load average {os.getloadavg()[0]:.1f}\n"
+        write_page("bake.md", "\n".join(["# Baked light", "", about, HEAD, "|---|" + "--:|" * 9, *rows]) + "\n")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ model's, and the board's counters of late rows and late frames are read by the s
 
 from __future__ import annotations
 
-import argparse
 import struct
 import sys
 import tempfile
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from report import ROOT, options_of
 
 import voxrt
 from voxrt.board.designs import build
@@ -35,7 +35,6 @@ from rtl_scenes import terrain
 if TYPE_CHECKING:
     from voxrt.octree.camera import Camera
 
-ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ("house.obj", "planet.glb", "courtyard.glb")
 PERIOD = 3
 """Frames per camera of the boot table."""
@@ -129,11 +128,10 @@ def report(name: str, design: BaseDesign, found: dict[str, Seen]) -> str:
 
 def main() -> int:
     """Watch each scene; give the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("name", choices=build.board_names())
     parser.add_argument("--frames", type=int, default=60)
     parser.add_argument("--scenes", nargs="*", default=[*EXAMPLES, "terrain"])
-    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     design = read_board(options.name).design
     found = {}

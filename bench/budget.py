@@ -8,14 +8,12 @@ to those of the whole octree (PSNR in dB and SSIM, means over six views all arou
 
 from __future__ import annotations
 
-import argparse
-import os
 import time
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from report import ASSETS, ROOT, options_of, table, write_page
 
 import voxrt
 from voxrt import export, octree
@@ -24,9 +22,6 @@ from voxrt.building.fitting import Views, fit_budget
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[1]
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
-RESULTS = ROOT / "bench" / "results" / "budget.md"
 NOTE = "PSNR (dB) and SSIM are means over six views all around the scene."
 FIGURES = ("changed", "appeared", "PSNR", "SSIM")
 HEAD = ("scene", "words", "budget", *(f"{name}: {figure}" for name in ("coarser", "ours") for figure in FIGURES))
@@ -91,15 +86,12 @@ def figures(whole: octree.Rom, fitted: octree.Octree, views: Views) -> tuple[str
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    parser = options_of(__doc__)
     options = parser.parse_args()
-    rows = [HEAD, ("---",) * len(HEAD), *(row for rom in scenes() for row in compare(rom))]
-    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    text = table(HEAD, (row for rom in scenes() for row in compare(rom)))
     print(text, end="")
     if options.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(f"# Fitting a budget\n\n{NOTE}\n\n{text}")
+        write_page("budget.md", f"# Fitting a budget\n\n{NOTE}\n\n{text}")
 
 
 if __name__ == "__main__":

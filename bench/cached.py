@@ -7,14 +7,12 @@ Every frame is 640x480 and every pixel is compared. ``--write`` puts the table i
 
 from __future__ import annotations
 
-import argparse
-import os
 import pickle
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from report import ASSETS, ROOT, options_of, write_page
 
 import voxrt
 from voxrt.sim import Dram
@@ -24,10 +22,7 @@ if TYPE_CHECKING:
 
     from voxrt import Camera, Octree, Rom
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "cached.md"
 KEPT = ROOT / "build" / "cached"
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
 SIZE = (640, 480)
 
 
@@ -162,12 +157,11 @@ def measure(row: Row, config: str, dram: Dram) -> str:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--config", default="cached16")
     parser.add_argument("--latency", type=int, default=50)
     parser.add_argument("--interval", type=int, default=3)
     parser.add_argument("--only", default="", help="scenes whose name, depth and view contain this")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     dram = Dram(latency=options.latency, interval=options.interval)
     only = f" --only '{options.only}'" if options.only else ""
@@ -186,7 +180,7 @@ def main() -> None:
             lines.append(measure(row, options.config, dram))
             print(lines[-1], flush=True)
     if options.write:
-        RESULTS.write_text("# The octree memory behind caches\n\n" + "\n".join(lines) + "\n")
+        write_page("cached.md", "# The octree memory behind caches\n\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ the squares that workers join, then the last join on one machine.
 
 from __future__ import annotations
 
-import argparse
 import filecmp
 import heapq
 import os
@@ -20,6 +19,8 @@ from tempfile import TemporaryDirectory
 from time import process_time
 from typing import NamedTuple
 
+from report import options_of, write_page
+
 import voxrt
 from voxrt import octree
 from voxrt.plans.by_workers import JOINERS, MOST_PIECES, cluster_side, squares
@@ -27,7 +28,6 @@ from voxrt.plans.plan import plan_build
 from voxrt.plans.tile_making import block_voxelizer
 
 MEMORY = "2G"
-RESULTS = Path(__file__).resolve().parent / "results" / "cluster.md"
 
 
 class Made(NamedTuple):
@@ -39,12 +39,11 @@ class Made(NamedTuple):
 
 def main() -> None:
     """Measure, and print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("assets", nargs="+", metavar="ASSET:DEPTH")
     parser.add_argument("--fill", default="surface", choices=("surface", "auto", "solid"))
     parser.add_argument("--workers", type=int, nargs="*", default=[2, 8, 64], help="of the plan")
     parser.add_argument("--rounds", type=int, default=2)
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     runs = [(Path(path), int(depth)) for path, _, depth in (one.rpartition(":") for one in options.assets)]
     costs = ["| asset | side | one process, s | two workers, s | more |", "|---|--:|--:|--:|--:|"]
@@ -65,7 +64,7 @@ def main() -> None:
         about = ABOUT.format(
             machine=platform.machine(), python=platform.python_version(), memory=MEMORY, rounds=options.rounds
         )
-        RESULTS.write_text("\n".join([about, *costs, PLANS, *plans]) + "\n")
+        write_page("cluster.md", "\n".join([about, *costs, PLANS, *plans]) + "\n")
 
 
 ABOUT = """# Several processes

@@ -6,15 +6,13 @@ Usage: ``python bench/demo.py [--depth N] [--size WxH] [--write]``. ``--write`` 
 
 from __future__ import annotations
 
-import argparse
-import os
-import platform
 from pathlib import Path
+
+from report import frame_size, machine, options_of, table, write_page
 
 import voxrt
 
 SCENE = Path(__file__).resolve().parents[1] / "examples" / "courtyard.glb"
-RESULTS = Path(__file__).resolve().parent / "results" / "demo.md"
 REPEATS = 3
 
 
@@ -24,7 +22,7 @@ def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
     rom = builds[0].rom
     rows = [
         ("scene", f"{SCENE.name}, depth {depth}, {size[0]}x{size[1]} pixels"),
-        ("machine", f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"),
+        ("machine", machine()),
         ("solid voxels", f"{builds[0].solid_voxels:,}"),
         ("memory", f"{len(rom.octree.words):,} words in {rom.octree.blocks:,} blocks"),
     ]
@@ -49,19 +47,14 @@ def measure(depth: int, size: tuple[int, int]) -> list[tuple[str, str]]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--depth", type=int, default=7)
-    parser.add_argument("--size", default="640x480")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    parser.add_argument("--size", type=frame_size, default="640x480")
     options = parser.parse_args()
-    width, height = (int(side) for side in options.size.split("x"))
-    table = [("", ""), ("---", "---"), *measure(options.depth, (width, height))]
-    table[0] = ("what", "measured")
-    text = "".join(f"| {name} | {value} |\n" for name, value in table)
+    text = table(("what", "measured"), measure(options.depth, options.size))
     print(text, end="")
     if options.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(f"# The demo, measured by bench/demo.py\n\n{text}")
+        write_page("demo.md", f"# The demo, measured by bench/demo.py\n\n{text}")
 
 
 if __name__ == "__main__":

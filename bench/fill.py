@@ -6,16 +6,16 @@ assets for which ``auto`` differs from ``solid``, or of which ``solid`` notes th
 
 from __future__ import annotations
 
-import argparse
-import os
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+from report import ASSETS, options_of, write_page
 
 import voxrt
 from voxrt.voxelize import AssetError, DoesNotFitError
 
-ROOT = Path(__file__).resolve().parents[1]
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
-RESULTS = ROOT / "bench" / "results" / "fill.md"
+if TYPE_CHECKING:
+    from pathlib import Path
+
 SUFFIXES = (".gltf", ".glb", ".obj", ".ply", ".stl", ".usd", ".usda", ".usdc", ".usdz")
 LEFT_OUT = ("malformed", "trouble", "24_gpu_instancing", "teapotScene", "PointInstancer", "chess_set")
 DEPTH = 7
@@ -34,8 +34,7 @@ def measure(path: Path) -> tuple[list[int], int] | None:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    parser = options_of(__doc__)
     options = parser.parse_args()
     lines, same = [], 0
     for path in sorted(ASSETS.rglob("*")):
@@ -58,7 +57,7 @@ def main() -> None:
             f"`solid`, and\nthose of which `solid` notes that open objects are mostly filled. For {same} others both "
             "are the same and nothing is noted.\n"
         )
-        RESULTS.write_text(f"# Fill\n\n{about}\n{head}\n" + "\n".join(lines) + "\n")
+        write_page("fill.md", f"# Fill\n\n{about}\n{head}\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -8,18 +8,16 @@ table into ``bench/results/holes.md`` as well.
 
 from __future__ import annotations
 
-import argparse
 import platform
 import time
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
+from report import options_of, write_page
 
 import voxrt
 from voxrt.voxelize import fit_grid, voxelize
 
-RESULTS = Path(__file__).resolve().parent / "results" / "holes.md"
 LONG = 2.0
 """Seconds from which one run is enough."""
 
@@ -134,10 +132,9 @@ def seconds(scene: voxrt.Scene, depth: int, fill: str) -> float:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--depths", default="6,7,8,9", help="levels, with commas between")
     parser.add_argument("--scenes", default="", help="only those whose name has this")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     depths = [int(depth) for depth in options.depths.split(",")]
     columns = " | ".join(f"depth {depth}" for depth in depths)
@@ -160,7 +157,7 @@ def main() -> None:
             "time by that of `--fill\nsurface`, by `bench/holes.py`. "
             f"{platform.machine()}, Python {platform.python_version()}; the least of up to five runs.\n"
         )
-        RESULTS.write_text(f"# Holes\n\n{about}\n" + "\n".join(lines) + "\n")
+        write_page("holes.md", f"# Holes\n\n{about}\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -7,13 +7,11 @@ solid voxels have. Seconds are those of finding what is hidden, and of sharing i
 
 from __future__ import annotations
 
-import argparse
-import os
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from report import ASSETS, ROOT, options_of, table, write_page
 
 import voxrt
 from voxrt import export, octree
@@ -21,9 +19,6 @@ from voxrt import export, octree
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[1]
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
-RESULTS = ROOT / "bench" / "results" / "interior.md"
 HEAD = ("scene", "side", "solid", "hidden", "keep", "one", "any", "saved", "find", "share")
 
 
@@ -77,15 +72,12 @@ def measure(name: str, tree: octree.Octree) -> tuple[str, ...]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    parser = options_of(__doc__)
     options = parser.parse_args()
-    rows = [HEAD, ("---",) * len(HEAD), *(measure(name, tree) for name, tree in scenes())]
-    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    text = table(HEAD, (measure(name, tree) for name, tree in scenes()))
     print(text, end="")
     if options.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text("# Hidden voxels that may be anything\n\nMemory words by `--interior`.\n\n" + text)
+        write_page("interior.md", "# Hidden voxels that may be anything\n\nMemory words by `--interior`.\n\n" + text)
 
 
 if __name__ == "__main__":

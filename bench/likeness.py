@@ -12,8 +12,6 @@ pictures, but for the SSIM, which is that of the whole pictures.
 
 from __future__ import annotations
 
-import argparse
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +19,7 @@ import numpy as np
 from ciede2000 import ciede2000, lab
 from PIL import Image, ImageDraw
 from reference_picture import Reference
+from report import ASSETS, ROOT, options_of, write_page
 
 import voxrt
 from voxrt.octree.camera import Lighting, pixel_directions
@@ -29,9 +28,6 @@ from voxrt.sim.baking.daylight import Daylight
 from voxrt.voxelize import AssetError
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
-ROOT = Path(__file__).resolve().parents[1]
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", ROOT.parent / "shared" / "assets"))
-RESULTS = ROOT / "bench" / "results" / "likeness.md"
 SHEET = ROOT / "docs" / "pictures" / "likeness-sheet.png"
 DEPTH, SIZE, FINER, SKY_RAYS = 8, (240, 180), 2, 48
 LEAST, MOST = 0.8, 1.25
@@ -145,8 +141,7 @@ def sheet(rows: list[tuple[str, list[np.ndarray]]]) -> Image.Image:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} and {SHEET.name} too")
+    parser = options_of(__doc__)
     parser.add_argument("--only", default="", help="assets whose path holds this")
     parser.add_argument("--pictures", type=Path, help="folder for the pictures of each asset")
     options = parser.parse_args()
@@ -181,7 +176,7 @@ def main() -> None:
             "Luminance is the mean of the preview's, divided by that of the reference.\n"
             f"It lies within {LEAST} to {MOST}: {summary}.\n"
         )
-        RESULTS.write_text(f"# Likeness to the source\n\n{about}\n{text}\n")
+        write_page("likeness.md", f"# Likeness to the source\n\n{about}\n{text}\n")
         chosen = [kept[i] for i in np.linspace(0, len(kept) - 1, min(_ON_SHEET, len(kept))).round().astype(int)]
         sheet(chosen).quantize(256, dither=Image.Dither.NONE).save(SHEET, optimize=True)
 

@@ -7,9 +7,7 @@ some of the folder of assets, and balls that are written for the purpose; ``--wr
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import platform
 import struct
 import subprocess
@@ -23,14 +21,14 @@ from typing import TYPE_CHECKING
 import DracoPy
 import numpy as np
 import trimesh
+from report import ASSETS as FOLDER
+from report import options_of, write_page
 
 from voxrt.voxelize.assets import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = Path(__file__).resolve().parent / "results" / "loading.md"
 REPEATS, MOST_REPEATS = 5, 50
 ASSETS = (
     "obj/odedstein-meshes/skull/skull.obj",
@@ -117,10 +115,8 @@ def measure(path: Path) -> str:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    default = os.environ.get("VOXRT_ASSETS", str(ROOT.parent / "shared" / "assets"))
-    parser.add_argument("--assets", type=Path, default=Path(default))
-    parser.add_argument("--write", action="store_true")
+    parser = options_of(__doc__)
+    parser.add_argument("--assets", type=Path, default=FOLDER)
     parser.add_argument("--row", nargs=2, metavar=("FILE", "LOADER"), help="measure one loader and print its seconds")
     arguments = parser.parse_args()
     if arguments.row:
@@ -137,8 +133,7 @@ def main() -> None:
         table += [measure(path) for path in paths if path.exists()]
     print("\n".join(table))
     if arguments.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text("# Loading\n\n" + "\n".join(table) + "\n")
+        write_page("loading.md", "# Loading\n\n" + "\n".join(table) + "\n")
 
 
 if __name__ == "__main__":

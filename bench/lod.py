@@ -15,18 +15,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from report import RESULTS, write_page
 
 import voxrt
 from voxrt.octree import with_means
 from voxrt.sim.similarity import peak_signal_to_noise, structural_similarity
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from cached import ASSETS, GARDEN, GARGO, ROOT, SKULL, TRUCK, rom_of
+from cached import ASSETS, GARDEN, GARGO, SKULL, TRUCK, rom_of
 
 if TYPE_CHECKING:
     from voxrt import Camera, Rom
 
-RESULTS = ROOT / "bench" / "results" / "lod.md"
 SIZE, FAR_SIZE, DEPTH = (640, 480), (320, 240), 10
 PICTURE_CELLS = (0.5, 0.75, 1.0)
 DISTANCES = {1: "the default camera", 2: "twice as far", 4: "four times as far"}
@@ -122,7 +122,8 @@ def costs(config: str) -> Table:
 
 def written() -> dict[str, str]:
     """Give the texts of the tables in the written file, by title."""
-    parts = RESULTS.read_text(encoding="utf-8").split("## ")[1:] if RESULTS.exists() else []
+    page = RESULTS / "lod.md"
+    parts = page.read_text(encoding="utf-8").split("## ")[1:] if page.exists() else []
     return {part.split("\n")[0]: f"## {part.rstrip()}\n" for part in parts}
 
 
@@ -150,7 +151,7 @@ def main() -> None:
     text += "\n".join(found.values())
     print(text)
     if options.write:
-        RESULTS.write_text(text, encoding="utf-8")
+        write_page("lod.md", text)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ time, so that other work on the machine does not count.
 
 from __future__ import annotations
 
-import argparse
 import os
 import platform
 import time
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from original import Original, level_camera
+from report import options_of, table, write_page
 
 import voxrt
 from voxrt.sim import SimulatorError, _model, render
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE.parent / "examples" / "courtyard.glb"
-RESULTS = HERE / "results" / "model.md"
 REPEATS = 7
 
 
@@ -101,23 +100,21 @@ def nanoseconds(seconds: float, pixels: int, original: float | None = None) -> s
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("memories", nargs="*", type=Path)
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--clock", type=float, default=100.0)
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     roms = [voxrt.read_rom(path)[0] for path in options.memories]
     roms = roms or [voxrt.build(SCENE, depth=depth).rom for depth in (7, 9)]
-    table = [("what", "measured"), ("---", "---"), ("machine", f"{platform.machine()}, {os.cpu_count()} cores")]
+    rows = [("machine", f"{platform.machine()}, {os.cpu_count()} cores")]
     with Original(as_published=True) as published, Original(as_published=False) as bare:
         for rom in roms:
-            table += measure(subject(rom, options.size), published, bare, options.size, options.clock)
-    text = "".join(f"| {name} | {value} |\n" for name, value in table)
+            rows += measure(subject(rom, options.size), published, bare, options.size, options.clock)
+    text = table(("what", "measured"), rows)
     print(text, end="")
     if options.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(f"# The exact model, measured by bench/model.py\n\n{text}")
+        write_page("model.md", f"# The exact model, measured by bench/model.py\n\n{text}")
 
 
 if __name__ == "__main__":

@@ -17,8 +17,8 @@ from ciede2000 import ciede2000, lab
 from PIL import Image
 
 from voxrt.voxelize import load
+from voxrt.voxelize._native import quantize
 from voxrt.voxelize.colour.appearance import sample
-from voxrt.voxelize.colour.palette import quantize
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
 if TYPE_CHECKING:

@@ -9,10 +9,8 @@ such, and greater depths of it are left out. ``--write`` puts the tables into ``
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
-import platform
 import resource
 import statistics
 import subprocess
@@ -22,16 +20,19 @@ import time
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from peer import MAKES, TOOLS
 from peers_run import Run
+from report import ROOT, machine, options_of, write_page
 
 from voxelize import SKULL, displaced_sphere
 from voxrt.voxelize import load
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "peers.md"
+if TYPE_CHECKING:
+    import argparse
+
 PLOTS = ROOT / "docs" / "pictures" / "peers.svg"
 DEPTHS = (7, 8, 9, 10)
 OUR_DEPTHS = (*DEPTHS, 11, 12)
@@ -96,7 +97,7 @@ def tables(runs: list[Run], options: argparse.Namespace) -> str:
     """Give a table a mesh: a tool a row, a depth a column."""
     names = ("trimesh", "open3d", "pyvista", "vtk")
     lines = [
-        f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; "
+        f"{machine()}; "
         + ", ".join(f"{name} {version(name)}" for name in names)
         + f". Medians of {options.runs}: seconds of the whole process / of the step from arrays to voxels / peak memory"
         + f", at most {options.seconds:g} s and {options.gigabytes:g} GB a run.",
@@ -122,13 +123,12 @@ def _cell(run: Run) -> str:
 
 def main() -> None:
     """Run everything, print the tables, write them and the plots."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=90)
     parser.add_argument("--gigabytes", type=float, default=8)
     parser.add_argument("--depths", type=int, nargs="*", default=OUR_DEPTHS, help="of those in the table")
     parser.add_argument("--json", type=Path, help="write what was measured there too")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} and {PLOTS.name} too")
     options = parser.parse_args()
     runs: list[Run] = []
     with tempfile.TemporaryDirectory() as folder:
@@ -146,8 +146,7 @@ def main() -> None:
     if options.write:
         from peers_plot import plot  # noqa: PLC0415 - Matplotlib is needed for this alone
 
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text("# Beside other voxelizers\n\n" + text)
+        write_page("peers.md", "# Beside other voxelizers\n\n" + text)
         plot(runs, PLOTS)
 
 

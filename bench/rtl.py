@@ -7,13 +7,13 @@ without. The speed is the median of the rounds, by the processor's time; all els
 
 from __future__ import annotations
 
-import argparse
 import time
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from report import ROOT, options_of, write_page
 from rtl_scenes import scenes
 
 from voxrt.rtl.configurations import read_configurations
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from rtl_scenes import Scene
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "rtl.md"
 LANES = {name: it.parameters["Lanes"] for name, it in read_configurations().items()}
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
 MIRRORS = np.ones(256, np.uint8)
@@ -102,11 +100,10 @@ def measure(scene: Scene, size: tuple[int, int], rounds: int) -> list[str]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--size", nargs="+", default=["256x256", "640x480"])
     parser.add_argument("--memories", type=Path, default=ROOT.parent / "shared" / "seed-memories")
     parser.add_argument("--rounds", type=int, default=1)
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     heads = ["scene", "configuration", "frame", "lanes", "words per pixel", "cycles per pixel", "bound", "of the bound"]
     heads += ["bound in order", "of it"]
@@ -121,8 +118,7 @@ def main() -> None:
     text = "\n".join(lines)
     print(text, end="")
     if options.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text(text)
+        write_page("rtl.md", text)
 
 
 if __name__ == "__main__":

@@ -14,12 +14,13 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
+from report import ROOT
+
 import voxrt
 from voxrt.board.designs import build
 from voxrt.boards.beam import SCREEN_HZ, BoardTracer, fit_frames
 from voxrt.views.orbit import orbit
 
-ROOT = Path(__file__).resolve().parents[1]
 DESIGNS, TESTS = ROOT / "board" / "designs", ROOT / "tests" / "board"
 BOARD = "ulx3s-85f-sdram"
 SOURCES = [

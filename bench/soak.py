@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from attacks import ATTACKS, LONG, Target
+from report import write_page
 
 import voxrt
 from voxrt.board.errors import Refused
@@ -38,7 +39,6 @@ from fakes.serving import Serving, serving  # the tests' own server in a process
 if TYPE_CHECKING:
     from voxrt.serve.frame_client import FrameClient
 
-RESULTS = Path(__file__).resolve().parent / "results" / "soak.md"
 SCENE = Path(__file__).resolve().parents[1] / "examples" / "courtyard.glb"
 SIZE = [320, 240]
 VIEWERS = 8
@@ -218,7 +218,7 @@ def main() -> int:
     if load.gap > GAP_LIMIT:
         print(f"a gap of {load.gap:.2f} s is more than {GAP_LIMIT:.0f} s: is the machine idle?")
     if arguments.write:
-        RESULTS.write_text(text)
+        write_page("soak.md", text)
     return int(load.code != 0 or spread(load.samples) > MEMORY_LIMIT)
 
 

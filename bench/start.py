@@ -9,7 +9,6 @@ loading a binary PLY file. ``--write`` puts the tables into ``bench/results/star
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import platform
@@ -23,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from report import options_of, write_page
 
 import voxrt
 from voxelize import displaced_sphere
@@ -31,8 +31,6 @@ from voxrt import octree, voxelize
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "start.md"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 VOXRT = (sys.executable, "-m", "voxrt")
 
@@ -94,10 +92,9 @@ def run(command: tuple[str, ...], folder: Path) -> tuple[float, float, str]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--runs", type=int, default=7, help="runs per row")
     parser.add_argument("--depths", type=int, nargs="+", default=[10, 12], help="levels of the larger builds")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     build = (*VOXRT, "build")
     rows = {
@@ -146,7 +143,7 @@ def main() -> None:
             f"{os.cpu_count()} cores, Python\n{platform.python_version()}; load of the machine by others: {load:.1f}. "
             "Compare rows with that of NumPy: it is slowed alike.\n"
         )
-        RESULTS.write_text(f"# Start-up\n\n{about}\n" + "\n".join(lines) + "\n")
+        write_page("start.md", f"# Start-up\n\n{about}\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

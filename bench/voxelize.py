@@ -7,10 +7,7 @@ memory is its own; times are the least of several runs, file loading apart. ``--
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
-import platform
 import resource
 import subprocess
 import sys
@@ -19,12 +16,11 @@ import time
 from pathlib import Path
 
 import numpy as np
+from report import ASSETS, machine, options_of, write_page
 
 from voxrt import octree
 from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject, fit_grid, load, voxelize
 
-RESULTS = Path(__file__).resolve().parent / "results" / "voxelize.md"
-ASSETS = Path(os.environ.get("VOXRT_ASSETS", Path(__file__).resolve().parents[2] / "shared" / "assets"))
 SKULL = ASSETS / "obj" / "odedstein-meshes" / "skull" / "skull.obj"
 INSTANCES = ASSETS / "gltf" / "glTF-Blender-IO" / "24_gpu_instancing.gltf"
 SPHERES = {"sphere-70k": 133, "sphere-810k": 451}
@@ -116,9 +112,8 @@ def measure(name: str, depth: int, threads: int) -> dict[str, object]:
 
 def main() -> None:
     """Run every row in its own process and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = options_of(__doc__)
     parser.add_argument("--threads", type=int, default=0)
-    parser.add_argument("--write", action="store_true")
     parser.add_argument("--row", nargs=2, metavar=("SCENE", "DEPTH"), help="measure one row and print it as JSON")
     parser.add_argument("--mesh", nargs=2, metavar=("SPHERE", "FILE"), help="write a sphere's arrays")
     arguments = parser.parse_args()
@@ -129,9 +124,8 @@ def main() -> None:
     if arguments.row:
         print(json.dumps(measure(arguments.row[0], int(arguments.row[1]), arguments.threads)))
         return
-    machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
     lines = [
-        f"{machine}; threads: {arguments.threads or 'all'}",
+        f"{machine()}; threads: {arguments.threads or 'all'}",
         "",
         "| scene | triangles | grid | solid voxels | to voxels | of all cores | to octree | words | peak memory |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -154,8 +148,7 @@ def main() -> None:
         lines.append(f"| {' | '.join(cells)} |")
     print("\n".join(lines))
     if arguments.write:
-        RESULTS.parent.mkdir(exist_ok=True)
-        RESULTS.write_text("# Voxelizer\n\n" + "\n".join(lines) + "\n")
+        write_page("voxelize.md", "# Voxelizer\n\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

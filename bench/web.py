@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
 from time import process_time
 from typing import TYPE_CHECKING
+
+from report import ROOT
 
 import voxrt
 from voxrt import octree
@@ -20,8 +21,8 @@ from voxrt.voxelize import fit_grid, load, voxelize
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
 SITE = ROOT / "build" / "site"
 CASES = [("courtyard.glb", 7), ("courtyard.glb", 9), ("planet.glb", 8), ("planet.glb", 10)]
 SIZE = (640, 480)

@@ -25,26 +25,8 @@ _LONGEST = 60
 
 
 def whole(name: str, value: object, low: int, high: int) -> int:
-    """Return an argument as an int.
+    """Return an integer, or a real number without fraction, of `low` to `high` as an int; `name` is for errors.
 
-    Parameters
-    ----------
-    name
-        The argument's name, for errors.
-    value
-        What the caller gave: an integer, or a real number without fraction. Booleans are refused.
-    low, high
-        The lowest and the highest value that is allowed.
-
-    Raises
-    ------
-    TypeError
-        The value is not a number.
-    ValueError
-        It has a fraction, or is out of range.
-
-    Examples
-    --------
     >>> whole("depth", 3.0, 1, 16)
     3
     >>> whole("depth", 17, 1, 16)
@@ -62,26 +44,8 @@ def whole(name: str, value: object, low: int, high: int) -> int:
 
 
 def real(name: str, value: object, *, above: float = -math.inf, below: float = math.inf) -> float:
-    """Return an argument as a finite float.
+    """Return a real number strictly between `above` and `below` as a finite float.
 
-    Parameters
-    ----------
-    name
-        The argument's name, for errors.
-    value
-        What the caller gave: any real number. Booleans are refused.
-    above, below
-        The value must lie strictly between these.
-
-    Raises
-    ------
-    TypeError
-        The value is not a number.
-    ValueError
-        It is not finite, or out of range.
-
-    Examples
-    --------
     >>> real("voxel_size", 1, above=0)
     1.0
     >>> real("voxel_size", -2, above=0)
@@ -102,13 +66,6 @@ def real(name: str, value: object, *, above: float = -math.inf, below: float = m
 def flag(name: str, value: object) -> bool:
     """Return an argument that is True or False as a bool.
 
-    Raises
-    ------
-    TypeError
-        It is anything else.
-
-    Examples
-    --------
     >>> flag("mirror", np.bool_(True))
     True
     """
@@ -120,13 +77,6 @@ def flag(name: str, value: object) -> bool:
 def text(name: str, value: object) -> str:
     """Return an argument that is a string.
 
-    Raises
-    ------
-    TypeError
-        It is anything else.
-
-    Examples
-    --------
     >>> text("name", 7)
     Traceback (most recent call last):
         ...
@@ -140,13 +90,6 @@ def text(name: str, value: object) -> str:
 def choice(name: str, value: _T, allowed: Sequence[_T]) -> _T:
     """Return an argument that is one of a few values.
 
-    Raises
-    ------
-    ValueError
-        It is none of `allowed`.
-
-    Examples
-    --------
     >>> choice("fill", "solid", ("solid", "surface"))
     'solid'
     >>> choice("fill", "x", ("solid", "surface"))
@@ -165,13 +108,6 @@ def choice(name: str, value: _T, allowed: Sequence[_T]) -> _T:
 def instance(name: str, value: object, kind: type[_T]) -> _T:
     """Return an argument that is a value of `kind`.
 
-    Raises
-    ------
-    TypeError
-        It is a value of another type.
-
-    Examples
-    --------
     >>> instance("scene", 7, dict)
     Traceback (most recent call last):
         ...
@@ -187,15 +123,6 @@ def colour(name: str, value: object) -> tuple[int, int, int]:
 
     Floats are refused, whole ones too: 1.0 may mean the darkest or the brightest.
 
-    Raises
-    ------
-    TypeError
-        It is not a sequence of integers.
-    ValueError
-        There are not three, or one is out of range.
-
-    Examples
-    --------
     >>> colour("colour", [255, 128, 0])
     (255, 128, 0)
     >>> colour("colour", (1.0, 0.5, 0.0))
@@ -224,15 +151,6 @@ def colour(name: str, value: object) -> tuple[int, int, int]:
 def vector(name: str, value: object) -> tuple[float, float, float]:
     """Return three finite numbers as floats: a point or a direction.
 
-    Raises
-    ------
-    TypeError
-        It is not a sequence of numbers.
-    ValueError
-        There are not three, or one is not finite.
-
-    Examples
-    --------
     >>> vector("origin", np.arange(3))
     (0.0, 1.0, 2.0)
     """
@@ -243,26 +161,9 @@ def vector(name: str, value: object) -> tuple[float, float, float]:
 def real_array(name: str, value: object, shape: Sequence[int | str], *, finite: bool = True) -> NDArray[np.floating]:
     """Return an argument as an array of real numbers: float32 and float64 stay, without a copy; others become float64.
 
-    Parameters
-    ----------
-    name
-        The argument's name, for errors.
-    value
-        An array, or sequences of numbers.
-    shape
-        The shape that is expected; a letter stands for any length: ``("V", 3)``.
-    finite
-        Whether NaN and infinities are refused.
+    A letter in `shape` stands for any length. NaN and infinities are refused where `finite`, and integers that float64
+    cannot hold always.
 
-    Raises
-    ------
-    TypeError
-        The values are not real numbers.
-    ValueError
-        The shape differs, a value is not finite, or an integer is too large for float64.
-
-    Examples
-    --------
     >>> real_array("vertices", [[0, 0, 1], [2, 0, 0]], ("V", 3))
     array([[0., 0., 1.],
            [2., 0., 0.]])
@@ -289,28 +190,9 @@ def whole_array(
 ) -> NDArray[_Integer]:
     """Return an argument as an array of integers of type `dtype`; one that has it already is not copied.
 
-    Parameters
-    ----------
-    name
-        The argument's name, for errors.
-    value
-        An array, or sequences of numbers: integers, or reals without fraction. Booleans are refused.
-    shape
-        The shape that is expected; a letter stands for any length: ``("T", 3)``.
-    dtype
-        The NumPy integer type to return.
-    low, high
-        The lowest and the highest value that is allowed, within the range of `dtype`.
+    A letter in `shape` stands for any length. Reals without fraction are taken, booleans are not. Values are `low` to
+    `high`, within the range of `dtype`.
 
-    Raises
-    ------
-    TypeError
-        The values are not numbers.
-    ValueError
-        The shape differs, a value has a fraction, or one is out of range.
-
-    Examples
-    --------
     >>> whole_array("materials", [1, 2.0], ("T",), np.uint8, low=1, high=255)
     array([1, 2], dtype=uint8)
     >>> whole_array("materials", [1, 300], ("T",), np.uint8, low=1, high=255)
@@ -338,8 +220,6 @@ def whole_array(
 def shown(value: object) -> str:
     """Return a value for an error message: one line, at most 60 characters.
 
-    Examples
-    --------
     >>> shown("a" * 100)
     "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa …"
     """

@@ -56,18 +56,12 @@ def keeps_shape(transform: NDArray[np.float64]) -> bool:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RoundedBox:
-    """A box whose sides are powers of two voxels.
+    """A box whose sides are powers of two voxels."""
 
-    Attributes
-    ----------
-    low, high
-        int64, shape (3,): lowest and highest corner, in voxels.
-    moved, grown
-        Voxels by which rounding moved the lowest corner and grew the box, per axis.
-    """
-
+    # int64, shape (3,): lowest and highest corner, in voxels.
     low: NDArray[np.int64]
     high: NDArray[np.int64]
+    # Voxels by which rounding moved the lowest corner and grew the box, per axis.
     moved: tuple[float, float, float]
     grown: tuple[float, float, float]
 
@@ -76,14 +70,8 @@ def round_box(minimum: NDArray[np.float64], maximum: NDArray[np.float64], limit:
     """Round the sides of a box up to powers of two voxels.
 
     On each axis the lowest corner then moves to the nearest multiple of the largest power of two, at most the smallest
-    side, that lies within :data:`SNAP` voxels.
-
-    Parameters
-    ----------
-    minimum, maximum
-        float64, shape (3,): the corners, in voxels.
-    limit
-        Voxels per side of a grid: a box inside the grid stays inside. None for no limit.
+    side, that lies within :data:`SNAP` voxels. The corners are float64, shape (3,), in voxels. A box inside a grid of
+    `limit` voxels per side stays inside; None is no limit.
     """
     low = np.rint(minimum * UNITS_PER_VOXEL) / UNITS_PER_VOXEL
     side = np.rint(maximum * UNITS_PER_VOXEL) / UNITS_PER_VOXEL - low

@@ -26,24 +26,10 @@ _FEWEST_VOXELS = 8
 def dominant_objects(scene: Scene, voxels: int, geometry: Geometry) -> tuple[tuple[str, ...], float]:
     """Find the few largest objects beside which all others together span fewer than eight voxels.
 
-    Parameters
-    ----------
-    scene
-        A scene that has something to voxelize.
-    voxels
-        Voxels per side of a grid that is as wide as the scene.
-    geometry
-        As for :func:`voxrt.voxelize.voxelize`.
+    `voxels` is the number of voxels per side of a grid that is as wide as the scene. Return the names of the objects,
+    the largest first, at most eight and none where there are no such objects, and the longest side of the others'
+    bounding box in metres.
 
-    Returns
-    -------
-    names
-        Their names, the largest first; at most eight, none where there are no such objects.
-    width
-        The longest side of the others' bounding box, metres.
-
-    Examples
-    --------
     >>> from voxrt.voxelize import EMPTY, Material, Mesh, Scene, SceneObject
     >>> sail = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [1])
     >>> ground = SceneObject("ground", sail, np.diag([500.0, 500, 500, 1]))

@@ -119,10 +119,7 @@ def _checked_bounds(bounds: object) -> tuple[Corner, Corner]:
 def scene_bounds(scene: Scene, geometry: Geometry) -> tuple[Corner, Corner]:
     """Return the lowest and the highest corner of what will be voxelized, metres, scene frame.
 
-    Raises
-    ------
-    AssetError
-        Nothing to voxelize, or a coordinate that is not finite.
+    Raise AssetError where there is nothing to voxelize, or a coordinate is not finite.
     """
     try:
         return _native.scene_bounds(_clouds(scene, geometry), sum(item.hidden for item in scene.objects))

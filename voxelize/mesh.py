@@ -145,12 +145,7 @@ class Mesh:
 def checked_surface(owner: str, positions: object, triangles: object) -> tuple[NDArray[np.floating], NDArray[np.int32]]:
     """Return the vertices and triangles of a surface, checked as :class:`Mesh` says.
 
-    Parameters
-    ----------
-    owner
-        The class whose arguments they are, for errors.
-    positions, triangles
-        As in :class:`Mesh`.
+    `owner` is the class, for errors.
     """
     vertices = arguments.real_array(f"{owner}.positions", positions, ("V", 3), finite=False)
     rows = arguments.whole_array(

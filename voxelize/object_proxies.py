@@ -20,13 +20,8 @@ GEOMETRIES: tuple[Geometry, ...] = ("auto", "render", "collider")
 def proxies(item: SceneObject, geometry: Geometry) -> tuple[Collider, ...] | None:
     """Return the colliders that represent an object, or None where its triangles are voxelized.
 
-    Parameters
-    ----------
-    item
-        The object.
-    geometry
-        As for :func:`voxrt.voxelize.voxelize`. With ``"collider"``, an object without colliders gets the box of its
-        mesh, in its own frame, unless others represent it.
+    With ``"collider"``, an object without colliders gets the box of its mesh, in its own frame, unless others represent
+    it.
     """
     if item.hidden:
         return item.colliders if geometry == "collider" else ()

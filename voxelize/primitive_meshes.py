@@ -43,14 +43,9 @@ def plane(width: float, length: float, axis: str) -> Surface:
 
 
 def revolved(profile: NDArray[np.float64], axis: str) -> Surface:
-    """Return a closed surface of revolution.
+    """Return a closed surface of revolution about `axis`, ``"X"``, ``"Y"`` or ``"Z"``.
 
-    Parameters
-    ----------
-    profile
-        float64, shape (N, 2): (radius, height) from bottom to top; the first and last radius are 0.
-    axis
-        ``"X"``, ``"Y"`` or ``"Z"``.
+    `profile`, float64, shape (N, 2), has (radius, height) from bottom to top; the first and last radius are 0.
     """
     angles = 2 * np.pi * np.arange(SEGMENTS) / SEGMENTS
     # Exact zeros and ones on the axes, so that the bounds are the true ones.

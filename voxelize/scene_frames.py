@@ -155,8 +155,6 @@ def join_scenes(scenes: Iterable[Scene]) -> SceneFrames:
 def merge_warnings(warnings: Iterable[SceneWarning]) -> tuple[SceneWarning, ...]:
     """Return each warning that several frames have once, with the largest of their counts.
 
-    Examples
-    --------
     >>> from voxrt.voxelize import SceneWarning
     >>> merge_warnings([SceneWarning("hole", "has a hole", 2), SceneWarning("hole", "has a hole", 3)])
     (SceneWarning(kind='hole', message='has a hole', count=3),)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,18 +10,20 @@ import numpy as np
 from voxrt.voxelize import _native, arguments
 from voxrt.voxelize.box_rounding import POW2_CHOICES, UNITS_PER_VOXEL, box_in_voxels, keeps_axes, keeps_shape, round_box
 from voxrt.voxelize.collider_shapes import BOX_TRIANGLES, BoxCollider, HullCollider, SphereCollider, box_corners
-from voxrt.voxelize.errors import AssetError, DoesNotFitError, SceneWarning
+from voxrt.voxelize.errors import AssetError, DoesNotFitError
 from voxrt.voxelize.grid import Grid
 from voxrt.voxelize.mesh import MaterialMap
 from voxrt.voxelize.object_proxies import GEOMETRIES, proxies
 from voxrt.voxelize.scene import Scene
 from voxrt.voxelize.voxels import ObjectMode, ObjectReport
+from voxrt.voxelize.warning_log import WarningLog
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from voxrt.voxelize.box_rounding import Pow2
     from voxrt.voxelize.collider_shapes import Collider
+    from voxrt.voxelize.errors import SceneWarning
     from voxrt.voxelize.object_proxies import Geometry
     from voxrt.voxelize.scene import SceneObject
 
@@ -31,13 +34,7 @@ _NO_MAP = MaterialMap(np.empty((0, 2), np.int32), np.empty((0, 3, 2), np.float32
 
 
 class SceneParts:
-    """The parts of a scene as arrays for the native voxelizer, in authored order.
-
-    Parameters
-    ----------
-    scene, grid, fill, geometry, pow2
-        As :func:`voxrt.voxelize.voxelize` takes them.
-    """
+    """The parts of a scene as arrays for the native voxelizer, in authored order."""
 
     def __init__(self, scene: Scene, grid: Grid, fill: str, geometry: Geometry, pow2: Pow2) -> None:
         arguments.instance("scene", scene, Scene)
@@ -56,15 +53,11 @@ class SceneParts:
         self._rows: list[tuple[int, int, int, int]] = []  # kind, mesh, material, object
         self._frames: list[NDArray[np.float64]] = []
         self._objects = 0
-        self._counts: dict[tuple[str, str], int] = {}
+        self.log = WarningLog()
         self._placements: list[ObjectPlacement] = []
         for item in scene.objects:
             self._objects += 1
             self._placements.append(_add_object(self, item, geometry, pow2))
-
-    def warn(self, kind: str, message: str, count: int = 1) -> None:
-        """Count a warning."""
-        self._counts[kind, message] = self._counts.get((kind, message), 0) + count
 
     def to_grid(self, transform: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the transform from an object's frame to grid space, in 1/4096 voxel: float64, shape (3, 4)."""
@@ -124,10 +117,10 @@ class SceneParts:
             [item.name for item in self.scene.objects],
             shown,
         )
-        counts = dict(self._counts)
-        for kind, message, count in found:
-            counts[kind, message] = counts.get((kind, message), 0) + count
-        return objects, tuple(SceneWarning(kind, message, count) for (kind, message), count in counts.items())
+        log = copy.deepcopy(self.log)
+        for warning in found:
+            log.add(*warning)
+        return objects, log.warnings()
 
     def native_arguments(self) -> dict[str, Any]:
         """Return the parts as arguments of the native voxelizer, by name."""
@@ -168,7 +161,7 @@ def _add_object(parts: SceneParts, item: SceneObject, geometry: Geometry, pow2: 
     material = item.collider_material
     if not item.colliders and colliders:
         material = int(mesh.materials[0])
-        parts.warn("no-collider", "objects without a collider took the box of their mesh")
+        parts.log.add("no-collider", "objects without a collider took the box of their mesh")
     sources: list[str] = []
     moved, grown = np.zeros(3), np.zeros(3)
     for collider in colliders:
@@ -209,7 +202,7 @@ def _add_box(parts: SceneParts, item: SceneObject, box: BoxCollider, material: i
     wants_rounding = pow2 == "box" and box.pow2
     if not keeps_axes(item.transform):
         if wants_rounding:
-            parts.warn(
+            parts.log.add(
                 "oriented-box", "boxes that are rotated against the grid's axes were not rounded to powers of two"
             )
         parts.add_mesh(box, (box_corners(box), BOX_TRIANGLES, _ONE_MATERIAL), item.transform, material)

@@ -11,6 +11,7 @@ bounds the inside; voxels that only such a surface covers are empty.
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Literal
 
 from voxrt.voxelize import _native, arguments
@@ -89,14 +90,4 @@ def voxelize(
 
 def voxels_of(depth: int, result: _native.Voxelized | _native.VoxelBlock) -> Voxels:
     """Return the voxels of a native result."""
-    return Voxels(
-        depth=depth,
-        brick_codes=result.brick_codes,
-        brick_masks=result.brick_masks,
-        brick_materials=result.brick_materials,
-        brick_rows=result.brick_rows,
-        cells=result.cells,
-        octant_codes=result.octant_codes,
-        octant_levels=result.octant_levels,
-        octant_materials=result.octant_materials,
-    )
+    return Voxels(depth, *(getattr(result, field.name) for field in fields(Voxels)[1:]))

@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from oracles.gltf_writer import glb
+from oracles.gltf_writer import glb_of
 from oracles.rich_gltf import rich
+from oracles.sound_scenes import assert_sound
 
 from voxrt import export, octree, voxelize
 from voxrt.octree.camera import Camera, Lighting
@@ -86,8 +87,7 @@ def _pair(first: str, second: str) -> Callable[[Path, bytes], Path]:
 def _glb(folder: Path, data: bytes) -> Path:
     """JSON, then the binary chunk."""
     text, _, binary = data.partition(_BETWEEN)
-    chunks = [(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", binary + bytes(-len(binary) % 4))]
-    return _as("a.glb")(folder, glb(chunks))
+    return _as("a.glb")(folder, glb_of(text, binary))
 
 
 def _blob(folder: Path, data: bytes) -> Path:
@@ -117,19 +117,7 @@ def _mem_with_manifest(folder: Path, data: bytes) -> Path:
 
 def _read_scene(path: Path) -> None:
     """Load, and check what every scene promises."""
-    scene = voxelize.load(path)
-    for thing in scene.objects:
-        mesh = thing.mesh
-        assert np.isfinite(mesh.positions).all()
-        assert np.isfinite(thing.transform).all()
-        assert mesh.triangles.dtype == np.int32
-        assert mesh.materials.shape == mesh.triangles.shape[:1]
-        if len(mesh.triangles):
-            assert 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(mesh.positions)
-            assert 1 <= mesh.materials.min() <= mesh.materials.max() < len(scene.materials)
-        assert 1 <= thing.collider_material < len(scene.materials)
-    assert scene.objects
-    assert len({material.name for material in scene.materials}) == len(scene.materials) <= 256
+    assert_sound(voxelize.load(path))
 
 
 def _read_rom(path: Path) -> None:
@@ -284,8 +272,7 @@ scale = [1, -1, 2]
 def _seeds_of_rich() -> tuple[bytes, bytes]:
     made = rich()
     text = json.dumps(made.json).encode()
-    chunks = [(b"JSON", text + b" " * (-len(text) % 4)), (b"BIN\0", bytes(made.data))]
-    return text + _BETWEEN + bytes(made.data), glb(chunks)
+    return text + _BETWEEN + bytes(made.data), glb_of(text, made.data)
 
 
 _COE = b"memory_initialization_radix=16;memory_initialization_vector=" + b",".join(_mem_seeds()[0].split()) + b";"

@@ -87,16 +87,21 @@ class GltfWriter:
         if path.suffix == ".glb":
             if self.data:
                 document["buffers"] = [{"byteLength": len(self.data)}]
-            chunks = [(b"JSON", _padded(json.dumps(document).encode(), b" "))]
-            if self.data:
-                chunks.append((b"BIN\0", _padded(bytes(self.data), b"\0")))
-            path.write_bytes(glb(chunks))
+            path.write_bytes(glb_of(json.dumps(document).encode(), self.data))
         else:
             if self.data:
                 uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
                 document["buffers"] = [{"byteLength": len(self.data), "uri": uri}]
             path.write_text(json.dumps(document))
         return path
+
+
+def glb_of(text, binary=b""):
+    """Return a GLB of JSON, and of a binary chunk where there is one."""
+    chunks = [(b"JSON", _padded(text, b" "))]
+    if binary:
+        chunks.append((b"BIN\0", _padded(bytes(binary), b"\0")))
+    return glb(chunks)
 
 
 def glb(chunks):

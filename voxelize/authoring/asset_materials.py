@@ -18,16 +18,8 @@ if TYPE_CHECKING:
 class AssetMaterials:
     """Replaces an asset's materials by the scene's. Each gets its id when a face first uses it.
 
-    Parameters
-    ----------
-    declared
-        The scene's materials.
-    asset
-        The file's scene.
-    renamed
-        The asset's material names to those of the scene.
-    name
-        What the scene calls the asset, for errors.
+    `renamed` maps the asset's material names to those of the scene; `name` is what the scene calls the asset, for
+    errors.
     """
 
     def __init__(self, declared: DeclaredMaterials, asset: Scene, renamed: dict[str, str], name: str) -> None:

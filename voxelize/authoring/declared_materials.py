@@ -25,13 +25,7 @@ class AuthoringError(ValueError):
 
 
 class DeclaredMaterials:
-    """A material table in the making. Entry 0 is empty space.
-
-    Parameters
-    ----------
-    background
-        The colour of empty space.
-    """
+    """A material table in the making. Entry 0 is empty space, in the colour of the background."""
 
     def __init__(self, background: Colour) -> None:
         self._materials: dict[int, Material] = {0: Material(EMPTY.name, parse_colour(background))}
@@ -55,13 +49,7 @@ class DeclaredMaterials:
             self._without_colour.add(name)
 
     def id_of(self, name: str) -> int:
-        """Return the id of a declared material.
-
-        Raises
-        ------
-        AuthoringError
-            It is not declared.
-        """
+        """Return the id of a declared material; raise AuthoringError for any other."""
         if name not in self._ids:
             known = ", ".join(repr(one) for one in self._ids) or "none"
             raise AuthoringError(f"no material {name!r} is declared; there is {known}")

@@ -127,21 +127,10 @@ class SurfaceAppearance:
 def sample(
     surface: SurfaceAppearance, triangles: NDArray[np.intp], weights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the colour of points on triangles.
+    """Return the colour of points on triangles: float64, shape (N, 4), linear red, green, blue and alpha.
 
-    Parameters
-    ----------
-    surface
-        The appearance of a mesh.
-    triangles
-        intp, shape (N,): triangles whose row is not -1.
-    weights
-        float64, shape (N, 3): barycentric coordinates of the points.
-
-    Returns
-    -------
-    colours
-        float64, shape (N, 4): linear red, green, blue and alpha.
+    `triangles`, shape (N,), are triangles whose row is not -1. `weights`, float64, shape (N, 3), are the barycentric
+    coordinates of the points.
     """
     return _native.sample_surface(
         surface.arrays(), np.ascontiguousarray(triangles, np.int64), np.ascontiguousarray(weights, np.float64)

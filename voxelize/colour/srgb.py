@@ -16,20 +16,8 @@ if TYPE_CHECKING:
 
 
 def srgb_from_linear(linear: ArrayLike) -> NDArray[np.uint8]:
-    """Encode linear light as sRGB of 8 bits, clipped to 0 … 1 first and rounded to the nearest (halves up).
+    """Encode linear light, any shape, as sRGB of 8 bits, clipped to 0 … 1 first and rounded to the nearest (halves up).
 
-    Parameters
-    ----------
-    linear
-        Linear components, any shape; 1 is the brightest.
-
-    Returns
-    -------
-    srgb
-        uint8, of the same shape.
-
-    Examples
-    --------
     >>> srgb_from_linear([0.0, 0.5, 1.0])
     array([  0, 188, 255], dtype=uint8)
     """
@@ -45,13 +33,6 @@ def linear_from_srgb(srgb: ArrayLike) -> NDArray[np.float64]:
 def linear_from_hex(name: str, value: str) -> tuple[float, float, float]:
     """Decode a colour like ``#9db4d0`` to linear light; `name` is the argument's, for errors.
 
-    Raises
-    ------
-    ValueError
-        It is no such colour.
-
-    Examples
-    --------
     >>> linear_from_hex("sky", "#ff0000")
     (1.0, 0.0, 0.0)
     """

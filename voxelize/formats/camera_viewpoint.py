@@ -15,14 +15,8 @@ if TYPE_CHECKING:
 def camera_viewpoint(name: str, transform: NDArray[np.float64], field_of_view: float) -> Viewpoint | None:
     """Return the viewpoint of a camera; None where its transform or its field of view makes no picture.
 
-    Parameters
-    ----------
-    name
-        The author's name for it.
-    transform
-        float64, shape (4, 4), column vectors: the camera's frame to the scene frame. Scale has no effect.
-    field_of_view
-        Degrees from the picture's top to its bottom.
+    `transform`, float64, shape (4, 4), column vectors, takes the camera's frame to the scene frame; its scale has no
+    effect. `field_of_view` is in degrees from the picture's top to its bottom.
     """
     if not (np.isfinite(transform).all() and 0 < field_of_view < 180):
         return None

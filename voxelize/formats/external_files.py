@@ -1,28 +1,34 @@
-"""Files that an asset refers to. They are opened in its folder and below; elsewhere only where the user allows it."""
+"""Assets, and the files that they refer to: those in their folder and below; others only where the user allows it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from voxrt.voxelize.errors import AssetError
+
+if TYPE_CHECKING:
+    from voxrt.voxelize.warning_log import WarningLog
 
 ALLOW_OUTSIDE = "put it into the asset's folder, or allow it: --allow-outside (in Python: allow_outside=True)"
 """How to fix a reference to a file outside the asset's folder."""
 
 
+def read_asset(path: Path) -> bytes:
+    """Read a file whole; raise AssetError where it cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise AssetError(path, f"cannot be read: {error.strerror}", fix="check the path and its permissions") from None
+
+
 @dataclass(frozen=True, slots=True)
 class ExternalFiles:
-    """The folders in which the files that an asset refers to may be.
+    """The folders in which the files that an asset refers to may be."""
 
-    Attributes
-    ----------
-    folder
-        The asset's folder, with links resolved.
-    allow_outside
-        Whether files outside that folder may be opened.
-    """
-
-    folder: Path
-    allow_outside: bool = False
+    folder: Path  # the asset's folder, with links resolved
+    allow_outside: bool = False  # whether files outside that folder may be opened
 
     @classmethod
     def of(cls, asset: Path, *, allow_outside: bool) -> ExternalFiles:
@@ -43,6 +49,21 @@ class ExternalFiles:
             except (OSError, ValueError, RuntimeError):  # too long, a NUL, a loop of links
                 continue
         return None
+
+    def reported(
+        self, found: Path | None, kind: str, name: str, log: WarningLog, *, count: int = 1, instead: str = ""
+    ) -> Path | None:
+        """Return the file that :meth:`find_exported` found; None, with a warning, where it may not be opened.
+
+        `kind` says what `name` is: a texture, a material library. `instead` says what replaces it.
+        """
+        if found is None:
+            log.add(f"missing-{kind.rsplit(maxsplit=1)[-1]}", f"{kind} {name!r} was not found{instead}", count)
+        elif not self.allows(found):
+            problem = f"{kind} {name!r} is outside the file's folder and was not opened"
+            log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", count)
+            found = None
+        return found
 
     def find_exported(self, name: str) -> Path | None:
         """Return the file that another machine's path means; None where there is none.

@@ -12,6 +12,8 @@ import numpy as np
 from voxrt.voxelize.errors import AssetError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
 MOST_PIXELS = 1 << 26
@@ -23,24 +25,21 @@ _FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "TIFF", "GIF")
 _BROKEN = (OSError, SyntaxError, ValueError, EOFError, IndexError, struct.error)
 
 
+def read_image(file: Path, path: Path, place: str) -> NDArray[np.uint8]:
+    """Read an image file as :func:`decode_image` does."""
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror}"
+        raise AssetError(path, problem, place=place, fix="check its permissions") from None
+    return decode_image(data, path, place)
+
+
 def decode_image(data: bytes, path: object, place: str) -> NDArray[np.uint8]:
-    """Decode an image.
+    """Decode an image file to uint8, shape (H, W, 4): sRGB colour and linear alpha; row 0 is the top.
 
-    Parameters
-    ----------
-    data
-        The image file's bytes.
-    path, place
-        The asset, and where it refers to the image, for errors.
-
-    Returns
-    -------
-    uint8, shape (H, W, 4): sRGB colour and linear alpha; row 0 is the top.
-
-    Raises
-    ------
-    AssetError
-        The image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`.
+    Raise AssetError where the image is broken, of an unknown kind, or larger than :data:`MOST_PIXELS`; `path` is the
+    asset, and `place` where it refers to the image.
     """
     from PIL import Image  # noqa: PLC0415 - many files have no images, and it is slow to import
 

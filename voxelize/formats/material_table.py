@@ -17,13 +17,7 @@ _DEFAULT_KEY = object()
 
 
 class MaterialTable:
-    """The materials of a scene under construction; entry 0 is empty space.
-
-    Attributes
-    ----------
-    native
-        The table itself.
-    """
+    """The materials of a scene under construction; entry 0 is empty space. `native` is the table itself."""
 
     def __init__(self) -> None:
         self.native = _native.MaterialTable(EMPTY.name, EMPTY.colour)
@@ -40,23 +34,9 @@ class MaterialTable:
     ) -> int:
         """Return the id of a material. Its first use adds it to the table.
 
-        Parameters
-        ----------
-        key
-            What identifies it in the file: a name, a prim path.
-        name
-            The author's name; a number is appended where another material already has it.
-        colour
-            sRGB, 0 … 255 per channel.
-        mirror
-            Whether it reflects.
-        authored
-            False for a default that replaces a missing material.
-
-        Raises
-        ------
-        DoesNotFitError
-            More than 255 materials.
+        `key` identifies it in the file: a name, a prim path. A number is appended to the author's `name` where another
+        material already has it. `authored` is False for a default that replaces a missing material. Raise
+        DoesNotFitError for more than 255 materials.
         """
         if key in self._ids:
             return self._ids[key]

@@ -24,49 +24,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LoadedMesh:
-    """A mesh as a loader reads it: triangles with an appearance have no material yet.
+    """A mesh as a loader reads it: triangles with an appearance have no material yet."""
 
-    Attributes
-    ----------
-    positions, triangles
-        As in :class:`~voxrt.voxelize.scene.Mesh`.
-    materials
-        uint8, shape (T,): material ids; 0 for triangles that are fully transparent or have an appearance.
-    appearance
-        Textures and vertex colours; None where the file gives none.
-    normals
-        The normals of its corners; None where the file gives none.
-    """
-
+    # As in :class:`~voxrt.voxelize.scene.Mesh`.
     positions: NDArray[np.floating]
     triangles: NDArray[np.int32]
+    # uint8, shape (T,): material ids; 0 for triangles that are fully transparent or have an appearance.
     materials: NDArray[np.uint8]
-    appearance: SurfaceAppearance | None = None
-    normals: CornerNormals | None = None
+    appearance: SurfaceAppearance | None = None  # textures and vertex colours; None where the file gives none
+    normals: CornerNormals | None = None  # the normals of its corners; None where the file gives none
 
 
 def assign_materials(loaded: Sequence[LoadedMesh], table: MaterialTable, log: WarningLog) -> list[Mesh]:
     """Give each triangle with an appearance a material in its mean colour, and drop fully transparent triangles.
 
-    An appearance of one colour becomes a plain material.
-
-    Parameters
-    ----------
-    loaded
-        All meshes of the scene.
-    table
-        The scene's materials; those of appearances are appended.
-    log
-        Counts the triangles that are dropped.
-
-    Returns
-    -------
-    One mesh for each of `loaded`; it may have no triangles.
-
-    Raises
-    ------
-    DoesNotFitError
-        The uniform materials leave no id for textures and vertex colours.
+    An appearance of one colour becomes a plain material. The materials of appearances are appended to `table`. Return
+    one mesh for each of `loaded`; it may have no triangles. Raise DoesNotFitError where the uniform materials leave no
+    id for textures and vertex colours.
     """
     arrays = [
         (

@@ -1,4 +1,4 @@
-"""The transform from a file's axes and unit to the scene frame (right-handed, metres, y up)."""
+"""Coordinates of files: those in range, and their transform to the scene frame (right-handed, metres, y up)."""
 
 from __future__ import annotations
 
@@ -19,24 +19,21 @@ _TURNS = {
 }
 
 
+FARTHEST = 1e70
+"""Products of four larger coordinates, as in the square of a normal, overflow float64."""
+
+
+def in_range(positions: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Tell which positions, shape (…, 3), have three coordinates that are numbers below :data:`FARTHEST`."""
+    inside: NDArray[np.bool_] = (np.abs(positions) < FARTHEST).all(axis=-1)
+    return inside
+
+
 def scene_transform(up: str | None, unit: float | None) -> NDArray[np.float64]:
-    """Return the matrix from a file's frame to the scene frame.
+    """Return the matrix from a file's frame to the scene frame: float64, shape (4, 4), column vectors.
 
-    Parameters
-    ----------
-    up
-        The file's up axis, ``"x"``, ``"y"`` or ``"z"``; None for y.
-    unit
-        Metres per unit of the file; None for 1.
-
-    Returns
-    -------
-    float64, shape (4, 4), column vectors: a rotation by quarter turns times a uniform scale.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Another axis, or a unit that is not a positive number.
+    `up` is the file's up axis, ``"x"``, ``"y"`` or ``"z"``, None for y; `unit` is metres per unit of the file, None for
+    1. The matrix is a rotation by quarter turns times a uniform scale.
     """
     axis = "y" if up is None else arguments.choice("up", up, tuple(_TURNS))
     scale = 1.0 if unit is None else arguments.real("unit", unit, above=0)

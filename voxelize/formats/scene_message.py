@@ -8,7 +8,9 @@ them. Pickle would run code of the sender's choice.
 
 from __future__ import annotations
 
+import math
 import struct
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeAlias, TypeVar
 
 import msgspec
@@ -18,12 +20,14 @@ from voxrt.voxelize.collider_shapes import BoxCollider, Collider, HullCollider, 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture, Wrap
 from voxrt.voxelize.corner_normals import CornerNormals
-from voxrt.voxelize.errors import SceneWarning
-from voxrt.voxelize.materials import Material
+from voxrt.voxelize.errors import SceneWarning  # noqa: TC001 -- msgspec reads the annotations
+from voxrt.voxelize.materials import Material  # noqa: TC001 -- msgspec reads the annotations
 from voxrt.voxelize.mesh import Mesh
 from voxrt.voxelize.scene import PointLight, Scene, SceneObject, Viewpoint
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
 LENGTHS = struct.Struct("<QQ")
@@ -32,8 +36,11 @@ LENGTHS = struct.Struct("<QQ")
 _ALIGNMENT = 64
 
 T = TypeVar("T")
-Three: TypeAlias = tuple[float, float, float]
 Row: TypeAlias = Annotated[int, msgspec.Meta(ge=0)]
+
+# Arrays stand in JSON as :class:`ArrayMessage`; what is shared stands there by its number.
+TextureMessage: TypeAlias = tuple[np.ndarray, tuple[Wrap, Wrap], bool]
+AppearanceMessage: TypeAlias = tuple[str, tuple[float, float, float, float], Row | None, float, bool]
 
 
 class ArrayMessage(msgspec.Struct, array_like=True, frozen=True):
@@ -44,57 +51,23 @@ class ArrayMessage(msgspec.Struct, array_like=True, frozen=True):
     offset: Row
 
 
-class AppearanceMessage(msgspec.Struct, frozen=True):
-    """An :class:`Appearance`; its texture by number."""
-
-    name: str
-    factor: tuple[float, float, float, float]
-    texture: Row | None
-    cutoff: float
-    mirror: bool
-
-
-class SurfaceAppearanceMessage(msgspec.Struct, frozen=True):
-    """A :class:`SurfaceAppearance`; its appearances by number."""
-
-    entries: list[Row]
-    rows: ArrayMessage
-    uv: ArrayMessage
-    colours: ArrayMessage
-
-
-class NormalsMessage(msgspec.Struct, frozen=True):
-    """:class:`CornerNormals`."""
-
-    vectors: ArrayMessage
-    rows: ArrayMessage
-
-
 class MeshMessage(msgspec.Struct, frozen=True):
     """A :class:`Mesh`."""
 
-    positions: ArrayMessage
-    triangles: ArrayMessage
-    materials: ArrayMessage
-    appearance: SurfaceAppearanceMessage | None
-    normals: NormalsMessage | None
+    positions: np.ndarray
+    triangles: np.ndarray
+    materials: np.ndarray
+    appearance: tuple[list[Row], np.ndarray, np.ndarray, np.ndarray] | None
+    normals: tuple[np.ndarray, np.ndarray] | None
 
 
 class ColliderMessage(msgspec.Struct, frozen=True):
     """A collider: the arrays of its kind, in the order of its attributes."""
 
     kind: Literal["box", "sphere", "hull", "mesh"]
-    arrays: list[ArrayMessage]
+    arrays: list[np.ndarray]
     radius: float = 0.0
     pow2: bool = True
-
-
-class TextureMessage(msgspec.Struct, frozen=True):
-    """A :class:`Texture`."""
-
-    pixels: ArrayMessage
-    wrap: tuple[Wrap, Wrap]
-    nearest: bool
 
 
 class ObjectsMessage(msgspec.Struct, frozen=True):
@@ -102,27 +75,27 @@ class ObjectsMessage(msgspec.Struct, frozen=True):
 
     names: list[str]
     meshes: list[Row]
+    transforms: np.ndarray
     colliders: list[list[Row]]
     materials: list[Row]
     hidden: list[bool]
     represented: list[bool]
-    transforms: ArrayMessage
 
 
 class SceneMessage(msgspec.Struct, frozen=True):
     """A :class:`Scene`."""
 
     name: str
-    textures: list[TextureMessage]
-    appearances: list[AppearanceMessage]
-    meshes: list[MeshMessage]
-    colliders: list[ColliderMessage]
     objects: ObjectsMessage
-    materials: list[tuple[str, tuple[int, int, int], bool, bool]]
-    warnings: list[tuple[str, str, int]]
-    cameras: list[tuple[Three, Three, float | None, Three | None, str]]
+    meshes: list[MeshMessage]
+    appearances: list[AppearanceMessage]
+    textures: list[TextureMessage]
+    colliders: list[ColliderMessage]
+    materials: list[Material]
+    warnings: list[SceneWarning]
+    cameras: list[Viewpoint]
     viewpoint: Row | None
-    light: Three | None
+    light: PointLight | None
 
 
 class AssetErrorMessage(msgspec.Struct, frozen=True, tag="asset"):
@@ -172,174 +145,132 @@ def failure_bytes(failure: Failure) -> list[bytes]:
 
 def scene_bytes(scene: Scene) -> list[bytes | memoryview]:
     """Return the parts of a scene's message, in order; arrays are not copied where they can be sent as they are."""
-    arrays = _Arrays()
     meshes: _Shared[Mesh] = _Shared()
     colliders: _Shared[Collider] = _Shared()
     textures: _Shared[Texture] = _Shared()
     appearances: _Shared[Appearance] = _Shared()
-    objects = ObjectsMessage(
-        [_text(one.name) for one in scene.objects],
-        [meshes.number(one.mesh) for one in scene.objects],
-        [[colliders.number(collider) for collider in one.colliders] for one in scene.objects],
-        [one.collider_material for one in scene.objects],
-        [one.hidden for one in scene.objects],
-        [one.represented for one in scene.objects],
-        arrays.add(np.array([one.transform for one in scene.objects], dtype=np.float64).reshape(-1, 4, 4)),
-    )
-    sent_meshes = [
-        MeshMessage(
-            arrays.add(one.positions),
-            arrays.add(one.triangles),
-            arrays.add(one.materials),
-            None
-            if one.appearance is None
-            else SurfaceAppearanceMessage(
-                [appearances.number(entry) for entry in one.appearance.entries],
-                arrays.add(one.appearance.rows),
-                arrays.add(one.appearance.uv),
-                arrays.add(one.appearance.colours),
-            ),
-            None
-            if one.normals is None
-            else NormalsMessage(arrays.add(one.normals.vectors), arrays.add(one.normals.rows)),
-        )
-        for one in meshes
-    ]
-    sent_appearances = [
-        AppearanceMessage(
-            _text(one.name),
-            one.factor,
-            None if one.texture is None else textures.number(one.texture),
-            one.cutoff,
-            one.mirror,
-        )
-        for one in appearances
-    ]
     cameras = list(scene.cameras)
     if scene.viewpoint is not None and scene.viewpoint not in cameras:
         raise ValueError("the viewpoint of a scene that is sent must be one of its cameras")
     message = SceneMessage(
-        name=_text(scene.name),
-        textures=[TextureMessage(arrays.add(one.pixels), one.wrap, one.nearest) for one in textures],
-        appearances=sent_appearances,
-        meshes=sent_meshes,
-        colliders=[_collider_message(one, arrays) for one in colliders],
-        objects=objects,
-        materials=[(_text(one.name), one.colour, one.mirror, one.authored) for one in scene.materials],
-        warnings=[(one.kind, _text(one.message), one.count) for one in scene.warnings],
-        cameras=[(one.eye, one.target, one.field_of_view, one.up, _text(one.name)) for one in cameras],
-        viewpoint=None if scene.viewpoint is None else cameras.index(scene.viewpoint),
-        light=None if scene.light is None else scene.light.position,
+        _text(scene.name),
+        ObjectsMessage(
+            [_text(one.name) for one in scene.objects],
+            [meshes.number(one.mesh) for one in scene.objects],
+            np.array([one.transform for one in scene.objects], dtype=np.float64).reshape(-1, 4, 4),
+            [[colliders.number(collider) for collider in one.colliders] for one in scene.objects],
+            [one.collider_material for one in scene.objects],
+            [one.hidden for one in scene.objects],
+            [one.represented for one in scene.objects],
+        ),
+        [_mesh_message(one, appearances) for one in meshes],
+        [_appearance_message(one, textures) for one in appearances],
+        [(one.pixels, one.wrap, one.nearest) for one in textures],
+        [_collider_message(one) for one in colliders],
+        [replace(one, name=_text(one.name)) for one in scene.materials],
+        [replace(one, message=_text(one.message)) for one in scene.warnings],
+        [replace(one, name=_text(one.name)) for one in cameras],
+        None if scene.viewpoint is None else cameras.index(scene.viewpoint),
+        scene.light,
     )
-    text = msgspec.json.encode(Message(scene=message))
+    arrays = _Arrays()
+    text = msgspec.json.encode(Message(scene=message), enc_hook=arrays.add)
     return [LENGTHS.pack(len(text), arrays.length), text, *arrays.parts]
 
 
 def read_message(text: bytes, arrays: NDArray[np.uint8]) -> Scene | Failure:
-    """Return what a message says.
+    """Return what a message says: `text` is its JSON, and `arrays`, uint8, shape (N,), the bytes of its arrays.
 
-    Parameters
-    ----------
-    text
-        Its JSON.
-    arrays
-        uint8, shape (N,): the bytes of its arrays. The scene's arrays are views of them.
-
-    Raises
-    ------
-    BadMessageError
-        It contradicts itself.
+    The scene's arrays are views of them. Raise BadMessageError where the message contradicts itself.
     """
+
+    def array(_: type, place: object) -> NDArray[np.generic]:
+        one = msgspec.convert(place, ArrayMessage)
+        count = math.prod(one.shape)
+        if one.offset + count * np.dtype(one.dtype).itemsize > len(arrays):
+            raise ValueError(f"an array of {one.shape} ends beyond the message")
+        return np.frombuffer(arrays, dtype=one.dtype, count=count, offset=one.offset).reshape(one.shape)
+
     try:
-        message = msgspec.json.decode(text, type=Message)
+        message = msgspec.json.decode(text, type=Message, dec_hook=array)
         if message.failure is not None:
             return message.failure
         if message.scene is None:
             raise BadMessageError("a message without content")
-        return _scene(message.scene, arrays)
+        return _scene(message.scene)
     except (msgspec.DecodeError, IndexError, TypeError, ValueError) as error:
         raise BadMessageError(str(error)) from error
 
 
-def _scene(message: SceneMessage, arrays: NDArray[np.uint8]) -> Scene:
-    def array(one: ArrayMessage) -> NDArray[np.generic]:
-        kind = np.dtype(one.dtype)
-        count = 1
-        for side in one.shape:
-            count *= side
-        if one.offset + count * kind.itemsize > len(arrays):
-            raise BadMessageError(f"an array of {one.shape} ends beyond the message")
-        return np.frombuffer(arrays, dtype=kind, count=count, offset=one.offset).reshape(one.shape)
-
-    textures = [Texture(array(one.pixels), one.wrap, one.nearest) for one in message.textures]  # type: ignore[arg-type]
+def _scene(message: SceneMessage) -> Scene:
+    textures = [Texture(*one) for one in message.textures]
     appearances = [
-        Appearance(one.name, one.factor, None if one.texture is None else textures[one.texture], one.cutoff, one.mirror)
-        for one in message.appearances
+        Appearance(name, factor, None if texture is None else textures[texture], cutoff, mirror)
+        for name, factor, texture, cutoff, mirror in message.appearances
     ]
-    meshes = [
-        Mesh(
-            array(one.positions),  # type: ignore[arg-type]
-            array(one.triangles),  # type: ignore[arg-type]
-            array(one.materials),  # type: ignore[arg-type]
-            None
-            if one.appearance is None
-            else SurfaceAppearance(
-                tuple(appearances[row] for row in one.appearance.entries),
-                array(one.appearance.rows),  # type: ignore[arg-type]
-                array(one.appearance.uv),  # type: ignore[arg-type]
-                array(one.appearance.colours),  # type: ignore[arg-type]
-            ),
-            normals=None if one.normals is None else CornerNormals(array(one.normals.vectors), array(one.normals.rows)),  # type: ignore[arg-type]
-        )
-        for one in message.meshes
-    ]
-    colliders = [_collider(one, [array(part) for part in one.arrays]) for one in message.colliders]
-    cameras = tuple(Viewpoint(*camera) for camera in message.cameras)
-    objects = tuple(
-        SceneObject(name, meshes[mesh], transform, tuple(colliders[row] for row in own), material, *flags)
-        for name, mesh, transform, own, material, *flags in zip(
-            message.objects.names,
-            message.objects.meshes,
-            array(message.objects.transforms),
-            message.objects.colliders,
-            message.objects.materials,
-            message.objects.hidden,
-            message.objects.represented,
-            strict=True,
-        )
-    )
+    meshes = [_mesh(one, appearances) for one in message.meshes]
+    colliders = [_collider(one) for one in message.colliders]
+    objects = message.objects
+    columns = (getattr(objects, name) for name in objects.__struct_fields__)
     return Scene(
         message.name,
-        objects,
-        tuple(Material(*one) for one in message.materials),
-        tuple(SceneWarning(*one) for one in message.warnings),
-        None if message.viewpoint is None else cameras[message.viewpoint],
-        None if message.light is None else PointLight(message.light),
-        cameras,
+        tuple(
+            SceneObject(name, meshes[mesh], transform, tuple(colliders[row] for row in own), material, *flags)
+            for name, mesh, transform, own, material, *flags in zip(*columns, strict=True)
+        ),
+        tuple(message.materials),
+        tuple(message.warnings),
+        None if message.viewpoint is None else message.cameras[message.viewpoint],
+        message.light,
+        tuple(message.cameras),
     )
 
 
-def _collider_message(one: Collider, arrays: _Arrays) -> ColliderMessage:
+def _mesh_message(one: Mesh, appearances: _Shared[Appearance]) -> MeshMessage:
+    surface = normals = None
+    if one.appearance is not None:
+        entries = [appearances.number(entry) for entry in one.appearance.entries]
+        surface = entries, one.appearance.rows, one.appearance.uv, one.appearance.colours
+    if one.normals is not None:
+        normals = one.normals.vectors, one.normals.rows
+    return MeshMessage(one.positions, one.triangles, one.materials, surface, normals)
+
+
+def _mesh(message: MeshMessage, appearances: list[Appearance]) -> Mesh:
+    surface = None
+    if message.appearance is not None:
+        entries, *arrays = message.appearance
+        surface = SurfaceAppearance(tuple(appearances[row] for row in entries), *arrays)
+    normals = message.normals and CornerNormals(*message.normals)
+    return Mesh(message.positions, message.triangles, message.materials, surface, normals=normals)
+
+
+def _appearance_message(one: Appearance, textures: _Shared[Texture]) -> AppearanceMessage:
+    texture = None if one.texture is None else textures.number(one.texture)
+    return _text(one.name), one.factor, texture, one.cutoff, one.mirror
+
+
+def _collider_message(one: Collider) -> ColliderMessage:
     if isinstance(one, BoxCollider):
-        return ColliderMessage("box", [arrays.add(one.minimum), arrays.add(one.maximum)], pow2=one.pow2)
+        return ColliderMessage("box", [one.minimum, one.maximum], pow2=one.pow2)
     if isinstance(one, SphereCollider):
-        return ColliderMessage("sphere", [arrays.add(one.centre)], radius=one.radius)
+        return ColliderMessage("sphere", [one.centre], radius=one.radius)
     if isinstance(one, HullCollider):
-        return ColliderMessage("hull", [arrays.add(one.positions)])
-    return ColliderMessage("mesh", [arrays.add(one.positions), arrays.add(one.triangles)])
+        return ColliderMessage("hull", [one.positions])
+    return ColliderMessage("mesh", [one.positions, one.triangles])
 
 
-def _collider(message: ColliderMessage, parts: list[NDArray[np.generic]]) -> Collider:
-    first = parts[0]
+def _collider(message: ColliderMessage) -> Collider:
+    first, *others = message.arrays
     match message.kind:
         case "box":
-            return BoxCollider(first, parts[1], message.pow2)  # type: ignore[arg-type]
+            return BoxCollider(first, others[0], message.pow2)
         case "sphere":
-            return SphereCollider(first, message.radius)  # type: ignore[arg-type]
+            return SphereCollider(first, message.radius)
         case "hull":
-            return HullCollider(first)  # type: ignore[arg-type]
+            return HullCollider(first)
         case "mesh":
-            return MeshCollider(first, parts[1])  # type: ignore[arg-type]
+            return MeshCollider(first, others[0])
 
 
 class _Arrays:
@@ -348,20 +279,18 @@ class _Arrays:
     def __init__(self) -> None:
         self.parts: list[bytes | memoryview] = []
         self.length = 0
-        self._known: dict[int, tuple[NDArray[np.generic], ArrayMessage]] = {}
+        self._known: dict[int, ArrayMessage] = {}  # an id is unique, for the message keeps its arrays
 
     def add(self, array: NDArray[np.generic]) -> ArrayMessage:
-        if id(array) in self._known:  # the array is kept, for an id is unique only while its array lives
-            return self._known[id(array)][1]
-        little = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-        message = ArrayMessage(little.dtype.str, little.shape, self.length)
-        if little.size:
-            self.parts.append(little.reshape(-1).view(np.uint8).data)
-        padding = -little.nbytes % _ALIGNMENT
-        self.parts.append(bytes(padding))
-        self.length += little.nbytes + padding
-        self._known[id(array)] = (array, message)
-        return message
+        if id(array) not in self._known:
+            little = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
+            self._known[id(array)] = ArrayMessage(little.dtype.str, little.shape, self.length)
+            if little.size:
+                self.parts.append(little.reshape(-1).view(np.uint8).data)
+            padding = -little.nbytes % _ALIGNMENT
+            self.parts.append(bytes(padding))
+            self.length += little.nbytes + padding
+        return self._known[id(array)]
 
 
 class _Shared(Generic[T]):
@@ -377,7 +306,7 @@ class _Shared(Generic[T]):
             self._values.append(value)
         return self._numbers[id(value)]
 
-    def __iter__(self):  # type: ignore[no-untyped-def]  # noqa: ANN204
+    def __iter__(self) -> Iterator[T]:
         return iter(self._values)
 
 

@@ -17,23 +17,9 @@ def triangulate(
 
     A concave quadrilateral is cut at its reflex corner; a concave polygon of more corners is cut in its plane (the
     Newell normal's dominant axis dropped, so coordinates stay exact). Polygons should be planar; one without area is
-    cut as a fan.
-
-    Parameters
-    ----------
-    positions
-        float64, shape (V, 3), finite where used.
-    counts
-        Integers, shape (F,): corners per polygon, each at least 3.
-    corners
-        Integers, shape (sum of counts,): rows of `positions`, polygon after polygon.
-
-    Returns
-    -------
-    triangles
-        int32, shape (T, 3): rows of `positions`; polygon after polygon.
-    faces
-        int64, shape (T,): the polygon of each triangle.
+    cut as a fan. `counts` are the corners per polygon, each at least 3, and `corners` rows of `positions` (float64,
+    shape (V, 3), finite where used), polygon after polygon. Return the triangles (int32, shape (T, 3), rows of
+    `positions`) and the polygon of each (int64, shape (T,)).
     """
     triangles, faces = triangulate_corners(positions, counts, corners)
     return np.asarray(corners)[triangles].astype(np.int32, copy=False), faces

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voxrt.voxelize.colour.palette import quantize
+from voxrt.voxelize._native import quantize
 from voxrt.voxelize.colour.srgb import linear_from_srgb, srgb_from_linear
 
 

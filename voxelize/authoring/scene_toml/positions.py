@@ -26,16 +26,9 @@ _SCALAR = re.compile(r"[^,\]}#\n]+")
 
 
 def key_lines(text: str) -> dict[Path, int]:
-    """Return the line, from 1, of every key and array item of valid TOML.
+    """Return the line, from 1, of every key and array item of TOML that :func:`tomllib.loads` has parsed.
 
-    Parameters
-    ----------
-    text
-        What :func:`tomllib.loads` has parsed.
-
-    Returns
-    -------
-    Lines by path: names of tables and indices of array items, ``("objects", 2, "box", "size")``.
+    Paths are names of tables and indices of array items: ``("objects", 2, "box", "size")``.
     """
     return _Walk(text.replace("\r\n", "\n")).lines()
 

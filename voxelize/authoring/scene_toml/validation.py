@@ -29,15 +29,7 @@ _TOML_PLACE = re.compile(r"^(?P<problem>.*?) \(at (?:line (?P<line>\d+), column 
 
 
 class CheckedFile:
-    """The values of a valid file, and the line of each.
-
-    Attributes
-    ----------
-    path
-        The file.
-    values
-        Its content.
-    """
+    """The path and the values of a valid file, and the line of each value."""
 
     def __init__(self, path: Path, values: File, lines: dict[KeyPath, int]) -> None:
         self.path = path
@@ -50,13 +42,7 @@ class CheckedFile:
 
 
 def check_file(path: Path, text: str) -> CheckedFile:
-    """Parse and check a scene file.
-
-    Raises
-    ------
-    AssetError
-        It is not TOML, or does not match the schema.
-    """
+    """Parse and check a scene file; raise AssetError where it is not TOML, or does not match the schema."""
     try:
         raw = tomllib.loads(text)
         lines = key_lines(text)

@@ -42,17 +42,10 @@ _SHAPES: dict[ElementType, tuple[int, int]] = {
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The memory layout of one element. Columns of matrices start at multiples of 4 bytes.
+    """The memory layout of one element. Columns of matrices start at multiples of 4 bytes."""
 
-    Attributes
-    ----------
-    dtype
-        The type of its components, little-endian.
-    columns, rows
-        Its shape; scalars and vectors are one column.
-    """
-
-    dtype: np.dtype[Any]
+    dtype: np.dtype[Any]  # the type of its components, little-endian
+    # Its shape; scalars and vectors are one column.
     columns: int
     rows: int
 
@@ -79,28 +72,10 @@ def layout_of(accessor: Accessor) -> Layout:
 
 
 def read_accessor(document: Document, index: int, place: str, types: Container[str]) -> NDArray[Any]:
-    """Read the elements of accessor `index` as they are stored.
+    """Read the elements of accessor `index`, to which the JSON path `place` refers, as they are stored.
 
-    Parameters
-    ----------
-    document
-        The open asset.
-    index
-        The accessor's index.
-    place
-        The JSON path that refers to it, for errors.
-    types
-        The element types that are allowed there.
-
-    Returns
-    -------
-    elements
-        Shape (count, components), matrices column by column, of the stored component type.
-
-    Raises
-    ------
-    AssetError
-        The accessor does not exist, has another type, or leaves its buffer view.
+    They have shape (count, components), matrices column by column. Raise AssetError where the accessor does not exist,
+    has none of the allowed element `types`, or leaves its buffer view.
     """
     accessor = document.item(document.gltf.accessors, index, place, "accessor")
     here = f"accessors[{index}]"
@@ -118,13 +93,7 @@ def read_accessor(document: Document, index: int, place: str, types: Container[s
 
 
 def read_floats(document: Document, index: int, place: str, types: Container[str]) -> NDArray[np.float64]:
-    """Read accessor `index` as :func:`read_accessor` does, normalized integers mapped to [0, 1] or [-1, 1].
-
-    Returns
-    -------
-    elements
-        float64, shape (count, components), finite.
-    """
+    """Read accessor `index` as :func:`read_accessor` does, but as finite float64, normalized integers mapped."""
     return as_floats(document, read_accessor(document, index, place, types), index)
 
 
@@ -160,6 +129,17 @@ def normalized(stored: NDArray[Any]) -> NDArray[np.float64]:
     """Map the range of an integer type to [0, 1], or to [-1, 1] where it has a sign."""
     elements: NDArray[np.float64] = np.maximum(stored / np.float64(np.iinfo(stored.dtype).max), -1.0)
     return elements
+
+
+def refuse_broken_parts(document: Document) -> None:
+    """Read all accessors and all buffers, used or not; raise AssetError where one contradicts itself or the file."""
+    for index, accessor in enumerate(document.gltf.accessors):
+        place = f"accessors[{index}]"
+        if accessor.buffer_view is None and accessor.byte_offset is not None:
+            raise document.error(place, "has a byteOffset and no bufferView to count it in")
+        read_accessor(document, index, place, {accessor.type})
+    for index in range(len(document.gltf.buffers)):
+        document.buffer(index)
 
 
 def _strided(

@@ -27,11 +27,6 @@ def posed(document: Document, time: float | None, animation: str | None = None) 
     `animation` is its name or its index, counted from 0; None for the first. Before the first key and after the last,
     the nodes have the pose of that key. Without `time`, a named animation is shown at 0 seconds; without either, the
     nodes keep their own transforms, and animations are counted.
-
-    Raises
-    ------
-    AssetError
-        The animation does not exist, or is invalid.
     """
     gltf = document.gltf
     if time is None and animation is None:

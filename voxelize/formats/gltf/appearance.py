@@ -23,50 +23,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AppearanceKey:
-    """How a node shows a mesh. Nodes with equal keys and poses share one mesh.
+    """How a node shows a mesh. Nodes with equal keys and poses share one mesh."""
 
-    Attributes
-    ----------
-    mesh
-        The mesh's index in the file.
-    override
-        The material its faces take instead of their own, or None.
-    mirrored
-        Whether its faces are mirrors.
-    variant
-        The index of the material variant; None for the default materials of the primitives.
-    """
-
-    mesh: int
-    override: int | None = None
-    mirrored: bool = False
-    variant: int | None = None
+    mesh: int  # the mesh's index in the file
+    override: int | None = None  # the material its faces take instead of their own, or None
+    mirrored: bool = False  # whether its faces are mirrors
+    variant: int | None = None  # the index of the material variant; None for the default materials of the primitives
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfaceMaterials:
-    """The materials of the triangles of a surface.
+    """The materials of the triangles of a surface."""
 
-    Attributes
-    ----------
-    runs
-        Runs of triangles of one colour, as start, stop and material. The other triangles have an appearance, or are
-        fully transparent.
-    appearance
-        Textures and vertex colours of the others; None where no triangle has any.
-    """
-
+    # Runs of triangles of one colour, as start, stop and material. The other triangles have an appearance, or
+    # are fully transparent.
     runs: tuple[tuple[int, int, MaterialKey], ...]
-    appearance: SurfaceAppearance | None
+    appearance: SurfaceAppearance | None  # textures and vertex colours of the others; None where no triangle has any
 
 
 def find_variant(document: Document, wanted: tuple[str, ...]) -> int | None:
     """Return the index of the material variant that is `wanted`; None where none is.
 
-    Raises
-    ------
-    AssetError
-        The file has no such variant, or several are wanted.
+    Refuse several, and unknown ones.
     """
     if not wanted:
         return None

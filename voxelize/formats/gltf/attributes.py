@@ -26,17 +26,7 @@ _DRACO_FLOATS = (9, 10)
 
 
 class Attributes:
-    """The vertices and corners of one primitive.
-
-    Parameters
-    ----------
-    document
-        The open asset.
-    primitive
-        The primitive.
-    place
-        Its JSON path, for errors.
-    """
+    """The vertices and corners of one primitive, whose JSON path is `place`."""
 
     def __init__(self, document: Document, primitive: Primitive, place: str) -> None:
         self._document = document

@@ -17,11 +17,6 @@ def read_cameras(document: Document, hierarchy: Hierarchy) -> tuple[Viewpoint, .
     """Return the perspective cameras of visible nodes, in authored order; others are counted in the document's log.
 
     A camera has its node's name, else its own, else ``cameras[N]``.
-
-    Raises
-    ------
-    AssetError
-        A node refers to a camera that does not exist.
     """
     found = []
     for index in hierarchy.shown:

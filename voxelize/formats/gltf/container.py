@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.external_files import read_asset
 from voxrt.voxelize.formats.gltf.schema import Gltf
 from voxrt.voxelize.formats.gltf.schema_errors import explain
 
@@ -26,17 +26,9 @@ _decoder = msgspec.json.Decoder(Gltf)
 
 
 def read_container(path: Path) -> tuple[Gltf, memoryview | None]:
-    """Read `path`, as GLB where it starts like one, else as JSON.
+    """Read `path`, as GLB where it starts like one, else as JSON: the file's JSON, and the binary chunk of a GLB.
 
-    Returns
-    -------
-    gltf, binary
-        The file's JSON, and the binary chunk of a GLB that has one.
-
-    Raises
-    ------
-    AssetError
-        The container is broken, or its JSON is not glTF 2.
+    Raise AssetError where the container is broken, or its JSON is not glTF 2.
     """
     data = read_asset(path)
     if data[:4] == _MAGIC:

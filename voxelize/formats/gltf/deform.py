@@ -22,17 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pose:
-    """The deformation of a mesh.
+    """The deformation of a mesh."""
 
-    Attributes
-    ----------
-    weights
-        The weight of each morph target.
-    joints
-        float64, shape (J, 4, 4): bind pose to scene frame, per joint; None for a mesh without skin.
-    """
-
-    weights: tuple[float, ...] = ()
+    weights: tuple[float, ...] = ()  # the weight of each morph target
+    # float64, shape (J, 4, 4): bind pose to scene frame, per joint; None for a mesh without skin.
     joints: NDArray[np.float64] | None = None
 
 
@@ -45,13 +38,7 @@ def is_deformed(primitive: Primitive, pose: Pose) -> bool:
 def morphed(
     document: Document, primitive: Primitive, positions: NDArray[np.floating], pose: Pose, place: str
 ) -> NDArray[np.floating]:
-    """Return `positions`, shape (V, 3), with the weighted displacements of the morph targets added.
-
-    Raises
-    ------
-    AssetError
-        A target has another number of vertices.
-    """
+    """Return `positions`, shape (V, 3), with the weighted displacements of the morph targets added."""
     for at, (weight, target) in enumerate(zip(pose.weights, primitive.targets, strict=False)):
         if weight == 0.0 or "POSITION" not in target:
             continue
@@ -67,13 +54,7 @@ def morphed(
 def skinned(
     document: Document, attributes: Attributes, positions: NDArray[np.floating], pose: Pose, place: str
 ) -> NDArray[np.floating]:
-    """Return `positions`, shape (V, 3), moved by the joints of `pose` to the scene frame.
-
-    Raises
-    ------
-    AssetError
-        A vertex refers to a joint that the skin does not have.
-    """
+    """Return `positions`, shape (V, 3), moved by the joints of `pose` to the scene frame."""
     if pose.joints is None:
         return positions
     document.charge(positions.nbytes * 8, place)
@@ -127,3 +108,23 @@ def _finite(document: Document, positions: NDArray[np.float64], place: str) -> N
     if not np.isfinite(positions).all():
         raise document.error(place, "the vertices overflow")
     return positions
+
+
+def joint_matrices(document: Document, index: int, transforms: NDArray[np.float64], place: str) -> NDArray[np.float64]:
+    """Return the transform of each joint from the bind pose to the scene frame: float64, shape (J, 4, 4).
+
+    `transforms`, float64, shape (N, 4, 4), are those of the file's nodes. The JSON path `place` refers to the skin.
+    """
+    skin = document.item(document.gltf.skins, index, place, "skin")
+    here = f"skins[{index}]"
+    document.charge(len(skin.joints) * 256, here)
+    for at, joint in enumerate(skin.joints):
+        document.item(document.gltf.nodes, joint, f"{here}.joints[{at}]", "node")
+    matrices = transforms[skin.joints]
+    if skin.inverse_bind_matrices is None:
+        return matrices
+    bound = read_floats(document, skin.inverse_bind_matrices, f"{here}.inverseBindMatrices", {"MAT4"})
+    if len(bound) < len(matrices):
+        raise document.error(f"{here}.inverseBindMatrices", f"{len(bound)} matrices for {len(matrices)} joints")
+    with np.errstate(over="ignore", invalid="ignore"):
+        return matrices @ bound[: len(matrices)].reshape(-1, 4, 4).transpose(0, 2, 1)

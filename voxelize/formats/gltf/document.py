@@ -31,19 +31,10 @@ _BYTES_PER_INPUT_BYTE = 128
 
 
 class Document:
-    """One glTF asset while it is being read.
+    """One glTF asset while it is being read: its path, its JSON (`gltf`) and its warnings (`log`).
 
     The asset's size limits the memory that it may use: :meth:`charge` counts what is made from it and refuses a small
     file that needs much. The sizes in the JSON are no limit: an accessor may have no bytes, or share them with others.
-
-    Attributes
-    ----------
-    path
-        The ``.gltf`` or ``.glb`` file.
-    gltf
-        Its JSON.
-    log
-        What was ignored or replaced.
     """
 
     def __init__(self, path: Path, *, allow_outside: bool = False) -> None:

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.collider_shapes import bounding_points, collider_around
+from voxrt.voxelize.formats.gltf.accessors import refuse_broken_parts
 from voxrt.voxelize.formats.gltf.animation import posed
 from voxrt.voxelize.formats.gltf.appearance import find_variant, read_appearance
 from voxrt.voxelize.formats.gltf.cameras import read_cameras
 from voxrt.voxelize.formats.gltf.document import Document
+from voxrt.voxelize.formats.gltf.extensions import REPLACEMENTS, SUPPORTED, WITHOUT_EFFECT
 from voxrt.voxelize.formats.gltf.extras import refuse_misplaced
 from voxrt.voxelize.formats.gltf.materials import number_materials
 from voxrt.voxelize.formats.gltf.nodes import place_nodes
-from voxrt.voxelize.formats.gltf.required_extensions import check_required_extensions
 from voxrt.voxelize.formats.gltf.textures import Textures
-from voxrt.voxelize.formats.gltf.unused import refuse_broken_parts
 from voxrt.voxelize.formats.gltf.visible_nodes import VisibleNodes
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
@@ -66,7 +66,7 @@ def load_gltf(
         More than 255 materials are used.
     """
     document = Document(path, allow_outside=allow_outside)
-    check_required_extensions(document)
+    _check_required_extensions(document)
     refuse_misplaced(document)
     document.gltf = posed(document, time, animation)
     hierarchy = place_nodes(document)
@@ -98,6 +98,19 @@ def load_gltf(
     cameras = read_cameras(document, hierarchy)
     viewpoint = cameras[0] if cameras else None
     return Scene(path.stem, objects, table.materials(), document.log.warnings(), viewpoint=viewpoint, cameras=cameras)
+
+
+def _check_required_extensions(document: Document) -> None:
+    """Refuse a file that requires an unsupported extension; count unsupported ones that it only uses."""
+    gltf = document.gltf
+    known = SUPPORTED | WITHOUT_EFFECT
+    for at, name in enumerate(gltf.extensions_required):
+        if name not in known:
+            fix = REPLACEMENTS.get(name, "export the file without it")
+            raise document.error(f"extensionsRequired[{at}]", f"the extension {name[:60]} is not supported", fix)
+    for name in dict.fromkeys(gltf.extensions_used):
+        if name not in known:
+            document.log.add("unknown-extension", f"the extension {name[:60]} was ignored")
 
 
 def _loaded_mesh(surface: Surface, own: SurfaceMaterials, ids: Mapping[MaterialKey, int]) -> LoadedMesh:

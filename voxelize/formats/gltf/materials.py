@@ -35,30 +35,16 @@ class MaterialKey:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MaterialProperties:
-    """The properties of a material that matter for voxels.
-
-    Attributes
-    ----------
-    name
-        The author's name for it.
-    renamed
-        Whether the name comes from the property `voxrt_material`; materials that share such a name become one.
-    factor
-        Linear red, green, blue and alpha.
-    texture, place
-        The texture of its base colour, or None, and its JSON path.
-    cutoff
-        The surface is cut away where its alpha is below this; 0 for opaque surfaces.
-    mirror
-        Whether it is a mirror.
-    """
+    """The properties of a material that matter for voxels."""
 
     name: str
+    # Whether the name comes from the property `voxrt_material`; materials that share such a name become one.
     renamed: bool = False
-    factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
+    factor: Vec4 = (1.0, 1.0, 1.0, 1.0)  # linear red, green, blue and alpha
+    # The texture of its base colour, or None, and its JSON path.
     texture: TextureInfo | None = None
     place: str = ""
-    cutoff: float = 0.0
+    cutoff: float = 0.0  # the surface is cut away where its alpha is below this; 0 for opaque surfaces
     mirror: bool = False
 
 
@@ -101,11 +87,6 @@ def number_materials(document: Document, table: MaterialTable, used: Iterable[Ma
     """Give every material in `used` an id in `table`: in the file's order, the default material last.
 
     Materials that their author gave the same `voxrt_material` become one.
-
-    Raises
-    ------
-    DoesNotFitError
-        More than 255 materials are used.
     """
     ids: dict[MaterialKey, int] = {}
     for key in sorted(set(used), key=lambda key: (key.index == NO_MATERIAL, key)):

@@ -22,47 +22,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Span:
-    """The triangles of one primitive among those of its mesh.
+    """The triangles of one primitive among those of its mesh."""
 
-    Attributes
-    ----------
-    primitive
-        Its index in the mesh.
-    attributes
-        Its vertices.
-    start, stop
-        The first of its triangles, and the one after its last.
-    corners
-        int32, shape (stop - start, 3): rows of the primitive's own vertices.
-    """
-
-    primitive: int
-    attributes: Attributes
+    primitive: int  # its index in the mesh
+    attributes: Attributes  # its vertices
+    # The first of its triangles, and the one after its last.
     start: int
     stop: int
-    corners: NDArray[np.int32]
+    corners: NDArray[np.int32]  # int32, shape (stop - start, 3): rows of the primitive's own vertices
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Surface:
-    """The triangles of a glTF mesh, in the order of its primitives.
+    """The triangles of a glTF mesh, in the order of its primitives."""
 
-    Attributes
-    ----------
-    positions
-        float32 or float64, shape (V, 3), finite; few are unused.
-    triangles
-        int32, shape (T, 3), counter-clockwise seen from outside.
-    spans
-        The primitives that they come from.
-    normals
-        The normals of vertices that no pose moves; None where the file gives none.
-    """
-
-    positions: NDArray[np.floating]
-    triangles: NDArray[np.int32]
-    spans: tuple[Span, ...]
-    normals: CornerNormals | None = None
+    positions: NDArray[np.floating]  # float32 or float64, shape (V, 3), finite; few are unused
+    triangles: NDArray[np.int32]  # int32, shape (T, 3), counter-clockwise seen from outside
+    spans: tuple[Span, ...]  # the primitives that they come from
+    normals: CornerNormals | None = None  # the normals of vertices that no pose moves; None where the file gives none
 
 
 def read_surface(document: Document, index: int, pose: Pose) -> Surface:

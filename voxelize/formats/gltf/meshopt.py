@@ -40,10 +40,7 @@ class CompressedView(Struct, frozen=True, rename="camel"):
 def decode(view: CompressedView, data: bytes) -> bytes:
     """Return the ``count * byte_stride`` bytes that `data` encodes.
 
-    Raises
-    ------
-    BadStreamError
-        The stream is damaged, or the view's numbers contradict each other.
+    Raise BadStreamError where the stream is damaged, or the view's numbers contradict each other.
     """
     _check(view)
     if view.mode == "ATTRIBUTES":

@@ -32,13 +32,7 @@ class BadStreamError(ValueError):
 
 
 def decode_attributes(data: bytes, count: int, stride: int) -> NDArray[np.uint8]:
-    """Return the elements of a stream: uint8, shape (count, stride).
-
-    Raises
-    ------
-    BadStreamError
-        The stream is damaged.
-    """
+    """Return the elements of a stream: uint8, shape (count, stride). Raise BadStreamError where it is damaged."""
     version = data[0] if data else 0
     if version not in _LEAST_TAIL:
         raise BadStreamError("not an attribute stream of version 0 or 1")

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voxrt.voxelize.formats.gltf.extensions import VISIBILITY
-from voxrt.voxelize.formats.gltf.schema import Visibility
+from voxrt.voxelize.formats.gltf.accessors import read_floats
+from voxrt.voxelize.formats.gltf.extensions import INSTANCING, VISIBILITY
+from voxrt.voxelize.formats.gltf.schema import Instances, Visibility
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
@@ -23,29 +24,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Hierarchy:
-    """The transforms and the visible nodes of a file.
+    """The transforms and the visible nodes of a file."""
 
-    Attributes
-    ----------
-    shown
-        The visible nodes of the scene, parents before children, siblings in authored order.
-    transforms
-        float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
-    """
-
-    shown: tuple[int, ...]
+    shown: tuple[int, ...]  # the visible nodes of the scene, parents before children, siblings in authored order
+    # float64, shape (N, 4, 4): frame of each node of the file to the scene frame. May mirror.
     transforms: NDArray[np.float64]
 
 
 def place_nodes(document: Document) -> Hierarchy:
     """Return the transforms of all nodes, and the visible nodes of the file's scene.
 
-    The scene is the file's default scene, else its first. A file without scenes shows every root node.
-
-    Raises
-    ------
-    AssetError
-        The hierarchy is not a forest, or a transform is not affine and finite.
+    The scene is the file's default scene, else its first. A file without scenes shows every root node. Raise AssetError
+    where the hierarchy is not a forest, or a transform is not affine and finite.
     """
     nodes = document.gltf.nodes
     parents = _parents(document)
@@ -189,3 +179,34 @@ def compose(
     transforms[:, :3, :3] = np.moveaxis(np.array(turn), -1, 0) * scale[:, None, :]
     transforms[:, :3, 3] = translation
     return transforms
+
+
+def read_instances(document: Document, index: int) -> NDArray[np.float64] | None:
+    """Return the transforms of the instances of node `index` in its frame, float64, shape (N, 4, 4).
+
+    None where the node is not instanced.
+    """
+    place = f"nodes[{index}]"
+    instances = document.extension(document.gltf.nodes[index], INSTANCING, Instances, place)
+    if instances is None:
+        return None
+    here = f"{place}.extensions.{INSTANCING}.attributes"
+    parts: dict[str, NDArray[np.float64]] = {}
+    for name, kind in (("TRANSLATION", "VEC3"), ("ROTATION", "VEC4"), ("SCALE", "VEC3")):
+        if name in instances.attributes:
+            parts[name] = read_floats(document, instances.attributes[name], f"{here}.{name}", {kind})
+    if not parts:
+        document.log.add("instancing", "instanced nodes without instance transforms are shown once")
+        return None
+    count = len(next(iter(parts.values())))
+    if any(len(part) != count for part in parts.values()):
+        sizes = ", ".join(f"{name} {len(part)}" for name, part in parts.items())
+        raise document.error(here, f"different numbers of instances: {sizes}")
+    document.charge(count * 1024, here)
+    return compose(
+        document,
+        parts.get("TRANSLATION", np.zeros((count, 3))),
+        parts.get("ROTATION", np.tile((0.0, 0.0, 0.0, 1.0), (count, 1))),
+        parts.get("SCALE", np.ones((count, 3))),
+        f"{here}.ROTATION[{{}}]",
+    )

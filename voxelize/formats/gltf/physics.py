@@ -107,16 +107,7 @@ def physics_collider(
 ) -> Collider | None:
     """Return the collider of node `index`, in its frame; None for none.
 
-    Parameters
-    ----------
-    document
-        The open asset.
-    index
-        The node's index.
-    shapes
-        The file's shapes.
-    read_mesh
-        Returns a mesh by its index; the string is the JSON path that refers to it.
+    `read_mesh` returns a mesh by its index, to which a JSON path refers.
     """
     place = f"nodes[{index}]"
     body = document.extension(document.gltf.nodes[index], PHYSICS, Body, place)

@@ -34,15 +34,8 @@ def read_triangles(
 ) -> NDArray[np.int32]:
     """Read the triangles of a primitive of `mode` that has `vertices` vertices and is at `place`.
 
-    Returns
-    -------
-    triangles
-        int32, shape (T, 3), counter-clockwise seen from outside.
-
-    Raises
-    ------
-    AssetError
-        An index is out of range, or restarts the primitive, which glTF forbids.
+    Return int32, shape (T, 3), counter-clockwise seen from outside. Raise AssetError where an index is out of range, or
+    restarts the primitive, which glTF forbids.
     """
     stored = attributes.corners()
     document.charge((vertices if stored is None else len(stored)) * 4, place)

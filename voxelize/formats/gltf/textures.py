@@ -33,13 +33,7 @@ class Textures:
         self._textures: dict[int, Texture | None] = {}
 
     def read(self, index: int, place: str) -> Texture | None:
-        """Return texture `index`, to which `place` refers; None, with a warning, where its image cannot be read.
-
-        Raises
-        ------
-        AssetError
-            The image is broken.
-        """
+        """Return texture `index`, to which `place` refers; None, with a warning, where its image cannot be read."""
         if index not in self._textures:
             self._textures[index] = self._texture(index, place)
         return self._textures[index]

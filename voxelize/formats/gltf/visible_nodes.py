@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.formats.gltf.appearance import AppearanceKey
-from voxrt.voxelize.formats.gltf.deform import Pose
+from voxrt.voxelize.formats.gltf.deform import Pose, joint_matrices
 from voxrt.voxelize.formats.gltf.extras import node_extras
-from voxrt.voxelize.formats.gltf.instances import read_instances
 from voxrt.voxelize.formats.gltf.materials import NO_MATERIAL, MaterialKey, material_names
 from voxrt.voxelize.formats.gltf.meshes import read_surface
+from voxrt.voxelize.formats.gltf.nodes import read_instances
 from voxrt.voxelize.formats.gltf.physics import physics_collider, read_shapes
-from voxrt.voxelize.formats.gltf.skins import joint_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,43 +39,20 @@ class PoseKey:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class NodeContent:
-    """What a node adds to the scene: a mesh, or a collider without a mesh.
+    """What a node adds to the scene: a mesh, or a collider without a mesh."""
 
-    Attributes
-    ----------
-    node
-        The node's index in the file.
-    mesh
-        The mesh with its pose and appearance, or None.
-    material
-        The material of a collider without a mesh.
-    collider_kind
-        The kind of collider that its author wants around the mesh, or None.
-    collider
-        The node's own collider, in its frame, or None.
-    transforms
-        float64, shape (N, 4, 4): to the scene frame, one per instance.
-    """
-
-    node: int
-    mesh: tuple[PoseKey, AppearanceKey] | None
-    material: MaterialKey
-    collider_kind: ColliderKind | None
-    collider: Collider | None
-    transforms: NDArray[np.float64]
+    node: int  # the node's index in the file
+    mesh: tuple[PoseKey, AppearanceKey] | None  # the mesh with its pose and appearance, or None
+    material: MaterialKey  # the material of a collider without a mesh
+    collider_kind: ColliderKind | None  # the kind of collider that its author wants around the mesh, or None
+    collider: Collider | None  # the node's own collider, in its frame, or None
+    transforms: NDArray[np.float64]  # float64, shape (N, 4, 4): to the scene frame, one per instance
 
 
 class VisibleNodes:
     """The visible nodes of a file, and its meshes, each read once per pose.
 
-    Parameters
-    ----------
-    document
-        The open asset.
-    hierarchy
-        The transforms of its nodes.
-    variant
-        The index of the material variant to show, or None.
+    `variant` is the index of the material variant to show, or None.
     """
 
     def __init__(self, document: Document, hierarchy: Hierarchy, variant: int | None) -> None:

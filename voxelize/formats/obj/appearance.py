@@ -10,8 +10,7 @@ import numpy as np
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
-from voxrt.voxelize.formats.image_file import decode_image
+from voxrt.voxelize.formats.image_file import read_image
 from voxrt.voxelize.formats.obj.mtl import MtlMaterial, MtlTexture, read_mtl
 from voxrt.voxelize.materials import DEFAULT_COLOUR
 
@@ -33,38 +32,20 @@ OPAQUE_FROM = 0.5
 
 @dataclass(eq=False, slots=True)
 class FaceAppearance:
-    """The appearance of each face.
+    """The appearance of each face."""
 
-    Attributes
-    ----------
-    materials
-        uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.
-    rows
-        int32, shape (F,): indices into `entries`; -1 where a face has a plain material.
-    entries
-        The appearances.
-    image_placements
-        Of each entry, how texture coordinates are scaled and moved: ``map_Kd -s`` and ``-o``.
-    """
-
+    # uint8, shape (F,): material ids; 0 for faces that are left out, and for those with an appearance.
     materials: NDArray[np.uint8]
-    rows: NDArray[np.int32]
+    rows: NDArray[np.int32]  # int32, shape (F,): indices into `entries`; -1 where a face has a plain material
     entries: list[Appearance] = field(default_factory=list)
+    # How each entry scales and moves texture coordinates: ``map_Kd -s`` and ``-o``.
     image_placements: list[MtlTexture | None] = field(default_factory=list)
 
 
 def appearance_of_faces(
     text: Text, statements: Statements, external_files: ExternalFiles, table: MaterialTable, log: WarningLog
 ) -> FaceAppearance:
-    """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``.
-
-    Raises
-    ------
-    AssetError
-        A library or an image is broken.
-    DoesNotFitError
-        More than 255 materials.
-    """
+    """Return the appearance of every face: the texture of its material, else its vertices' colours, else ``Kd``."""
     library = _libraries(external_files, statements, log)
     lines = np.array([line for line, _ in statements.materials], dtype=np.int64)
     turn = np.searchsorted(lines, statements.face_lines) - 1  # the last usemtl before each face; -1 for none
@@ -97,16 +78,9 @@ def surface_appearance(
 ) -> SurfaceAppearance | None:
     """Return the appearance of triangles; None where all of them have plain materials.
 
-    Parameters
-    ----------
-    statements, face_appearance
-        The file's statements, and the appearance of its faces.
-    uv
-        float64, shape (corners of the file, 2), v upwards; None where no face is textured.
-    corners
-        int64, shape (T, 3): each triangle's corners, among all corners of the file's faces.
-    faces
-        int64, shape (T,): its face.
+    `uv`, float64, shape (corners of the file, 2), points v upwards; None where no face is textured. `corners`, int64,
+    shape (T, 3), are each triangle's corners among all corners of the file's faces, and `faces`, int64, shape (T,), its
+    face.
     """
     rows = face_appearance.rows[faces]
     if not (rows >= 0).any():
@@ -181,17 +155,12 @@ class _AppearanceBuilder:
         """Return the pixels of a texture; None, with a warning for `faces` faces, where it cannot be read."""
         if placement is None:
             return None
-        found = self._external_files.find_exported(placement.name)
+        files, name, instead = self._external_files, placement.name, "; its material's own value was used"
+        found = files.reported(files.find_exported(name), "texture", name, self._log, count=faces, instead=instead)
         if found is None:
-            problem = f"texture {placement.name!r} was not found; its material's own value was used"
-            self._log.add("missing-texture", problem, faces)
-            return None
-        if not self._external_files.allows(found):
-            problem = f"texture {placement.name!r} is outside the file's folder and was not opened"
-            self._log.add("outside", f"{problem}; {ALLOW_OUTSIDE}", faces)
             return None
         if found not in self._images:
-            self._images[found] = decode_image(found.read_bytes(), self._text.path, f"{keyword} {placement.name}")
+            self._images[found] = read_image(found, self._text.path, f"{keyword} {name}")
         return self._images[found]
 
     def add_coloured(self, faces: NDArray[np.int64], name: str, material: MtlMaterial | None) -> None:
@@ -262,12 +231,8 @@ def _libraries(external_files: ExternalFiles, statements: Statements, log: Warni
         words = argument.split()
         names = [(whole, argument)] if whole else [(external_files.find_exported(word), word) for word in words]
         for found, name in names:
-            if found is None:
-                log.add("missing-library", f"material library {name!r} was not found")
-            elif not external_files.allows(found):
-                problem = f"material library {name!r} is outside the file's folder and was not opened"
-                log.add("outside", f"{problem}; {ALLOW_OUTSIDE}")
-            elif found not in seen:
-                seen.add(found)
-                library |= read_mtl(found, log)
+            file = external_files.reported(found, "material library", name, log)
+            if file is not None and file not in seen:
+                seen.add(file)
+                library |= read_mtl(file, log)
     return library

@@ -9,16 +9,14 @@ import numpy as np
 
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
 from voxrt.voxelize.formats.external_files import ExternalFiles
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.obj.appearance import appearance_of_faces, surface_appearance
-from voxrt.voxelize.formats.obj.normals import read_normals
 from voxrt.voxelize.formats.obj.objects import compact, split_objects
-from voxrt.voxelize.formats.obj.statements import Statements, read_statements, texture_coordinates
+from voxrt.voxelize.formats.obj.statements import Statements, read_normals, read_statements, texture_coordinates
 from voxrt.voxelize.formats.obj.text import Text, read_text
-from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog

@@ -61,37 +61,17 @@ class MtlTexture:
 
 @dataclass(slots=True)
 class MtlMaterial:
-    """One material of a library.
-
-    Attributes
-    ----------
-    name
-        Its name.
-    colour
-        ``Kd``, three reals, as written; None where there is none.
-    opacity
-        ``d``, or 1 - ``Tr``.
-    texture
-        ``map_Kd``, or None.
-    opacity_texture
-        ``map_d``, or None.
-    """
+    """One material of a library."""
 
     name: str
-    colour: tuple[float, float, float] | None = None
-    opacity: float = 1.0
-    texture: MtlTexture | None = None
-    opacity_texture: MtlTexture | None = None
+    colour: tuple[float, float, float] | None = None  # ``Kd``, three reals, as written; None where there is none
+    opacity: float = 1.0  # ``d``, or 1 - ``Tr``
+    texture: MtlTexture | None = None  # ``map_Kd``, or None
+    opacity_texture: MtlTexture | None = None  # ``map_d``, or None
 
 
 def read_mtl(path: Path, log: WarningLog) -> dict[str, MtlMaterial]:
-    """Return the materials of a library by name; the first wins where a name repeats.
-
-    Raises
-    ------
-    AssetError
-        The file cannot be read, or a colour or opacity is not a number.
-    """
+    """Return the materials of a library by name; the first wins where a name repeats."""
     text = read_text(path)
     materials: dict[str, MtlMaterial] = {}
     current: MtlMaterial | None = None

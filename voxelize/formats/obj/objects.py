@@ -22,22 +22,9 @@ def split_objects(
 ) -> Iterator[tuple[str, NDArray[np.int64]]]:
     """Split a file's triangles into objects, in order of their first faces.
 
-    Each ``o`` starts an object. Each ``g`` names a set, which a later ``g`` of the same name continues.
-
-    Parameters
-    ----------
-    stem
-        The name of objects without a name.
-    statements
-        The statements.
-    triangles
-        int32, shape (T, 3): rows of the positions.
-    faces
-        int64, shape (T,): the face of each.
-
-    Yields
-    ------
-    Unique names, and the triangles of each (int64, ascending).
+    Each ``o`` starts an object. Each ``g`` names a set, which a later ``g`` of the same name continues. `stem` names
+    objects without a name. `triangles`, int32, shape (T, 3), are rows of the positions, and `faces`, int64, shape (T,),
+    the face of each. Yield unique names, and the triangles of each (int64, ascending).
     """
     if statements.objects:
         part, names = _parts(statements.objects, statements.face_lines[faces])

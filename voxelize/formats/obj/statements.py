@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from voxrt.voxelize.warning_log import WarningLog
 
+
 # Keywords of curves and free-form surfaces, which have no faces.
 _FREE_FORM = frozenset(
     {
@@ -32,58 +33,36 @@ _WITHOUT_EFFECT = frozenset(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Statements:
-    """The file's content, faces in authored order.
+    """The file's content, faces in authored order."""
 
-    Attributes
-    ----------
-    positions
-        float64, shape (V, 3), in the file's frame; NaN where a number could not be read.
-    colours
-        float64, shape (V, 3): sRGB of 0 … 1, white where a vertex has none; None where no vertex has one.
-    counts
-        int64, shape (F,): corners per face, each at least 3.
-    corners
-        int64, flat: rows of `positions`.
-    face_lines
-        int64, shape (F,): the line of each face, an index into the text's lines.
-    objects, groups, materials
-        (line, name) of each ``o``, ``g`` and ``usemtl``.
-    libraries
-        (line, name) of each ``mtllib``.
-    """
-
-    positions: NDArray[np.float64]
+    positions: NDArray[np.float64]  # float64, shape (V, 3), in the file's frame; NaN where a number could not be read
+    # float64, shape (V, 3): sRGB of 0 … 1, white where a vertex has none; None where no vertex has one.
     colours: NDArray[np.float64] | None
-    counts: NDArray[np.int64]
-    corners: NDArray[np.int64]
-    face_lines: NDArray[np.int64]
+    counts: NDArray[np.int64]  # int64, shape (F,): corners per face, each at least 3
+    corners: NDArray[np.int64]  # int64, flat: rows of `positions`
+    face_lines: NDArray[np.int64]  # int64, shape (F,): the line of each face, an index into the text's lines
+    # (line, name) of each ``o``, ``g`` and ``usemtl``.
     objects: tuple[tuple[int, str], ...]
     groups: tuple[tuple[int, str], ...]
     materials: tuple[tuple[int, str], ...]
-    libraries: tuple[tuple[int, str], ...]
+    libraries: tuple[tuple[int, str], ...]  # (line, name) of each ``mtllib``
 
 
 def read_statements(text: Text, log: WarningLog) -> Statements:
     """Read all statements.
 
-    Raises
-    ------
-    AssetError
-        A vertex of fewer than three numbers, a face with a corner that is not a vertex, or a file without faces.
+    Raise AssetError for a vertex of fewer than three numbers, a face with a corner that is not a vertex, or a file
+    without faces.
     """
     first = text.buffer[text.starts]
-    # A line ends with a line feed, so it has a second character, except the last line.
-    second = text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
-    alone = second <= ord(" ")
-    is_vertex = (first == ord("v")) & alone
-    is_face = (first == ord("f")) & alone
-    attribute = (first == ord("v")) & ((second == ord("n")) | (second == ord("t")))
+    is_vertex, is_face = text.is_statement("v "), text.is_statement("f ")
+    attribute = text.is_statement("vn") | text.is_statement("vt")
     other = np.flatnonzero(~(is_vertex | is_face | attribute | (first == ord("#")) | (first == ord("\n"))))
     vertex_lines = np.flatnonzero(is_vertex)
     face_lines = np.flatnonzero(is_face)
     positions, colours = _vertices(text, vertex_lines, log)
     named = _named(text, other, log)
-    counts, corners = _faces(text, face_lines, np.cumsum(is_vertex)[face_lines], len(positions))
+    counts, corners = _faces(text, face_lines, np.cumsum(is_vertex, dtype=np.int64)[face_lines], len(positions))
     if not len(counts):
         raise AssetError(text.path, "has no faces", fix="export it with its polygons")
     keep = counts >= 3
@@ -106,30 +85,18 @@ def read_statements(text: Text, log: WarningLog) -> Statements:
 def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Read the texture coordinates (``vt``) of all corners.
 
-    Returns
-    -------
-    uv
-        float64, shape (corners, 2), v upwards; 0 where a corner has none.
-    given
-        bool, shape (F,): whether all corners of a face have coordinates.
-
-    Raises
-    ------
-    AssetError
-        A corner refers to coordinates that do not exist.
+    Return uv, float64, shape (corners, 2), v upwards and 0 where a corner has none, and whether all corners of a face
+    have coordinates: bool, shape (F,). Raise AssetError where a corner refers to coordinates that do not exist.
     """
-    first, second = text.buffer[text.starts], text.buffer[np.minimum(text.starts + 1, len(text.buffer) - 1)]
-    is_texture = (first == ord("v")) & (second == ord("t"))
+    is_texture = text.is_statement("vt")
     values, widths = real_rows(text, np.flatnonzero(is_texture), 2)
     begins = np.cumsum(widths) - widths
     stored = np.zeros((len(widths), 2))
     for column in range(2):  # v is 0 where a line has u alone
         wide = widths > column
         stored[wide, column] = values[begins[wide] + column]
-    numbers, counts = index_rows(text, statements.face_lines, 1, 1)
-    before = np.repeat(np.cumsum(is_texture)[statements.face_lines], counts)
-    rows = np.where(numbers < 0, before + numbers, numbers - 1)
-    wrong = np.flatnonzero((numbers != 0) & ((rows < 0) | (rows >= len(stored))))
+    numbers, counts, rows, is_wrong = _attribute_rows(text, statements, 1, is_texture)
+    wrong = np.flatnonzero(is_wrong)
     if len(wrong):
         face = int(np.searchsorted(np.cumsum(counts), wrong[0], side="right"))
         problem = f"texture coordinate {numbers[wrong[0]]} of a face does not exist: the file has {len(stored)}"
@@ -140,6 +107,45 @@ def texture_coordinates(text: Text, statements: Statements) -> tuple[NDArray[np.
     missing |= ~np.isfinite(uv).all(axis=1)
     uv[missing] = 0.0
     return uv, ~np.logical_or.reduceat(missing, np.cumsum(counts) - counts)
+
+
+_IGNORED = "normals that cannot be read, or do not exist, were ignored"
+
+
+def read_normals(
+    text: Text, statements: Statements, log: WarningLog
+) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    """Read the normals of all corners; None where the file has none.
+
+    Return the vectors, float64, shape (N, 3), NaN where a number could not be read, and the row of each corner of the
+    faces, int32, -1 for a corner without a normal.
+    """
+    is_normal = text.is_statement("vn")
+    lines = np.flatnonzero(is_normal)
+    if not len(lines):
+        return None
+    values, widths = real_rows(text, lines, 2)
+    if (widths != 3).any():
+        log.add("normals", _IGNORED, int((widths != 3).sum()))
+        return None
+    try:
+        _, _, rows, wrong = _attribute_rows(text, statements, 2, is_normal)
+    except AssetError:
+        log.add("normals", _IGNORED)
+        return None
+    log.add("normals", _IGNORED, int(wrong.sum()))
+    rows[wrong] = -1
+    return values.reshape(-1, 3), rows.astype(np.int32)
+
+
+def _attribute_rows(
+    text: Text, statements: Statements, field: int, is_attribute: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """Return the numbers in a field of all corners, corners per face, rows of the attribute, and which do not exist."""
+    numbers, counts = index_rows(text, statements.face_lines, 1, field)
+    before = np.repeat(np.cumsum(is_attribute)[statements.face_lines], counts)
+    rows = np.where(numbers < 0, before + numbers, numbers - 1)
+    return numbers, counts, rows, (numbers != 0) & ((rows < 0) | (rows >= np.count_nonzero(is_attribute)))
 
 
 def _vertices(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.external_files import read_asset
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,35 +35,29 @@ _BOMS = (
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Text:
-    """A file's text with line feeds as line ends; continued lines are joined in place.
-
-    Attributes
-    ----------
-    path
-        The file, for errors.
-    data
-        Its bytes, ASCII compatible, ending in a line feed. Joining keeps the length; `newlines` keeps the line
-        numbers.
-    buffer
-        uint8, shape (len(data),): the same bytes.
-    starts
-        int64, shape (L,): the position of each line's first character that is not blank, else of its line feed.
-    ends
-        int64, shape (L,): the position of each line's line feed.
-    newlines
-        int64: positions of all line feeds of the file, joined ones included.
-    """
+    """A file's text with line feeds as line ends; continued lines are joined in place."""
 
     path: Path
+    # Its bytes, ASCII compatible, ending in a line feed. Joining keeps the length; `newlines` keeps the line
+    # numbers.
     data: bytes
-    buffer: NDArray[np.uint8]
+    buffer: NDArray[np.uint8]  # uint8, shape (len(data),): the same bytes
+    # int64, shape (L,): the position of each line's first character that is not blank, else of its line feed.
     starts: NDArray[np.int64]
-    ends: NDArray[np.int64]
-    newlines: NDArray[np.int64]
+    ends: NDArray[np.int64]  # int64, shape (L,): the position of each line's line feed
+    newlines: NDArray[np.int64]  # int64: positions of all line feeds of the file, joined ones included
 
     def place(self, line: int) -> str:
         """Return the line number of line `line` (an index into `starts`), for people: ``line 12``."""
         return f"line {int(np.searchsorted(self.newlines, self.starts[line])) + 1}"
+
+    def is_statement(self, keyword: str) -> NDArray[np.bool_]:
+        """Tell which lines begin with a keyword of two characters; a blank stands for the end of a word."""
+        # A line ends with a line feed, so it has a second character, except the last line.
+        first, second = self.buffer[self.starts], self.buffer[np.minimum(self.starts + 1, len(self.buffer) - 1)]
+        ends = second <= ord(" ") if keyword[1] == " " else second == ord(keyword[1])
+        found: NDArray[np.bool_] = (first == ord(keyword[0])) & ends
+        return found
 
     def words(self, line: int) -> str:
         """Return the text of line `line` without its comment and surrounding blanks."""
@@ -80,13 +74,7 @@ def decode(raw: bytes) -> str:
 
 
 def read_text(path: Path) -> Text:
-    """Read a text file of any usual encoding.
-
-    Raises
-    ------
-    AssetError
-        The file cannot be read, or its bytes contradict its byte order mark.
-    """
+    """Read a text file of any usual encoding; raise AssetError where its bytes contradict its byte order mark."""
     data = read_asset(path)
     return as_text(path, _to_ascii_compatible(path, data))
 
@@ -132,21 +120,9 @@ def _to_ascii_compatible(path: Path, data: bytes) -> bytes:
 
 
 def real_rows(text: Text, lines: NDArray[np.int64], keyword: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read the reals of many lines at once.
+    """Read the reals of many lines at once: `lines` are ascending indices, each begins with `keyword` characters.
 
-    Parameters
-    ----------
-    text, lines
-        The lines to read, ascending indices.
-    keyword
-        Length of the keyword that each begins with.
-
-    Returns
-    -------
-    values
-        float64, flat; NaN for what is no number.
-    counts
-        int64, shape (len(lines),): numbers per line.
+    Return the values, float64, flat, NaN for what is no number, and the numbers per line, int64, shape (len(lines),).
     """
     if not len(lines):
         return np.zeros(0), np.zeros(0, dtype=np.int64)
@@ -163,21 +139,8 @@ def index_rows(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Read one field of the corners of many faces at once: ``12/7/3`` is 12 in field 0, 7 in field 1 and 3 in field 2.
 
-    Parameters
-    ----------
-    text, lines, keyword
-        As in :func:`real_rows`.
-    field
-        0, 1 or 2. A corner without field 1 or 2 gives 0, which is no index in OBJ files.
-
-    Returns
-    -------
-    As :func:`real_rows`, but int64.
-
-    Raises
-    ------
-    AssetError
-        An index that is no integer, or a corner without field 0.
+    A corner without field 1 or 2 gives 0, which is no index in OBJ files. Return as :func:`real_rows` does, but int64.
+    Raise AssetError for an index that is no integer, or a corner without field 0.
     """
     if not len(lines):
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)

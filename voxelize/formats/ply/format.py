@@ -73,33 +73,15 @@ class _Binary:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlyFile:
-    """The content of a file.
+    """The content of a file."""
 
-    Attributes
-    ----------
-    tables
-        Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
-    textures
-        The names of ``comment TextureFile`` lines, in order.
-    """
-
+    # Columns by property, by element. ASCII values are float64; binary ones have the type that the header says.
     tables: dict[str, Table]
-    textures: tuple[str, ...]
+    textures: tuple[str, ...]  # the names of ``comment TextureFile`` lines, in order
 
 
 def read_ply(path: Path, data: bytes) -> PlyFile:
-    """Read all tables.
-
-    Parameters
-    ----------
-    path, data
-        The file and its bytes.
-
-    Raises
-    ------
-    AssetError
-        The header is invalid, or the rows do not match it.
-    """
+    """Read all tables; raise AssetError where the header is invalid, or the rows do not match it."""
     order, elements, body, textures = _header(path, data)
     if order:
         return PlyFile(_binary(_Binary(path, data, order), body, elements), textures)

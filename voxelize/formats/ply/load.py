@@ -10,14 +10,12 @@ import numpy as np
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.corner_normals import CornerNormals
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
-from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
-from voxrt.voxelize.formats.external_files import ExternalFiles
+from voxrt.voxelize.formats.external_files import ExternalFiles, read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
 from voxrt.voxelize.formats.ply.format import Column, ListColumn, Table, read_ply
 from voxrt.voxelize.formats.ply.painting import image_of_faces, read_textures, surface_appearance, texture_coordinates
-from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog

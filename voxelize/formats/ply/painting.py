@@ -13,9 +13,7 @@ import numpy as np
 
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.texture import Texture
-from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.external_files import ALLOW_OUTSIDE
-from voxrt.voxelize.formats.image_file import decode_image
+from voxrt.voxelize.formats.image_file import read_image
 from voxrt.voxelize.formats.ply.format import ListColumn
 
 if TYPE_CHECKING:
@@ -36,28 +34,11 @@ _OF_VERTICES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 def read_textures(
     path: Path, external_files: ExternalFiles, names: tuple[str, ...], log: WarningLog
 ) -> list[Texture | None]:
-    """Return the textures that a file names; None, with a warning, for one that cannot be opened, and none for none.
-
-    Raises
-    ------
-    AssetError
-        An image is broken, or cannot be read.
-    """
+    """Return the textures that a file names; None, with a warning, for one that cannot be opened, and none for none."""
     textures: list[Texture | None] = []
     for name in names:
-        found = external_files.find_exported(name)
-        textures.append(None)
-        if found is None:
-            log.add("missing-texture", f"texture {name!r} was not found")
-        elif not external_files.allows(found):
-            log.add("outside", f"texture {name!r} is outside the file's folder and was not opened; {ALLOW_OUTSIDE}")
-        else:
-            try:
-                data = found.read_bytes()
-            except OSError as error:
-                problem = f"cannot be read: {error.strerror}"
-                raise AssetError(path, problem, place=f"texture {name}", fix="check its permissions") from None
-            textures[-1] = Texture(decode_image(data, path, f"texture {name}"))
+        found = external_files.reported(external_files.find_exported(name), "texture", name, log)
+        textures.append(None if found is None else Texture(read_image(found, path, f"texture {name}")))
     return textures if any(textures) else []
 
 
@@ -70,14 +51,8 @@ def texture_coordinates(
 ) -> NDArray[np.float64] | None:
     """Return u and v, v downwards, of each corner of the faces: float64, shape (corners, 2); None for none.
 
-    Parameters
-    ----------
-    tables
-        The file's.
-    corners, counts
-        Vertices of the faces in use, face after face, and how many each has.
-    kept
-        Which of the file's faces these are; strips come after them.
+    `corners` are the vertices of the faces in use, face after face, and `counts` how many each has. `kept` are the
+    numbers of these faces in the file; strips come after them.
     """
     faces = tables.get("face", {})
     wedges = faces.get("texcoord")
@@ -111,16 +86,9 @@ def surface_appearance(
 ) -> SurfaceAppearance | None:
     """Return the appearance of triangles: a texture where there is one, else colours; None for neither.
 
-    Parameters
-    ----------
-    textures, coordinates
-        From :func:`read_textures` and :func:`texture_coordinates`.
-    images
-        From :func:`image_of_faces`, for the triangles.
-    by_colour
-        What the colours are, and linear colour and alpha of the triangles' corners: float64, shape (T, 3, 4).
-    cut
-        int64, shape (T, 3): the triangles' corners among all corners.
+    `images` is from :func:`image_of_faces`, for the triangles. `by_colour` says what the colours are, and has linear
+    colour and alpha of the triangles' corners: float64, shape (T, 3, 4). `cut`, int64, shape (T, 3), are the triangles'
+    corners among all corners.
     """
     rows = np.full(len(cut), -1, dtype=np.int32)
     uv = np.zeros((len(cut), 3, 2))

@@ -10,13 +10,11 @@ import numpy as np
 from voxrt.voxelize.colour.appearance import Appearance, SurfaceAppearance
 from voxrt.voxelize.colour.srgb import LINEAR_OF_SRGB8
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
-from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
+from voxrt.voxelize.formats.external_files import read_asset
 from voxrt.voxelize.formats.material_table import MaterialTable
 from voxrt.voxelize.formats.mesh_materials import LoadedMesh, assign_materials
-from voxrt.voxelize.formats.scene_frame import scene_transform
+from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range, scene_transform
 from voxrt.voxelize.formats.stl.text import ascii_solids
-from voxrt.voxelize.formats.stl.welding import weld
 from voxrt.voxelize.scene import Scene, SceneObject
 from voxrt.voxelize.warning_log import WarningLog
 
@@ -145,3 +143,30 @@ def _appearance(facet_colours: tuple[NDArray[np.uint8], NDArray[np.bool_]]) -> S
     linear[:, :, :3] = LINEAR_OF_SRGB8[colours][:, None]
     rows = np.where(coloured, 0, -1).astype(np.int32)
     return SurfaceAppearance((Appearance("facet colours"),), rows, np.zeros((len(colours), 3, 2)), linear)
+
+
+def weld(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return the distinct corners as vertices, and the triangles over them.
+
+    `corners`, float64, shape (3 * T, 3), are those of triangle after triangle. The vertices, float64, shape (V, 3), are
+    in order of first appearance; the triangles are int32, shape (T, 3).
+    """
+    exact = np.ascontiguousarray(corners + 0.0)  # -0 becomes 0, which it equals
+    _, first, inverse = np.unique(_hashes(exact), return_index=True, return_inverse=True)
+    if not np.array_equal(exact[first][inverse], exact):  # two positions share a hash: compare all bytes, which is slow
+        keys = exact.view(np.dtype((np.void, 24))).ravel()
+        _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return exact[first[order]], rank[inverse].reshape(-1, 3).astype(np.int32)
+
+
+def _hashes(exact: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """Mix the bits of each row: odd multipliers, as in Knuth's multiplicative hashing, and shifts of the high bits."""
+    bits = exact.view(np.uint64)
+    mixed = np.zeros(len(exact), dtype=np.uint64)
+    for column, odd in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)):
+        mixed = (mixed ^ bits[:, column]) * np.uint64(odd)
+        mixed ^= mixed >> np.uint64(29)
+    return mixed

@@ -27,10 +27,7 @@ _LOWER = 0x20
 def ascii_solids(path: Path, data: bytes) -> list[tuple[str, NDArray[np.float64]]]:
     """Return each solid's unique name and its corners (float64, shape (3 * T, 3)).
 
-    Raises
-    ------
-    AssetError
-        A facet is not a triangle, or a coordinate is not a number.
+    Raise AssetError where a facet is not a triangle, or a coordinate is not a number.
     """
     found = _by_lines(as_text(path, data))
     solids = _by_words(path, data) if found is None else found

@@ -25,12 +25,7 @@ def read_cameras(
 
     The angle of view is that of the vertical aperture and the focal length. What these pictures cannot show (planes
     that clip, an aperture off the axis) is counted in `log`. A camera has its prim's name, or its path where several
-    prims have that name.
-
-    Parameters
-    ----------
-    to_scene
-        float64, shape (4, 4): from the stage's frame to the scene's.
+    prims have that name. `to_scene`, float64, shape (4, 4), takes the stage's frame to the scene's.
     """
     transforms = UsdGeom.XformCache(time)
     prims = [

@@ -25,8 +25,7 @@ from voxrt.voxelize.formats.scene_message import (
     failure_bytes,
     scene_bytes,
 )
-from voxrt.voxelize.formats.usd.limits import Allowance, Limits
-from voxrt.voxelize.formats.usd.request import Request
+from voxrt.voxelize.formats.usd.limits import Allowance, Limits, Request
 
 _PR_SET_PDEATHSIG = 1
 

@@ -10,7 +10,7 @@ from pxr import Usd, UsdGeom
 
 from voxrt.voxelize import primitive_meshes
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.coordinate_range import FARTHEST, in_range
+from voxrt.voxelize.formats.scene_frame import FARTHEST, in_range
 from voxrt.voxelize.formats.triangulation import triangulate_corners
 from voxrt.voxelize.formats.usd import values
 
@@ -48,30 +48,14 @@ _FUNCTIONS: dict[str, Callable[..., primitive_meshes.Surface]] = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Surface:
-    """Triangles of one prim.
+    """Triangles of one prim."""
 
-    Attributes
-    ----------
-    positions
-        float64, shape (V, 3), finite, in the prim's frame.
-    triangles
-        int32, shape (T, 3), counter-clockwise seen from outside.
-    faces
-        int64, shape (T,): the face of the prim that each triangle belongs to.
-    face_count
-        The number of faces of the prim, holes included.
-    corners
-        int64, shape (T, 3): each triangle's corners, among all corners of the faces.
-    corner_count
-        The number of corners of all faces; 0 for solids.
-    """
-
-    positions: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    faces: NDArray[np.int64]
-    face_count: int
-    corners: NDArray[np.int64]
-    corner_count: int
+    positions: NDArray[np.float64]  # float64, shape (V, 3), finite, in the prim's frame
+    triangles: NDArray[np.int32]  # int32, shape (T, 3), counter-clockwise seen from outside
+    faces: NDArray[np.int64]  # int64, shape (T,): the face of the prim that each triangle belongs to
+    face_count: int  # the number of faces of the prim, holes included
+    corners: NDArray[np.int64]  # int64, shape (T, 3): each triangle's corners, among all corners of the faces
+    corner_count: int  # the number of corners of all faces; 0 for solids
 
 
 def surface_of(
@@ -79,10 +63,7 @@ def surface_of(
 ) -> Surface | None:
     """Return the surface of a Mesh or of one of the solids; None for any other prim and for a mesh without faces.
 
-    Raises
-    ------
-    AssetError
-        A mesh whose topology contradicts itself, or a solid with an invalid dimension.
+    Raise AssetError for a mesh whose topology contradicts itself, or a solid with an invalid dimension.
     """
     if prim.IsA(UsdGeom.Mesh):
         return _mesh(UsdGeom.Mesh(prim), path, time, log, deformed)

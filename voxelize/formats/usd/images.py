@@ -40,14 +40,7 @@ class Images:
     def texture(self, shading: Shading, faces: int) -> Texture | None:
         """Return the texture of a shading, with the colour of its image and the alpha of its alpha image.
 
-        Returns
-        -------
         None, with a warning for `faces` faces, where the image is missing or its format is not supported.
-
-        Raises
-        ------
-        AssetError
-            The image is broken.
         """
         if shading not in self._textures:
             self._textures[shading] = self._combined(shading)

@@ -21,23 +21,12 @@ if TYPE_CHECKING:
 def placed_copies(
     prim: Usd.Prim, path: Path, time: Usd.TimeCode, log: WarningLog
 ) -> tuple[list[Usd.Prim], NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
-    """Evaluate a point instancer.
+    """Evaluate a point instancer. Masked copies are left out and counted.
 
-    Returns
-    -------
-    prototypes
-        The root prims of the prototypes.
-    indices
-        int64, shape (N,): the prototype of each copy.
-    transforms
-        float64, shape (N, 4, 4), column vectors: from the prototype root's own frame to the instancer's.
-    numbers
-        int64, shape (N,): each copy's index in the instancer's arrays. Masked copies are left out and counted.
-
-    Raises
-    ------
-    AssetError
-        Its arrays contradict each other, or a prototype does not exist.
+    Return the root prims of the prototypes, the prototype of each copy (int64, shape (N,)), the transforms from the
+    prototype root's own frame to the instancer's (float64, shape (N, 4, 4), column vectors), and each copy's index in
+    the instancer's arrays (int64, shape (N,)). Raise AssetError where its arrays contradict each other, or a prototype
+    does not exist.
     """
     instancer = UsdGeom.PointInstancer(prim)
     place = str(prim.GetPath())

@@ -28,8 +28,7 @@ from voxrt.voxelize.formats.scene_message import (
     MemoryMessage,
     read_message,
 )
-from voxrt.voxelize.formats.usd.limits import Limits
-from voxrt.voxelize.formats.usd.request import Request
+from voxrt.voxelize.formats.usd.limits import Limits, Request
 from voxrt.voxelize.scene import Scene
 
 if TYPE_CHECKING:

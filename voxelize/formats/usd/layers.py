@@ -20,16 +20,8 @@ if TYPE_CHECKING:
 def open_layers(path: Path, external_files: ExternalFiles, allowance: Allowance) -> list[Sdf.Layer]:
     """Open the layers that a stage may use, whatever variants are selected, one after another, each after its check.
 
-    Layers that cannot be opened are left out: the stage reports them.
-
-    Returns
-    -------
-    The layers; the stage takes them as they are while they are kept.
-
-    Raises
-    ------
-    AssetError
-        A layer refers to one outside the file's folder.
+    Layers that cannot be opened are left out: the stage reports them. The stage takes the returned layers as they are
+    while they are kept. Raise AssetError for a layer that refers to one outside the file's folder.
     """
     allowance.add(path.stat().st_size)
     seen: set[str] = set()

@@ -16,6 +16,8 @@ import resource
 import signal
 from dataclasses import dataclass
 
+import msgspec
+
 from voxrt.voxelize.free_memory import free_memory
 
 _MEMORY = 2 << 30
@@ -28,27 +30,29 @@ _DAYTIME_FACTOR = 4
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a small file may take, and what no file may.
+    """What a small file may take, and what no file may."""
 
-    Attributes
-    ----------
-    memory
-        Bytes that a small file may take.
-    most_memory
-        Bytes that no file may exceed.
-    seconds
-        Seconds of the processor that a small file may take.
-    """
-
-    memory: int
-    most_memory: int
-    seconds: float = _SECONDS
+    memory: int  # bytes that a small file may take
+    most_memory: int  # bytes that no file may exceed
+    seconds: float = _SECONDS  # seconds of the processor that a small file may take
 
     @classmethod
     def of_this_machine(cls) -> Limits:
         """Return 2 GiB for small files, half of the free memory for any, and 30 seconds."""
         most = max(free_memory() // 2, _LEAST_MEMORY)
         return cls(min(_MEMORY, most), most)
+
+
+class Request(msgspec.Struct, frozen=True, kw_only=True):
+    """The options and limits of ``read_isolated``, and the process id of its caller."""
+
+    parent: int
+    variants: tuple[str, ...]
+    time: float | None
+    allow_outside: bool
+    memory: int
+    most_memory: int
+    seconds: float
 
 
 class Allowance:

@@ -39,13 +39,7 @@ class Materials:
     _shadings: dict[str, Shading] = field(default_factory=dict)
 
     def shadings_of_faces(self, prim: Usd.Prim, surface: Surface) -> tuple[list[Shading], NDArray[np.int32]]:
-        """Return the shadings of a prim, and the one of each face as an index (int32, shape (F,); -1 for holes).
-
-        Raises
-        ------
-        AssetError
-            A face subset refers to faces that do not exist.
-        """
+        """Return the shadings of a prim, and the one of each face as an index (int32, shape (F,); -1 for holes)."""
         shadings: dict[Shading, int] = {}
         rows = np.full(surface.face_count, -1, dtype=np.int32)
         for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
@@ -66,12 +60,8 @@ class Materials:
     ) -> tuple[NDArray[np.uint8], SurfaceAppearance | None]:
         """Return the materials and the appearance of a prim's triangles.
 
-        Returns
-        -------
-        materials
-            uint8, shape (T,): ids; 0 for triangles that are left out, and for those with an appearance.
-        appearance
-            Textures and vertex colours; None where no triangle has any.
+        The materials are uint8, shape (T,): ids; 0 for triangles that are left out, and for those with an appearance.
+        The appearance is None where no triangle has textures or vertex colours.
         """
         by_triangle = rows[surface.faces]
         materials = np.zeros(len(by_triangle), dtype=np.uint8)

@@ -30,11 +30,9 @@ def exists(prim: Usd.Prim, name: str, time: Usd.TimeCode) -> bool:
 def at_corners(
     prim: Usd.Prim, name: str, surface: Surface, time: Usd.TimeCode, log: WarningLog
 ) -> NDArray[np.float64] | None:
-    """Return a primvar at the corners of a surface's triangles, by its interpolation.
+    """Return a primvar at the corners of a surface's triangles, by its interpolation: float64, shape (T, 3, K), finite.
 
-    Returns
-    -------
-    float64, shape (T, 3, K), finite; None, with a warning, where the number of values does not match the interpolation.
+    None, with a warning, where the number of values does not match the interpolation.
     """
     values = _flattened(prim, name, time)
     if values is None:

@@ -33,70 +33,35 @@ _WRAPS: dict[str, Wrap] = {"repeat": "repeat", "mirror": "mirror", "clamp": "cla
 
 @dataclass(frozen=True, slots=True)
 class ImageSource:
-    """A texture: its image and its placement on the surface.
+    """A texture: its image and its placement on the surface."""
 
-    Attributes
-    ----------
-    file
-        The resolved asset path; empty for none.
-    raw
-        Whether its colours are linear instead of sRGB.
-    wrap
-        How coordinates outside 0 … 1 are treated.
-    primvar
-        The name of the primvar with the texture coordinates.
-    turn, scale, offset
-        Applied to the coordinates: scale, then rotation (degrees counter-clockwise), then offset.
-    factor, bias
-        Applied to its linear colour and alpha.
-    channel
-        The channel, one of ``rgba``, that gives an opacity.
-    point
-        The coordinates of every point, where no coordinates are connected; None where some are connected.
-    """
-
-    file: str
-    raw: bool = False
-    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
-    primvar: str = "st"
+    file: str  # the resolved asset path; empty for none
+    raw: bool = False  # whether its colours are linear instead of sRGB
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")  # how coordinates outside 0 … 1 are treated
+    primvar: str = "st"  # the name of the primvar with the texture coordinates
+    # Applied to the coordinates: scale, then rotation (degrees counter-clockwise), then offset.
     turn: float = 0.0
     scale: tuple[float, float] = (1.0, 1.0)
     offset: tuple[float, float] = (0.0, 0.0)
+    # Applied to its linear colour and alpha.
     factor: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
     bias: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    channel: str = "a"
+    channel: str = "a"  # the channel, one of ``rgba``, that gives an opacity
+    # The coordinates of every point, where no coordinates are connected; None where some are connected.
     point: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Shading:
-    """The colour and opacity of faces.
+    """The colour and opacity of faces."""
 
-    Attributes
-    ----------
-    name
-        The author's name; None for faces without any colour.
-    colour
-        Linear; used where a texture or primvar is missing. None where the author gave none.
-    opacity
-        0 … 1.
-    cutoff
-        Faces are cut away where their opacity is below it.
-    image
-        A texture for the colour.
-    alpha
-        A texture for the opacity.
-    primvar
-        The name of the primvar that gives the colour.
-    """
-
-    name: str | None
-    colour: Linear | None = None
-    opacity: float = 1.0
-    cutoff: float = BLEND_CUTOFF
-    image: ImageSource | None = None
-    alpha: ImageSource | None = None
-    primvar: str | None = None
+    name: str | None  # the author's name; None for faces without any colour
+    colour: Linear | None = None  # linear; used where a texture or primvar is missing. None where the author gave none.
+    opacity: float = 1.0  # 0 … 1
+    cutoff: float = BLEND_CUTOFF  # faces are cut away where their opacity is below it
+    image: ImageSource | None = None  # a texture for the colour
+    alpha: ImageSource | None = None  # a texture for the opacity
+    primvar: str | None = None  # the name of the primvar that gives the colour
 
 
 NO_SHADING = Shading(None)

@@ -25,13 +25,9 @@ class Deformed:
 
 
 def deformed_meshes(stage: Usd.Stage, time: Usd.TimeCode, log: WarningLog) -> dict[str, Deformed]:
-    """Return the posed points of every mesh that is bound to a skeleton.
+    """Return the posed points of every mesh that is bound to a skeleton, by prim path.
 
     Joints blend linearly (UsdSkel's ``classicLinear``); meshes that request dual quaternions are counted in `log`.
-
-    Returns
-    -------
-    The posed points by prim path.
     """
     posed: dict[str, Deformed] = {}
     cache = UsdSkel.Cache()

@@ -20,17 +20,8 @@ if TYPE_CHECKING:
 def open_stage(path: Path, variants: Sequence[str]) -> Usd.Stage:
     """Open a stage with all payloads, and select variants in the order given. The file stays unchanged.
 
-    Parameters
-    ----------
-    path
-        The root layer.
-    variants
-        Selections: ``"/prim/path:set=name"``.
-
-    Raises
-    ------
-    AssetError
-        A selection names a prim, a set or a variant that does not exist.
+    A selection is ``"/prim/path:set=name"``. Raise AssetError where it names a prim, a set or a variant that does not
+    exist.
     """
     stage = Usd.Stage.Open(str(path))
     stage.SetEditTarget(stage.GetSessionLayer())
@@ -79,13 +70,7 @@ def up_axis(stage: Usd.Stage, log: WarningLog) -> str:
 
 
 def metres_per_unit(stage: Usd.Stage, path: Path) -> float:
-    """Return the root layer's unit in metres.
-
-    Raises
-    ------
-    AssetError
-        It is not a positive number.
-    """
+    """Return the root layer's unit in metres; raise AssetError where it is not a positive number."""
     try:
         unit = float(UsdGeom.GetStageMetersPerUnit(stage))
     except Tf.ErrorException:  # some exporters store a float where USD wants a double

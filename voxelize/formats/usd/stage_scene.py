@@ -39,21 +39,7 @@ def read_stage(
 ) -> Scene:
     """Read a USD stage in this process; :func:`voxrt.voxelize.formats.usd.isolated.read_isolated` says how.
 
-    Parameters
-    ----------
-    path
-        The root layer.
-    allowance
-        Told of each file before it is opened.
-    variants, time, allow_outside
-        As for :func:`voxrt.voxelize.formats.usd.isolated.read_isolated`.
-
-    Raises
-    ------
-    AssetError
-        The stage cannot be opened, contradicts itself, or shows nothing.
-    DoesNotFitError
-        More than 255 materials or a million objects.
+    `allowance` is told of each file before it is opened.
     """
     log = WarningLog()
     external_files = ExternalFiles.of(path, allow_outside=allow_outside)

@@ -87,10 +87,7 @@ class StageTraversal:
     def objects(self, to_scene: NDArray[np.float64]) -> tuple[SceneObject, ...]:
         """Return the visible objects in the order of traversal.
 
-        Parameters
-        ----------
-        to_scene
-            float64, shape (4, 4): from the stage's frame to the scene's.
+        `to_scene`, float64, shape (4, 4), takes the stage's frame to the scene's.
         """
         placed = self._below(self.stage.GetPseudoRoot(), PREDICATE)
         transforms = [self._to_scene(one, to_scene) for one in placed]

@@ -16,13 +16,7 @@ if TYPE_CHECKING:
 
 
 def integers(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArray[np.int64]:
-    """Return an attribute's integers, int64, flat; none where it has no value.
-
-    Raises
-    ------
-    AssetError
-        Its values are not integers.
-    """
+    """Return an attribute's integers, int64, flat; none where it has no value. Raise AssetError for other values."""
     value = attribute.Get(time)
     try:
         found = np.array([] if value is None else value)
@@ -36,10 +30,7 @@ def integers(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArra
 def points(attribute: Usd.Attribute, time: Usd.TimeCode, path: Path) -> NDArray[np.float64]:
     """Return an attribute's points, float64, shape (N, 3); none where it has no value.
 
-    Raises
-    ------
-    AssetError
-        Its values are not points.
+    Raise AssetError for other values.
     """
     value = attribute.Get(time)
     try:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voxrt.voxelize.errors import AssetError
-from voxrt.voxelize.formats.asset_bytes import read_asset
+from voxrt.voxelize.formats.external_files import read_asset
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,37 +73,20 @@ def default_palette() -> NDArray[np.uint8]:
 
 @dataclass(slots=True)
 class VoxFile:
-    """The content of a file.
+    """The content of a file."""
 
-    Attributes
-    ----------
-    models
-        In the order of the file.
-    palette
-        uint8, shape (256, 3): sRGB by colour index; row 0 is empty space.
-    nodes
-        The scene graph by node id; empty in files without one.
-    hidden_layers
-        Layers that the author hid.
-    material_types
-        By colour index: ``_metal``, ``_glass``, ``_emit`` and so on, where it is not ``_diffuse``.
-    """
-
-    models: list[VoxModel] = field(default_factory=list)
+    models: list[VoxModel] = field(default_factory=list)  # in the order of the file
+    # uint8, shape (256, 3): sRGB by colour index; row 0 is empty space.
     palette: NDArray[np.uint8] = field(default_factory=default_palette)
+    # The scene graph by node id; empty in files without one.
     nodes: dict[int, Transform | Group | Shape] = field(default_factory=dict)
-    hidden_layers: set[int] = field(default_factory=set)
+    hidden_layers: set[int] = field(default_factory=set)  # layers that the author hid
+    # By colour index: ``_metal``, ``_glass``, ``_emit`` and so on, where it is not ``_diffuse``.
     material_types: dict[int, str] = field(default_factory=dict)
 
 
 def read_chunks(path: Path) -> VoxFile:
-    """Read a file.
-
-    Raises
-    ------
-    AssetError
-        Where the file cannot be read or breaks the format: names the chunk and its offset.
-    """
+    """Read a file; raise AssetError with the chunk and its offset where the file breaks the format."""
     data = read_asset(path)
     reader = _Reader(path, data, 0, len(data), "header")
     if reader.take(4) != b"VOX ":

@@ -4,17 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 from assets import asset
+from oracles.surfaces import area, bounds, scene_triangles, volume
 
 from voxrt.voxelize import AssetError, load
-
-
-def world(scene):
-    """All triangles in the scene frame, float64, shape (T, 3, 3)."""
-    corners = []
-    for thing in scene.objects:
-        positions = thing.mesh.positions @ thing.transform[:3, :3].T + thing.transform[:3, 3]
-        corners.append(positions[thing.mesh.triangles])
-    return np.concatenate(corners)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +41,7 @@ def world(scene):
 )
 def test_sizes_are_those_that_another_reader_measured(name, triangles, size, uniform):
     scene = load(asset(name))
-    corners = world(scene)
+    corners = scene_triangles(scene)
     assert len(corners) == triangles
     painted = {
         appearance.name
@@ -58,7 +50,7 @@ def test_sizes_are_those_that_another_reader_measured(name, triangles, size, uni
         for appearance in thing.mesh.appearance.entries
     }
     assert sum(material.name not in painted for material in scene.materials[1:]) == uniform
-    np.testing.assert_allclose(np.ptp(corners.reshape(-1, 3), axis=0), size, rtol=6e-3, atol=1e-9)
+    np.testing.assert_allclose(np.ptp(bounds(corners), axis=0), size, rtol=6e-3, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +66,7 @@ def test_sizes_are_those_that_another_reader_measured(name, triangles, size, uni
 )
 def test_triangles_are_those_of_trimesh(name):
     path = asset(name)
-    ours = world(load(path))
+    ours = scene_triangles(load(path))
     theirs = trimesh.load_scene(path, process=False).to_mesh().triangles
     assert len(ours) == len(theirs)
     for corners in (ours, theirs):
@@ -86,20 +78,14 @@ def test_triangles_are_those_of_trimesh(name):
         return corners[np.lexsort(rows.T)]
 
     np.testing.assert_allclose(ordered(ours).sum(axis=1), ordered(theirs).sum(axis=1), rtol=0, atol=0.01)
-    np.testing.assert_allclose(_volume(ours), _volume(theirs), rtol=1e-4, atol=1e-4)
-
-
-def _volume(corners):
-    """The signed volume that the triangles enclose: negative where they are turned inside out."""
-    return np.einsum("ti,ti->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    np.testing.assert_allclose(volume(ours), volume(theirs), rtol=1e-4, atol=1e-4)
 
 
 def test_primitive_modes_of_the_generator():
     for number in (4, 5, 6, 11, 12, 13, 14, 15):
         path = asset(f"gltf/assimp/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{number:02}.gltf")
-        corners = world(load(path))
-        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-        assert (len(corners), area.sum()) == (2, pytest.approx(1))
+        corners = scene_triangles(load(path))
+        assert (len(corners), area(corners)) == (2, pytest.approx(1))
     for number in (0, 1, 2, 3, 7, 8, 9, 10):
         with pytest.raises(AssetError, match="has no triangles to voxelize"):
             load(asset(f"gltf/assimp/Mesh_PrimitiveMode/Mesh_PrimitiveMode_{number:02}.gltf"))

@@ -6,6 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
+from oracles.sound_scenes import kinds
 
 from voxrt.voxelize import (
     EMPTY,
@@ -22,10 +23,6 @@ from voxrt.voxelize import (
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]
 TRIANGLE = SQUARE[:3]
 POINTS, LINES, LOOP, LINE_STRIP, TRIANGLES, STRIP, FAN = range(7)
-
-
-def kinds(scene):
-    return {warning.kind: warning.count for warning in scene.warnings}
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from oracles.gltf_writer import GltfWriter
+from oracles.sound_scenes import kinds
 from PIL import Image
 
 from voxrt.voxelize import AssetError, DoesNotFitError, load
@@ -142,10 +143,6 @@ def test_the_second_set_of_coordinates_and_its_override(tmp_path):
     assert seen(textured((0.75, 0.25), texture={"texCoord": 1}, set_number=1), tmp_path / "a.glb") == GREEN[:3]
     override = {"texCoord": 7, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}
     assert seen(textured((0.75, 0.25), texture=override, set_number=1), tmp_path / "b.glb") == GREEN[:3]
-
-
-def kinds(scene):
-    return {warning.kind: warning.count for warning in scene.warnings}
 
 
 def test_missing_coordinates_and_images_leave_the_factor_and_are_counted(tmp_path):

@@ -3,8 +3,8 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from oracles.sound_scenes import read_or_refused
 
-from voxrt.voxelize import AssetError, DoesNotFitError
 from voxrt.voxelize.formats.obj import load_obj
 
 numbers = st.sampled_from(["0", "1", "-1", "2", "3", "1e3", "nan", "1e999", "-0", "x", "1.5.2", "+2", "1_0", ""])
@@ -47,35 +47,20 @@ def load_text(folder, text, mtl=""):
     path = folder / "model.obj"
     path.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass"))
     (folder / "m.mtl").write_text(mtl)
-    try:
-        return load_obj(path)
-    except (AssetError, DoesNotFitError) as error:
-        return str(error)
-
-
-def assert_sound(result):
-    if isinstance(result, str):
-        assert "\n" not in result
-        return
-    for one in result.objects:
-        mesh = one.mesh
-        assert len(mesh.triangles)
-        assert mesh.triangles.min() >= 0
-        assert mesh.triangles.max() < len(mesh.positions)
-        assert np.isfinite(mesh.positions).all()
-        assert mesh.materials.min() >= 1
-        assert mesh.materials.max() < len(result.materials)
+    scene = read_or_refused(load_obj, path)
+    assert scene is None or all(len(one.mesh.triangles) for one in scene.objects)
+    return scene
 
 
 @given(texts, materials)
 def test_any_statements(tmp_path_factory, text, mtl):
-    assert_sound(load_text(tmp_path_factory.mktemp("obj"), text, mtl))
+    load_text(tmp_path_factory.mktemp("obj"), text, mtl)
 
 
 @given(st.binary(max_size=200))
 def test_any_bytes(tmp_path_factory, data):
-    assert_sound(load_text(tmp_path_factory.mktemp("obj"), data))
-    assert_sound(load_text(tmp_path_factory.mktemp("obj"), b"v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n" + data))
+    load_text(tmp_path_factory.mktemp("obj"), data)
+    load_text(tmp_path_factory.mktemp("obj"), b"v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n" + data)
 
 
 def plain_reader(text):

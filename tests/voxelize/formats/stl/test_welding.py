@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from voxrt.voxelize.formats.stl import welding as module
-from voxrt.voxelize.formats.stl.welding import weld
+from voxrt.voxelize.formats.stl import load as module
+from voxrt.voxelize.formats.stl.load import weld
 
 soups = st.integers(0, 6).flatmap(
     lambda count: arrays(np.float64, (3 * count, 3), elements=st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e-300, 0.1]))
