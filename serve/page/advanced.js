@@ -4,7 +4,14 @@ import { axes, FIELD_OF_VIEW, fieldOfView, focal, lookAlong } from "./camera.js"
 import { $, isPressed, makeSlider, pressed } from "./elements.js";
 import { clamp } from "./vectors.js";
 
-const SIZES = [[320, 240], [512, 512], [640, 480], [800, 600], [1280, 720], [1920, 1080]];
+const SIZES = [
+  [320, 240],
+  [512, 512],
+  [640, 480],
+  [800, 600],
+  [1280, 720],
+  [1920, 1080],
+];
 
 // `app` is that of main.js.
 export class Advanced {
@@ -14,22 +21,36 @@ export class Advanced {
     const slider = (label, limits, onInput) => makeSlider(camera, label, limits, onInput, true);
     const replaced = (triple, i, value) => triple.map((old, j) => (j === i ? value : old));
     const zoomed = (fov) => app.change((view) => ({ ...view, fov: clamp(fov, FIELD_OF_VIEW.min, FIELD_OF_VIEW.max) }));
-    this.position = [0, 1, 2].map((i) => slider(`Position ${"XYZ"[i]}`, { step: 0.0625 }, (value) =>
-      app.change((view) => ({ ...view, eye: replaced(view.eye, i, clamp(value, -app.limit(), app.limit())) }))));
-    this.direction = [0, 1, 2].map((i) => slider(`Direction ${"XYZ"[i]}`, { min: -1, max: 1, step: 0.001 }, (value) =>
-      app.change((view) => lookAlong(view, replaced(axes(view).look, i, value)))));
-    this.magnitude = slider("Magnitude", { min: 50, max: 4000, step: 1 }, (value) => zoomed(fieldOfView(Math.max(1, value), app.size())));
+    this.position = [0, 1, 2].map((i) =>
+      slider(`Position ${"XYZ"[i]}`, { step: 0.0625 }, (value) =>
+        app.change((view) => ({ ...view, eye: replaced(view.eye, i, clamp(value, -app.limit(), app.limit())) })),
+      ),
+    );
+    this.direction = [0, 1, 2].map((i) =>
+      slider(`Direction ${"XYZ"[i]}`, { min: -1, max: 1, step: 0.001 }, (value) =>
+        app.change((view) => lookAlong(view, replaced(axes(view).look, i, value))),
+      ),
+    );
+    this.magnitude = slider("Magnitude", { min: 50, max: 4000, step: 1 }, (value) =>
+      zoomed(fieldOfView(Math.max(1, value), app.size())),
+    );
     this.fov = slider("Field of view", { min: FIELD_OF_VIEW.min, max: FIELD_OF_VIEW.max, step: 0.1 }, zoomed);
     $("flip-x").onclick = () => app.change((view) => ({ ...view, flipX: !view.flipX }));
     $("flip-y").onclick = () => app.change((view) => ({ ...view, flipY: !view.flipY }));
-    $("size").onchange = ({ target }) => app.fixSize(target.value === "stage" ? null : target.value.split("x").map(Number));
+    $("size").onchange = ({ target }) =>
+      app.fixSize(target.value === "stage" ? null : target.value.split("x").map(Number));
     $("nonstop").onclick = ({ currentTarget }) => app.set({ nonstop: !isPressed(currentTarget) });
     $("advanced").addEventListener("toggle", () => this.readRegisters());
   }
 
   hello({ device }) {
-    const sizes = SIZES.filter((size) => size.every((part, i) => part <= device.size[i]) && size[0] % device.width_step === 0);
-    $("size").replaceChildren(new Option("as the page", "stage"), ...sizes.map((size) => new Option(size.join(" × "), size.join("x"))));
+    const sizes = SIZES.filter(
+      (size) => size.every((part, i) => part <= device.size[i]) && size[0] % device.width_step === 0,
+    );
+    $("size").replaceChildren(
+      new Option("as the page", "stage"),
+      ...sizes.map((size) => new Option(size.join(" × "), size.join("x"))),
+    );
     this.app.fixSize(null);
   }
 
@@ -54,13 +75,25 @@ export class Advanced {
     const { connection } = this.app;
     if (!$("advanced").open || !connection.connected) return;
     try {
-      const [{ registers }, { counters }] = await Promise.all([connection.request("registers"), connection.request("counters")]);
-      const rows = [...Object.entries(registers), ...Object.entries(counters).map(([name, value]) => [`server ${name}`, value])];
-      $("registers").querySelector("tbody").replaceChildren(...rows.map(([name, value]) => {
-        const row = document.createElement("tr");
-        for (const text of [name, value.toLocaleString()]) row.insertCell().textContent = text;
-        return row;
-      }));
-    } catch { /* the connection was lost; the page says so */ }
+      const [{ registers }, { counters }] = await Promise.all([
+        connection.request("registers"),
+        connection.request("counters"),
+      ]);
+      const rows = [
+        ...Object.entries(registers),
+        ...Object.entries(counters).map(([name, value]) => [`server ${name}`, value]),
+      ];
+      $("registers")
+        .querySelector("tbody")
+        .replaceChildren(
+          ...rows.map(([name, value]) => {
+            const row = document.createElement("tr");
+            for (const text of [name, value.toLocaleString()]) row.insertCell().textContent = text;
+            return row;
+          }),
+        );
+    } catch {
+      /* the connection was lost; the page says so */
+    }
   }
 }

@@ -10,8 +10,15 @@ export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
 
 // A pose: eye in voxels; yaw and pitch in radians, both 0 for a look along -z; fov in degrees across the height of the
 // largest 4:3 part of the frame, so that a page of any shape shows as much; distance in voxels from the eye to the target, around which the camera orbits; flips mirror the picture.
-export const pose = (eye, yaw, pitch, fov, distance, flipX = false, flipY = false) =>
-  ({ eye, yaw, pitch, fov, distance, flipX, flipY });
+export const pose = (eye, yaw, pitch, fov, distance, flipX = false, flipY = false) => ({
+  eye,
+  yaw,
+  pitch,
+  fov,
+  distance,
+  flipX,
+  flipY,
+});
 
 export function axes({ yaw, pitch }) {
   const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
@@ -28,8 +35,11 @@ export function toRegisters(view, size) {
   const halves = size.map((side) => Math.floor(side / 2));
   const ahead = scale(look, focal(view.fov, size));
   const rounding = 1 + halves[0] + halves[1];
-  const reach = Math.max(...[0, 1, 2].map((axis) =>
-    Math.abs(ahead[axis]) + Math.abs(right[axis]) * halves[0] + Math.abs(up[axis]) * halves[1]));
+  const reach = Math.max(
+    ...[0, 1, 2].map(
+      (axis) => Math.abs(ahead[axis]) + Math.abs(right[axis]) * halves[0] + Math.abs(up[axis]) * halves[1],
+    ),
+  );
   const largest = Math.max(...[...ahead, ...right, ...up].map(Math.abs));
   const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / reach);
   const whole = (triple, sign = 1) => triple.map((value) => Math.round(value * factor * sign) + 0);
@@ -54,16 +64,21 @@ export function fromRegisters({ position, look, right, up }, size, centre, shown
   const fit = Math.min(shownSize[0] / size[0], shownSize[1] / size[1]);
   const towards = subtract(centre, eye);
   return pose(
-    eye, yaw, pitch,
+    eye,
+    yaw,
+    pitch,
     clamp(fieldOfView((fit * length(look)) / (length(right) || 1), shownSize), FIELD_OF_VIEW.min, FIELD_OF_VIEW.max),
     Math.max(dot(towards, ahead), length(towards) / 8, 1),
-    dot(upright.right, right) < 0, dot(upright.up, up) < 0,
+    dot(upright.right, right) < 0,
+    dot(upright.up, up) < 0,
   );
 }
 
 // The direction of the ray through a pixel, as the hardware computes it.
 export const pixelDirection = ({ look, right, up }, [width, height], column, row) =>
-  look.map((value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row));
+  look.map(
+    (value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row),
+  );
 
 export function lookAlong(view, direction) {
   const size = length(direction);

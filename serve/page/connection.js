@@ -19,10 +19,14 @@ export class Connection extends EventTarget {
     this.connect();
     // A page that the browser keeps for "back" must not keep its control.
     addEventListener("pagehide", () => this.socket.close());
-    addEventListener("pageshow", ({ persisted }) => { if (persisted) this.connectNow(); });
+    addEventListener("pageshow", ({ persisted }) => {
+      if (persisted) this.connectNow();
+    });
   }
 
-  get token() { return new URLSearchParams(location.hash.slice(1)).get("token"); }
+  get token() {
+    return new URLSearchParams(location.hash.slice(1)).get("token");
+  }
 
   // Connect with another token; the address keeps it.
   useToken(token) {
@@ -38,13 +42,18 @@ export class Connection extends EventTarget {
 
   connect() {
     const query = this.token ? `?${new URLSearchParams({ token: this.token })}` : "";
-    this.socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/v${PROTOCOL}${query}`);
+    this.socket = new WebSocket(
+      `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/v${PROTOCOL}${query}`,
+    );
     this.socket.binaryType = "arraybuffer";
-    this.socket.onmessage = ({ data }) => (typeof data === "string" ? this.receiveMessage(JSON.parse(data)) : this.receiveFrame(data));
+    this.socket.onmessage = ({ data }) =>
+      typeof data === "string" ? this.receiveMessage(JSON.parse(data)) : this.receiveFrame(data);
     this.socket.onclose = (event) => this.handleClose(event);
   }
 
-  get connected() { return this.hello !== null; }
+  get connected() {
+    return this.hello !== null;
+  }
 
   async handleClose({ code }) {
     const wasConnected = this.connected;
@@ -53,31 +62,50 @@ export class Connection extends EventTarget {
     for (const { reject } of this.pending.values()) reject(new Error("the connection to the server was lost"));
     this.pending.clear();
     const { socket } = this;
-    const refusal = code === 1013 ? { reason: "full" } : wasConnected ? { reason: "lost" } : await askForReason(`/v${PROTOCOL}`, this.token ? { token: this.token } : {});
+    const refusal =
+      code === 1013
+        ? { reason: "full" }
+        : wasConnected
+          ? { reason: "lost" }
+          : await askForReason(`/v${PROTOCOL}`, this.token ? { token: this.token } : {});
     if (socket !== this.socket) return; // somebody has connected meanwhile
     this.emit("disconnected", { ...refusal, retry: this.retry });
     this.timer = setTimeout(() => this.connect(), this.retry);
     this.retry = Math.min(this.retry * 1.6, RETRY.longest);
   }
 
-  emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }
+  emit(type, detail) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
 
   receiveMessage(message) {
     switch (message.type) {
       case "hello":
-        if (message.protocol !== PROTOCOL) { location.reload(); return; }
+        if (message.protocol !== PROTOCOL) {
+          location.reload();
+          return;
+        }
         this.hello = message;
         this.retry = RETRY.first;
         this.emit("hello", message);
         break;
-      case "state": this.state = message; this.emit("state", message); break;
-      case "progress": case "received": this.pending.get(message.request)?.progress?.(message); break;
-      case "refused": case "done": case "ready": {
+      case "state":
+        this.state = message;
+        this.emit("state", message);
+        break;
+      case "progress":
+      case "received":
+        this.pending.get(message.request)?.progress?.(message);
+        break;
+      case "refused":
+      case "done":
+      case "ready": {
         const waiting = this.pending.get(message.request);
         this.pending.delete(message.request);
         if (message.type === "refused") {
           this.sent.delete(message.request);
-          if (waiting) waiting.reject(new Error(message.problem)); else this.emit("refused", message);
+          if (waiting) waiting.reject(new Error(message.problem));
+          else this.emit("refused", message);
         } else waiting?.resolve(message);
       }
     }
@@ -89,9 +117,17 @@ export class Connection extends EventTarget {
     if (data.byteLength < HEADER || String.fromCharCode(...bytes) !== "VXFR") return;
     const u32 = (at) => view.getUint32(at, true);
     const frame = {
-      width: view.getUint16(6, true), height: view.getUint16(8, true), sequence: u32(12), length: u32(16), scene: u32(20),
-      viewer: u32(24), request: u32(28), rays: u32(32), seconds: u32(36) / 1e6,
-      cycles: counter(view.getBigUint64(40, true)), words: counter(view.getBigUint64(48, true)),
+      width: view.getUint16(6, true),
+      height: view.getUint16(8, true),
+      sequence: u32(12),
+      length: u32(16),
+      scene: u32(20),
+      viewer: u32(24),
+      request: u32(28),
+      rays: u32(32),
+      seconds: u32(36) / 1e6,
+      cycles: counter(view.getBigUint64(40, true)),
+      words: counter(view.getBigUint64(48, true)),
     };
     const header = view.getUint16(4, true);
     if (frame.length !== data.byteLength - header || frame.length !== 3 * frame.width * frame.height) return;

@@ -16,7 +16,9 @@ function makeInput(label, type, limits, onInput) {
   const input = document.createElement("input");
   Object.assign(input, { type, ...limits });
   input.setAttribute("aria-label", label);
-  input.addEventListener("input", () => { if (input.value !== "") onInput(Number(input.value)); });
+  input.addEventListener("input", () => {
+    if (input.value !== "") onInput(Number(input.value));
+  });
   return input;
 }
 
@@ -30,25 +32,42 @@ export function makeSlider(parent, label, limits, onInput, numbered = false) {
   row.append(name, ...inputs);
   parent.append(row);
   return {
-    set(value) { for (const input of inputs) if (input !== document.activeElement || input.type === "range") input.value = value; },
-    range(low, high) { Object.assign(inputs[0], { min: low, max: high }); },
+    set(value) {
+      for (const input of inputs) if (input !== document.activeElement || input.type === "range") input.value = value;
+    },
+    range(low, high) {
+      Object.assign(inputs[0], { min: low, max: high });
+    },
   };
 }
 
 // A toolbar takes one stop of the tab key; arrows, Home and End go from button to button.
 export function makeToolbar(bar) {
   const buttons = () => [...bar.querySelectorAll("button")].filter((button) => !button.hidden && !button.disabled);
-  const choose = (chosen) => { for (const button of bar.querySelectorAll("button")) button.tabIndex = button === chosen ? 0 : -1; };
+  const choose = (chosen) => {
+    for (const button of bar.querySelectorAll("button")) button.tabIndex = button === chosen ? 0 : -1;
+  };
   const refresh = () => choose(buttons().find((button) => button.tabIndex === 0) ?? buttons()[0]);
   bar.addEventListener("focusin", ({ target }) => choose(target));
   bar.addEventListener("keydown", (event) => {
     const all = buttons();
     const at = all.indexOf(document.activeElement);
-    const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: all.length - 1 }[event.key];
+    const to = {
+      ArrowRight: at + 1,
+      ArrowDown: at + 1,
+      ArrowLeft: at - 1,
+      ArrowUp: at - 1,
+      Home: 0,
+      End: all.length - 1,
+    }[event.key];
     if (to === undefined || at < 0) return;
     event.preventDefault();
     all[(to + all.length) % all.length].focus();
   });
-  new MutationObserver(refresh).observe(bar, { childList: true, subtree: true, attributeFilter: ["disabled", "hidden"] });
+  new MutationObserver(refresh).observe(bar, {
+    childList: true,
+    subtree: true,
+    attributeFilter: ["disabled", "hidden"],
+  });
   refresh();
 }

@@ -12,7 +12,8 @@ export class Figures {
 
   add(frame, samples) {
     const now = performance.now();
-    if (this.newest && frame.sequence > this.newest.sequence + 1) this.missed += frame.sequence - this.newest.sequence - 1;
+    if (this.newest && frame.sequence > this.newest.sequence + 1)
+      this.missed += frame.sequence - this.newest.sequence - 1;
     Object.assign(this, { newest: frame, samples });
     this.times = [...this.times.filter((time) => now - time < WINDOW), now];
     if (frame.requested) this.latency = now - frame.requested;
@@ -39,11 +40,13 @@ export class Figures {
       ...(frame.words === null ? [] : [["words per ray", (frame.words / frame.rays).toFixed(2)]]),
       ["frame", frame.sequence.toLocaleString() + (this.missed ? ` (${this.missed} missed)` : "")],
     ];
-    this.list.replaceChildren(...rows.flatMap(([name, value]) => {
-      const [term, figure] = [document.createElement("dt"), document.createElement("dd")];
-      term.textContent = name;
-      figure.textContent = value;
-      return [term, figure];
-    }));
+    this.list.replaceChildren(
+      ...rows.flatMap(([name, value]) => {
+        const [term, figure] = [document.createElement("dt"), document.createElement("dd")];
+        term.textContent = name;
+        figure.textContent = value;
+        return [term, figure];
+      }),
+    );
   }
 }

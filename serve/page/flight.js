@@ -19,16 +19,22 @@ export class Flight {
     this.modifiers = {};
     this.last = performance.now();
     addEventListener("keydown", (event) => this.press(event));
-    addEventListener("keyup", (event) => { this.modifiers = event; this.held.delete(event.code); });
+    addEventListener("keyup", (event) => {
+      this.modifiers = event;
+      this.held.delete(event.code);
+    });
     addEventListener("blur", () => this.held.clear());
     for (const button of pad.querySelectorAll("button")) {
       const { key } = button.dataset;
       button.addEventListener("pointerdown", () => this.held.add(key));
-      for (const end of ["pointerup", "pointerleave", "pointercancel"]) button.addEventListener(end, () => this.held.delete(key));
+      for (const end of ["pointerup", "pointerleave", "pointercancel"])
+        button.addEventListener(end, () => this.held.delete(key));
     }
   }
 
-  get active() { return this.held.size > 0; }
+  get active() {
+    return this.held.size > 0;
+  }
 
   press(event) {
     this.modifiers = event;

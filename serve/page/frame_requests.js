@@ -22,10 +22,14 @@ export class FrameRequests {
     this.frameAt = 0;
   }
 
-  get device() { return this.connection.hello.device; }
+  get device() {
+    return this.connection.hello.device;
+  }
 
   // The shape of the picture at rest.
-  get size() { return this.resolution.finest(this.stage, this.device).size; }
+  get size() {
+    return this.resolution.finest(this.stage, this.device).size;
+  }
 
   // Seconds that the frame takes for which the page waits, and since when; null for quick frames.
   get waiting() {
@@ -41,11 +45,14 @@ export class FrameRequests {
   }
 
   // Forget what was not sent, since another view counts now.
-  discard() { Object.assign(this, { changed: false, fields: {} }); }
+  discard() {
+    Object.assign(this, { changed: false, fields: {} });
+  }
 
   // Ask for a coarse frame if fine ones are slow: the next scene is then shown soon.
   coarsen(view) {
-    if (this.resolution.seconds(this.shown.size) > SLOW) this.send(view, this.resolution.moving(this.stage, this.device));
+    if (this.resolution.seconds(this.shown.size) > SLOW)
+      this.send(view, this.resolution.moving(this.stage, this.device));
   }
 
   // Called once per frame of the screen; `busy` while keys or the mouse are held. Returns whether the finest frame of the

@@ -18,14 +18,20 @@ export class Gestures {
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, (event) => this.finish(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      const pixels = event.deltaY * (event.deltaMode ? LINE : 1);
-      actions.dolly(Math.exp(pixels * (event.ctrlKey ? PINCH : WHEEL)));
-    }, { passive: false });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        const pixels = event.deltaY * (event.deltaMode ? LINE : 1);
+        actions.dolly(Math.exp(pixels * (event.ctrlKey ? PINCH : WHEEL)));
+      },
+      { passive: false },
+    );
   }
 
-  get active() { return this.pointers.size > 0; }
+  get active() {
+    return this.pointers.size > 0;
+  }
 
   begin(event) {
     this.canvas.focus();

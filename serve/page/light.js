@@ -16,15 +16,29 @@ const DEGREE = Math.PI / 180;
 export class Light {
   constructor(app) {
     this.app = app;
-    this.direction = makeSlider($("light"), "Direction", { min: -180, max: 180, step: 1 }, (value) => this.move({ direction: value }));
-    this.height = makeSlider($("light"), "Height", { min: 0, max: 90, step: 1 }, (value) => this.move({ height: value }));
+    this.direction = makeSlider($("light"), "Direction", { min: -180, max: 180, step: 1 }, (value) =>
+      this.move({ direction: value }),
+    );
+    this.height = makeSlider($("light"), "Height", { min: 0, max: 90, step: 1 }, (value) =>
+      this.move({ height: value }),
+    );
     this.ambient = makeSlider($("light"), "Ambient", { min: 0, max: 255, step: 1 }, (value) =>
-      app.set({ ambient: clamp(Math.round(value), 0, 255) }));
-    this.place = [0, 1, 2].map((i) => makeSlider($("light-place"), "XYZ"[i], { step: 0.0625 }, (value) =>
-      app.set({ light: app.state().view.light.map((old, j) => (j === i ? Math.round(value * 16) : old)) }), true));
+      app.set({ ambient: clamp(Math.round(value), 0, 255) }),
+    );
+    this.place = [0, 1, 2].map((i) =>
+      makeSlider(
+        $("light-place"),
+        "XYZ"[i],
+        { step: 0.0625 },
+        (value) => app.set({ light: app.state().view.light.map((old, j) => (j === i ? Math.round(value * 16) : old)) }),
+        true,
+      ),
+    );
     $("background").oninput = ({ target }) =>
       app.set({ background: [1, 3, 5].map((at) => parseInt(target.value.slice(at, at + 2), 16)) });
-    $("bounces").oninput = ({ target }) => { if (target.value !== "") app.set({ bounces: clamp(Math.round(Number(target.value)), 0, 15) }); };
+    $("bounces").oninput = ({ target }) => {
+      if (target.value !== "") app.set({ bounces: clamp(Math.round(Number(target.value)), 0, 15) });
+    };
     for (const [name, [label, title]] of Object.entries(SHADINGS))
       makeButton($("shading"), label, () => app.set({ shading: name }), title).dataset.shading = name;
     for (const name of ["shading", "features"]) makeToolbar($(name));
@@ -45,7 +59,11 @@ export class Light {
     const { direction, height } = { ...this.angles(), ...changed };
     const { centre, far } = this.middle();
     const level = Math.cos(height * DEGREE);
-    const towards = [level * Math.sin(direction * DEGREE), Math.sin(height * DEGREE), level * Math.cos(direction * DEGREE)];
+    const towards = [
+      level * Math.sin(direction * DEGREE),
+      Math.sin(height * DEGREE),
+      level * Math.cos(direction * DEGREE),
+    ];
     const limit = this.app.device().position_limit - 1;
     this.app.set({ light: add(centre, towards, far).map((place) => clamp(Math.round(place * 16), -limit, limit)) });
   }
@@ -55,10 +73,15 @@ export class Light {
     $("features").replaceChildren();
     for (const [name, [label, title]] of Object.entries(FEATURES)) {
       if (!device.features.includes(name)) continue;
-      const toggle = makeButton($("features"), label, () => {
-        const on = this.app.state().view.features;
-        this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name].sort() });
-      }, title);
+      const toggle = makeButton(
+        $("features"),
+        label,
+        () => {
+          const on = this.app.state().view.features;
+          this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name].sort() });
+        },
+        title,
+      );
       toggle.dataset.feature = name;
       pressed(toggle, false);
     }
@@ -74,7 +97,10 @@ export class Light {
       $("background").value = `#${view.background.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
     if (document.activeElement !== $("bounces")) $("bounces").value = view.bounces;
     const side = 2 ** scene.depth;
-    this.place.forEach((slider, i) => { slider.range(-2 * side, 3 * side); slider.set(view.light[i] / 16); });
+    this.place.forEach((slider, i) => {
+      slider.range(-2 * side, 3 * side);
+      slider.set(view.light[i] / 16);
+    });
     this.ambient.set(view.ambient);
     const { direction, height } = this.angles();
     this.direction.set(Math.round(direction));

@@ -48,7 +48,9 @@ const app = {
     view = how(view);
     frames.change();
   },
-  glide(how) { if (view && hasControl()) glide.start(view, how(view), frames.resolution.seconds(frames.size) > 1); },
+  glide(how) {
+    if (view && hasControl()) glide.start(view, how(view), frames.resolution.seconds(frames.size) > 1);
+  },
   set(fields) {
     if (!hasControl()) return;
     Object.assign(unconfirmed, fields);
@@ -56,8 +58,12 @@ const app = {
     frames.change(fields);
   },
   waits: () => connection.sent.size > 0 || frames.changed,
-  fixSize(size) { frames.resolution.fixed = size; },
-  coarsen() { if (view) frames.coarsen(view); },
+  fixSize(size) {
+    frames.resolution.fixed = size;
+  },
+  coarsen() {
+    if (view) frames.coarsen(view);
+  },
 };
 const player = new Player(app);
 const panels = { scenes: new Scenes(app), views: new Views(app), light: new Light(app), advanced: new Advanced(app) };
@@ -88,13 +94,21 @@ $("retry").onclick = () => connection.connectNow();
 function showControl({ controller, waiting, viewers }, mine) {
   $("control").dataset.state = mine ? "mine" : "";
   $("control").textContent = mine
-    ? waiting.length ? `viewer ${waiting[0]} asks for control` : viewers > 1 ? `you have control · ${viewers} viewers` : ""
-    : controller === null ? "nobody has control" : `viewer ${controller} has control`;
+    ? waiting.length
+      ? `viewer ${waiting[0]} asks for control`
+      : viewers > 1
+        ? `you have control · ${viewers} viewers`
+        : ""
+    : controller === null
+      ? "nobody has control"
+      : `viewer ${controller} has control`;
   $("take").hidden = mine;
   $("take").disabled = waiting.includes(connection.hello.viewer);
   $("take").textContent = $("take").disabled ? "Control requested" : "Take control";
   $("release").hidden = !mine || waiting.length === 0;
-  for (const made of document.querySelectorAll("#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button"))
+  for (const made of document.querySelectorAll(
+    "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button",
+  ))
     if (made.id !== "help") made.disabled = !mine;
 }
 
@@ -124,12 +138,16 @@ connection.addEventListener("state", ({ detail }) => {
   if (another || !mine || !had || !view) {
     glide.stop();
     frames.discard();
-    view = another && mine ? readView(detail.scene.camera, detail.scene.size) : readView(detail.view.camera, detail.view.size);
+    view =
+      another && mine
+        ? readView(detail.scene.camera, detail.scene.size)
+        : readView(detail.view.camera, detail.view.size);
     if (mine) frames.change();
   }
   had = mine;
   $("scene").textContent = scene === 0 ? "" : detail.scene.name;
-  $("details").textContent = scene === 0 ? "" : `${2 ** detail.scene.depth}³ voxels · ${detail.scene.words.toLocaleString()} words`;
+  $("details").textContent =
+    scene === 0 ? "" : `${2 ** detail.scene.depth}³ voxels · ${detail.scene.words.toLocaleString()} words`;
   canvas.style.backgroundColor = `rgb(${detail.view.background.join()})`;
   panels.scenes.mark(detail);
   player.show(detail);
@@ -158,9 +176,14 @@ async function focusAt(x, y) {
   const [column, row] = picture.pixelAt(x, y);
   const registers = toRegisters(view, size);
   try {
-    const { hit } = await connection.request("ray", { origin: registers.position, direction: pixelDirection(registers, size, column, row) });
+    const { hit } = await connection.request("ray", {
+      origin: registers.position,
+      direction: pixelDirection(registers, size, column, row),
+    });
     if (hit) app.glide((now) => focus(now, hit.point, app.limit()));
-  } catch (error) { notice("error", "There is no point to focus", error.message); }
+  } catch (error) {
+    notice("error", "There is no point to focus", error.message);
+  }
 }
 
 const commands = {
@@ -183,7 +206,10 @@ $("close").onclick = dismiss;
 $("save").onclick = () => picture.save(`${state()?.scene.name ?? "voxrt"}-${figures.newest?.sequence ?? 0}`);
 makeToolbar($("tools"));
 
-const setFigures = (on) => { pressed($("statistics"), on); $("figures").hidden = !on; };
+const setFigures = (on) => {
+  pressed($("statistics"), on);
+  $("figures").hidden = !on;
+};
 $("statistics").onclick = ({ currentTarget }) => setFigures(!isPressed(currentTarget));
 setFigures(!matchMedia("(max-width: 56rem), (max-height: 30rem)").matches);
 
@@ -193,9 +219,12 @@ $("toggle-panel").onclick = ({ currentTarget }) => {
 };
 
 $("fullscreen").hidden = !document.fullscreenEnabled;
-$("fullscreen").onclick = () => (document.fullscreenElement ? document.exitFullscreen() : $("stage").requestFullscreen());
+$("fullscreen").onclick = () =>
+  document.fullscreenElement ? document.exitFullscreen() : $("stage").requestFullscreen();
 document.addEventListener("fullscreenchange", () => pressed($("fullscreen"), document.fullscreenElement !== null));
-canvas.addEventListener("keydown", ({ code }) => { if (code === "Enter") $("fullscreen").click(); });
+canvas.addEventListener("keydown", ({ code }) => {
+  if (code === "Enter") $("fullscreen").click();
+});
 
 function showWaiting() {
   const { waiting } = hasControl() ? frames : {};
@@ -224,4 +253,8 @@ function animate() {
   if (changed) panels.advanced.showCamera(view);
 }
 requestAnimationFrame(animate);
-setInterval(() => { figures.show(); showWaiting(); panels.advanced.readRegisters(); }, 250);
+setInterval(() => {
+  figures.show();
+  showWaiting();
+  panels.advanced.readRegisters();
+}, 250);

@@ -16,8 +16,11 @@ export function orbit(view, right, down) {
 }
 
 // Turn around the eye.
-export const look = (view, right, up) =>
-  ({ ...view, yaw: view.yaw + right, pitch: clamp(view.pitch + up, -UPRIGHT, UPRIGHT) });
+export const look = (view, right, up) => ({
+  ...view,
+  yaw: view.yaw + right,
+  pitch: clamp(view.pitch + up, -UPRIGHT, UPRIGHT),
+});
 
 // Move eye and target in the plane of the picture. `right` and `down` are how far the scene moves, in parts of the height
 // across which the field of view counts.
@@ -52,7 +55,10 @@ export function frame(view, [low, high], [width, height], limit) {
   const { look: ahead, right, up } = axes(view);
   const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? high : low)[axis]));
   const pixel = 1 / (2 * focal(view.fov, [width, height]));
-  const stands = [[right, width, REACH.side, REACH.side], [up, height, REACH.bottom, REACH.top]].map(([axis, side, before, after]) => {
+  const stands = [
+    [right, width, REACH.side, REACH.side],
+    [up, height, REACH.bottom, REACH.top],
+  ].map(([axis, side, before, after]) => {
     const [low, high] = [-before * side * pixel, after * side * pixel];
     const first = Math.max(...corners.map((corner) => dot(corner, axis) - high * dot(corner, ahead)));
     const last = Math.min(...corners.map((corner) => dot(corner, axis) - low * dot(corner, ahead)));

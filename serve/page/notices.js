@@ -18,7 +18,9 @@ export function notice(kind, title, text = "", { progress = null, cancel = null 
   $("close").hidden = kind !== "error";
 }
 
-export const dismiss = () => { box().hidden = true; };
+export const dismiss = () => {
+  box().hidden = true;
+};
 export const noticeKind = () => (box().hidden ? null : box().dataset.kind);
 
 // `reason` is one of those of refusal.js, or "lost".
@@ -39,4 +41,6 @@ export function showAway({ reason, text = "" }, seconds) {
   $("retry").title = `It tries again in ${Math.ceil(seconds)} s`;
 }
 
-export const hideAway = () => { $("away").hidden = true; };
+export const hideAway = () => {
+  $("away").hidden = true;
+};

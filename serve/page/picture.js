@@ -38,7 +38,10 @@ export class Picture {
     const box = this.canvas.getBoundingClientRect();
     const { width, height } = this.canvas;
     const part = Math.min(box.width / width, box.height / height);
-    return [Math.floor((x - box.left - box.width / 2) / part + width / 2), Math.floor((y - box.top - box.height / 2) / part + height / 2)];
+    return [
+      Math.floor((x - box.left - box.width / 2) / part + width / 2),
+      Math.floor((y - box.top - box.height / 2) / part + height / 2),
+    ];
   }
 
   save(name) {
@@ -59,7 +62,11 @@ export function average(pixels, step, width, columns, rows, result) {
     for (let column = 0, at = 2 * row * below; column < columns; column++, at += 2 * step) {
       for (let channel = 0; channel < 3; channel++) {
         const from = at + channel;
-        const sum = linear[pixels[from]] + linear[pixels[from + step]] + linear[pixels[from + below]] + linear[pixels[from + below + step]];
+        const sum =
+          linear[pixels[from]] +
+          linear[pixels[from + step]] +
+          linear[pixels[from + below]] +
+          linear[pixels[from + below + step]];
         result[to++] = encoded[Math.round((sum * STEPS) / 4)];
       }
       result[to++] = 255;

@@ -15,26 +15,36 @@ const mirrored = (of) => [of.flipX ? -1 : 1, of.flipY ? -1 : 1];
 export function makePilot(app, canvas, commands, focus) {
   const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
   const gestures = new Gestures(canvas, {
-    turn: (right, down) => app.change((now) => { // pixels of the page: the scene follows the pointer
-      const [x, y] = mirrored(now);
-      const angle = flies() ? (now.fov * Math.PI) / 180 / across() : (2 * Math.PI) / canvas.clientHeight;
-      return flies() ? look(now, -right * angle * x, down * angle * y) : orbit(now, right * angle * x, down * angle * y);
-    }),
-    pan: (right, down) => app.change((now) => {
-      const [x, y] = mirrored(now);
-      return pan(now, (right * x) / across(), (down * y) / across(), app.limit());
-    }),
+    turn: (right, down) =>
+      app.change((now) => {
+        // pixels of the page: the scene follows the pointer
+        const [x, y] = mirrored(now);
+        const angle = flies() ? (now.fov * Math.PI) / 180 / across() : (2 * Math.PI) / canvas.clientHeight;
+        return flies()
+          ? look(now, -right * angle * x, down * angle * y)
+          : orbit(now, right * angle * x, down * angle * y);
+      }),
+    pan: (right, down) =>
+      app.change((now) => {
+        const [x, y] = mirrored(now);
+        return pan(now, (right * x) / across(), (down * y) / across(), app.limit());
+      }),
     dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
     focus,
   });
   const flight = new Flight($("pad"), {
     commands,
-    fly: (...parts) => app.change((now) => {
-      const [x, y] = mirrored(now);
-      return fly(now, scale([parts[0] * x, parts[1] * y, parts[2]], app.side()), app.limit());
-    }),
-    rotate: (right, up) => app.change((now) => (flies() ? look(now, right * mirrored(now)[0], up * mirrored(now)[1])
-      : orbit(now, -right * mirrored(now)[0], -up * mirrored(now)[1]))),
+    fly: (...parts) =>
+      app.change((now) => {
+        const [x, y] = mirrored(now);
+        return fly(now, scale([parts[0] * x, parts[1] * y, parts[2]], app.side()), app.limit());
+      }),
+    rotate: (right, up) =>
+      app.change((now) =>
+        flies()
+          ? look(now, right * mirrored(now)[0], up * mirrored(now)[1])
+          : orbit(now, -right * mirrored(now)[0], -up * mirrored(now)[1]),
+      ),
     dolly: (factor) => app.change((now) => dolly(now, factor, app.limit())),
   });
   $("fly").onclick = () => setFlying(true);

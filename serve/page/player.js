@@ -11,10 +11,15 @@ export class Player {
     this.frames = 1;
     this.next = 0; // when the next frame is due
     $("play").onclick = () => this.play(!isPressed($("play")));
-    $("frames").oninput = ({ target }) => { this.play(false); app.set({ frame: Number(target.value) }); };
+    $("frames").oninput = ({ target }) => {
+      this.play(false);
+      app.set({ frame: Number(target.value) });
+    };
   }
 
-  get playing() { return this.frames > 1 && isPressed($("play")); }
+  get playing() {
+    return this.frames > 1 && isPressed($("play"));
+  }
 
   play(on) {
     pressed($("play"), on);

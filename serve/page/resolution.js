@@ -21,7 +21,9 @@ export class Resolution {
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
-  seconds([width, height]) { return this.cost === null ? 0 : this.cost * width * height; }
+  seconds([width, height]) {
+    return this.cost === null ? 0 : this.cost * width * height;
+  }
 
   // The frame of the stage at rest: {size, samples}; with 2 samples a frame has twice the columns and rows.
   finest(stage, device) {
@@ -29,8 +31,13 @@ export class Resolution {
     const wanted = this.fixed ?? [stage.clientWidth * ratio, stage.clientHeight * ratio];
     const size = fitting(wanted, 1, device);
     const doubled = size.map((side) => 2 * side);
-    const smooth = !this.fixed && this.cost !== null && this.seconds(doubled) <= SMOOTH && doubled[0] * doubled[1] <= PIXELS
-      && doubled.every((side, i) => side <= device.size[i]) && doubled[0] % device.width_step === 0;
+    const smooth =
+      !this.fixed &&
+      this.cost !== null &&
+      this.seconds(doubled) <= SMOOTH &&
+      doubled[0] * doubled[1] <= PIXELS &&
+      doubled.every((side, i) => side <= device.size[i]) &&
+      doubled[0] % device.width_step === 0;
     return { size, samples: smooth ? 2 : 1 };
   }
 

@@ -4,8 +4,18 @@ import { $, makeButton, makeToolbar, pressed } from "./elements.js";
 import { dismiss, notice } from "./notices.js";
 import { uploadFiles } from "./upload.js";
 
-const STAGES = { send: "Sending", read: "Reading", write: "Writing to the device", verify: "Verifying", render: "Rendering the first frame",
-  load: "Loading the file", fit: "Fitting the grid", colour: "Choosing colours", voxelize: "Voxelizing", octree: "Building the octree" };
+const STAGES = {
+  send: "Sending",
+  read: "Reading",
+  write: "Writing to the device",
+  verify: "Verifying",
+  render: "Rendering the first frame",
+  load: "Loading the file",
+  fit: "Fitting the grid",
+  colour: "Choosing colours",
+  voxelize: "Voxelizing",
+  octree: "Building the octree",
+};
 const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene files refer to
 
 // `app` is that of main.js.
@@ -14,10 +24,20 @@ export class Scenes {
     this.app = app;
     for (const bar of document.querySelectorAll("[data-scenes]")) makeToolbar(bar);
     for (const button of document.querySelectorAll("[data-open]")) button.onclick = () => $("files").click();
-    $("files").onchange = ({ target }) => { this.open([...target.files]); target.value = ""; };
+    $("files").onchange = ({ target }) => {
+      this.open([...target.files]);
+      target.value = "";
+    };
     let drags = 0;
-    addEventListener("dragenter", (event) => { event.preventDefault(); drags += 1; $("drop").hidden = false; });
-    addEventListener("dragleave", () => { drags -= 1; $("drop").hidden = drags <= 0; });
+    addEventListener("dragenter", (event) => {
+      event.preventDefault();
+      drags += 1;
+      $("drop").hidden = false;
+    });
+    addEventListener("dragleave", () => {
+      drags -= 1;
+      $("drop").hidden = drags <= 0;
+    });
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => {
       event.preventDefault();
@@ -44,16 +64,20 @@ export class Scenes {
   }
 
   show(name) {
-    this.load(name, (report, signal) => this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)));
+    this.load(name, (report, signal) =>
+      this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)),
+    );
   }
 
   open(files) {
-    if (files.length) this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
+    if (files.length)
+      this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
   }
 
   // Run what loads another scene.
   async load(name, run) {
-    if (!this.app.hasControl()) return notice("error", "You do not have control", "Take control before you change the scene.");
+    if (!this.app.hasControl())
+      return notice("error", "You do not have control", "Take control before you change the scene.");
     const aborter = new AbortController();
     const cancel = () => {
       aborter.abort();
@@ -63,7 +87,8 @@ export class Scenes {
     this.app.coarsen();
     try {
       await run((stage, done, total) => {
-        if (!aborter.signal.aborted) notice("progress", `${name} …`, STAGES[stage] ?? stage, { progress: total ? done / total : 0, cancel });
+        if (!aborter.signal.aborted)
+          notice("progress", `${name} …`, STAGES[stage] ?? stage, { progress: total ? done / total : 0, cancel });
       }, aborter.signal);
       dismiss();
     } catch (error) {

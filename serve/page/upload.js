@@ -31,7 +31,10 @@ export async function uploadFiles(connection, files, report, signal) {
   const total = parts.reduce((sum, part) => sum + part.length, 0);
   const { upload: limit, chunk: step } = connection.hello.limits;
   if (total === 0) throw new Error("the file is empty");
-  if (total > limit) throw new Error(`${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the server accepts`);
+  if (total > limit)
+    throw new Error(
+      `${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the server accepts`,
+    );
   const data = new Uint8Array(total);
   parts.reduce((at, part) => (data.set(part, at), at + part.length), 0);
 
@@ -48,10 +51,16 @@ export async function uploadFiles(connection, files, report, signal) {
   const ready = await connection.request("upload", { files: announced });
   let failure = null;
   const done = new Promise((resolve, reject) => connection.pending.set(ready.request, { resolve, reject, progress }));
-  done.catch((error) => { failure = error; wake(); });
+  done.catch((error) => {
+    failure = error;
+    wake();
+  });
   signal.addEventListener("abort", () => connection.pending.get(ready.request)?.reject(new Error("cancelled")));
   for (let offset = 0; offset < total && !failure; offset += step) {
-    while (offset - received >= WINDOW * step && !failure) await new Promise((resolve) => { wake = resolve; });
+    while (offset - received >= WINDOW * step && !failure)
+      await new Promise((resolve) => {
+        wake = resolve;
+      });
     if (!failure) connection.socket.send(chunk(ready.upload, offset, data.subarray(offset, offset + step)));
   }
   return (await done).scene;

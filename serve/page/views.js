@@ -5,8 +5,13 @@ import { $, makeButton, makeToolbar } from "./elements.js";
 import { frame } from "./navigation.js";
 
 const PRESETS = [
-  ["Corner", [-0.62, -0.55, -1]], ["Front", [0, 0, -1]], ["Back", [0, 0, 1]], ["Left", [1, 0, 0]], ["Right", [-1, 0, 0]],
-  ["Top", [0, -1, 0]], ["Bottom", [0, 1, 0]],
+  ["Corner", [-0.62, -0.55, -1]],
+  ["Front", [0, 0, -1]],
+  ["Back", [0, 0, 1]],
+  ["Left", [1, 0, 0]],
+  ["Right", [-1, 0, 0]],
+  ["Top", [0, -1, 0]],
+  ["Bottom", [0, 1, 0]],
 ];
 const SAVED = "voxrt.views";
 
@@ -16,7 +21,10 @@ export class Views {
     this.app = app;
     PRESETS.forEach(([name], i) => makeButton($("presets"), name, () => this.choose(i), `Key ${i + 1}`));
     makeToolbar($("presets"));
-    $("save-view").onsubmit = (event) => { event.preventDefault(); this.save(event.target.elements.name); };
+    $("save-view").onsubmit = (event) => {
+      event.preventDefault();
+      this.save(event.target.elements.name);
+    };
     this.show();
   }
 
@@ -28,7 +36,11 @@ export class Views {
   }
 
   saved() {
-    try { return JSON.parse(localStorage.getItem(SAVED)) ?? {}; } catch { return {}; }
+    try {
+      return JSON.parse(localStorage.getItem(SAVED)) ?? {};
+    } catch {
+      return {};
+    }
   }
 
   save(input) {
@@ -45,11 +57,16 @@ export class Views {
       const row = document.createElement("div");
       row.className = "view";
       makeButton(row, name, () => this.app.glide((now) => ({ ...now, ...view })));
-      makeButton(row, "✕", () => {
-        const { [name]: _gone, ...rest } = this.saved();
-        localStorage.setItem(SAVED, JSON.stringify(rest));
-        this.show();
-      }, `Delete ${name}`).setAttribute("aria-label", `Delete ${name}`);
+      makeButton(
+        row,
+        "✕",
+        () => {
+          const { [name]: _gone, ...rest } = this.saved();
+          localStorage.setItem(SAVED, JSON.stringify(rest));
+          this.show();
+        },
+        `Delete ${name}`,
+      ).setAttribute("aria-label", `Delete ${name}`);
       $("saved").append(row);
     }
   }

@@ -16,10 +16,13 @@ export class Hardware extends Instance {
   }
 
   // How many words its memory holds.
-  get wordLimit() { return this.wasm.vx_word_limit(); }
+  get wordLimit() {
+    return this.wasm.vx_word_limit();
+  }
 
   setMemory(words, depth) {
-    if (words.length > this.wordLimit) throw new VoxrtError(`the hardware's memory holds ${this.wordLimit} words, not ${words.length}`);
+    if (words.length > this.wordLimit)
+      throw new VoxrtError(`the hardware's memory holds ${this.wordLimit} words, not ${words.length}`);
     this.depth = depth;
     this.guard(() => this.with(Uint32Array, words, (at) => this.checked(this.wasm.vx_load(at, words.length))));
   }
@@ -32,10 +35,19 @@ export class Hardware extends Instance {
     materials.forEach((colour, id) => table.set(colour, 3 * id));
     const registers = [...camera.position, ...camera.look, ...camera.right, ...camera.up];
     return this.guard(() => {
-      const clocks = this.with(Int32Array, registers, (at) => this.with(Uint8Array, table, (colours) => this.with(Uint8Array, faces ?? [], (brightness) =>
-        this.checked(this.wasm.vx_run(at, width, height, this.depth, colours, flat, faces && !flat ? brightness : 0)))));
+      const clocks = this.with(Int32Array, registers, (at) =>
+        this.with(Uint8Array, table, (colours) =>
+          this.with(Uint8Array, faces ?? [], (brightness) =>
+            this.checked(
+              this.wasm.vx_run(at, width, height, this.depth, colours, flat, faces && !flat ? brightness : 0),
+            ),
+          ),
+        ),
+      );
       return {
-        clocks, wordsRead: this.wasm.vx_words_read(), colour: this.view(Uint8Array, this.wasm.vx_colour(), 3 * width * height).slice(),
+        clocks,
+        wordsRead: this.wasm.vx_words_read(),
+        colour: this.view(Uint8Array, this.wasm.vx_colour(), 3 * width * height).slice(),
         material: this.view(Uint8Array, this.wasm.vx_frame_material(), width * height).slice(),
         face: this.view(Uint8Array, this.wasm.vx_frame_face(), width * height).slice(),
       };

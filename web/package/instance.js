@@ -22,9 +22,13 @@ export class Instance {
   }
 
   // Bytes of memory in use.
-  get bytes() { return this.wasm.memory.buffer.byteLength; }
+  get bytes() {
+    return this.wasm.memory.buffer.byteLength;
+  }
 
-  view(type, at, length) { return new type(this.wasm.memory.buffer, at, length); }
+  view(type, at, length) {
+    return new type(this.wasm.memory.buffer, at, length);
+  }
 
   copy(type, values) {
     const at = this.wasm.vx_alloc(values.length * type.BYTES_PER_ELEMENT);
@@ -35,10 +39,16 @@ export class Instance {
 
   with(type, values, work) {
     const at = this.copy(type, values);
-    try { return work(at); } finally { this.wasm.vx_free(at); }
+    try {
+      return work(at);
+    } finally {
+      this.wasm.vx_free(at);
+    }
   }
 
-  text(text, work) { return this.with(Uint8Array, encoder.encode(`${text}\0`), work); }
+  text(text, work) {
+    return this.with(Uint8Array, encoder.encode(`${text}\0`), work);
+  }
 
   string(at) {
     const bytes = new Uint8Array(this.wasm.memory.buffer, at);
@@ -52,7 +62,9 @@ export class Instance {
 
   // What the machine throws instead of the library: out of memory, out of stack.
   guard(work) {
-    try { return work(); } catch (error) {
+    try {
+      return work();
+    } catch (error) {
       if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) throw new VoxrtError(EXHAUSTED);
       throw error;
     }
@@ -64,7 +76,10 @@ function system(instance) {
   const [done, noFile] = [0, 8]; // of WASI
   const none = () => noFile;
   return {
-    fd_fdstat_get: none, fd_prestat_get: none, fd_prestat_dir_name: none, fd_read: none,
+    fd_fdstat_get: none,
+    fd_prestat_get: none,
+    fd_prestat_dir_name: none,
+    fd_read: none,
     environ_get: () => done,
     environ_sizes_get: (count, bytes) => {
       const view = new DataView(instance.wasm.memory.buffer);
@@ -72,7 +87,9 @@ function system(instance) {
       view.setUint32(bytes, 0, true);
       return done;
     },
-    proc_exit: () => { throw new WebAssembly.RuntimeError("the module has ended"); },
+    proc_exit: () => {
+      throw new WebAssembly.RuntimeError("the module has ended");
+    },
     fd_write: (_file, parts, count, written) => {
       const view = new DataView(instance.wasm.memory.buffer);
       let bytes = 0;

@@ -33,7 +33,8 @@ export function sceneOf(root, voxrt, rules = {}) {
   };
   const groups = new Map();
   visit(root, (mesh) => {
-    if (mesh.isPoints || mesh.isLine) warn("no-area", `${mesh.isPoints ? "points" : "lines"} were left out: they have no area to voxelize`);
+    if (mesh.isPoints || mesh.isLine)
+      warn("no-area", `${mesh.isPoints ? "points" : "lines"} were left out: they have no area to voxelize`);
     if (!mesh.isMesh || !mesh.geometry?.getAttribute("position")) return;
     const key = groupOf(mesh);
     groups.set(key, [...(groups.get(key) ?? []), mesh]);
@@ -41,14 +42,17 @@ export function sceneOf(root, voxrt, rules = {}) {
   const table = new Map(); // key -> {name, colour, order, ...}
   const use = (material) => {
     const found = materialOf(material) ?? { ...DEFAULT, key: DEFAULT, order: Infinity };
-    if (!table.has(found.key)) table.set(found.key, { order: table.size, ...found, colour: found.colour ?? colourOf(material, voxrt) });
+    if (!table.has(found.key))
+      table.set(found.key, { order: table.size, ...found, colour: found.colour ?? colourOf(material, voxrt) });
     return found.key;
   };
   const meshes = [];
   const objects = [];
   const known = new Map(); // what parts that do not deform show -> mesh
   for (const [group, parts] of groups) {
-    const look = parts.some(isDeformed) ? null : parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
+    const look = parts.some(isDeformed)
+      ? null
+      : parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
     if (!known.has(look)) {
       const made = joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf });
       known.set(look, made.triangles.length ? meshes.push(made) - 1 : -1);
@@ -58,9 +62,17 @@ export function sceneOf(root, voxrt, rules = {}) {
     if (mesh < 0) continue;
     parts[0].updateMatrixWorld?.();
     const placed = parts[0].isInstancedMesh
-      ? Array.from({ length: parts[0].count }, (_, i) => product(parts[0].matrixWorld.elements, parts[0].instanceMatrix.array.subarray(16 * i, 16 * i + 16)))
+      ? Array.from({ length: parts[0].count }, (_, i) =>
+          product(parts[0].matrixWorld.elements, parts[0].instanceMatrix.array.subarray(16 * i, 16 * i + 16)),
+        )
       : [parts[0].matrixWorld.elements];
-    placed.forEach((matrix, i) => objects.push({ name: nameOf(parts[0], group) + (placed.length > 1 ? ` [${i}]` : ""), mesh, transform: rows(matrix) }));
+    placed.forEach((matrix, i) =>
+      objects.push({
+        name: nameOf(parts[0], group) + (placed.length > 1 ? ` [${i}]` : ""),
+        mesh,
+        transform: rows(matrix),
+      }),
+    );
   }
   const ordered = [...table].sort(([, a], [, b]) => a.order - b.order);
   const ids = new Map(ordered.map(([key], i) => [key, i + 1]));
@@ -69,8 +81,18 @@ export function sceneOf(root, voxrt, rules = {}) {
     delete mesh.keys;
   }
   const bare = ids.get(DEFAULT);
-  if (bare !== undefined) warn("default-material", "faces without a material got the default one", meshes.reduce((sum, mesh) => sum + mesh.materials.filter((id) => id === bare).length, 0));
-  const materials = ordered.map(([, { name, colour, mirror = false, authored = true }]) => ({ name, colour, mirror, authored }));
+  if (bare !== undefined)
+    warn(
+      "default-material",
+      "faces without a material got the default one",
+      meshes.reduce((sum, mesh) => sum + mesh.materials.filter((id) => id === bare).length, 0),
+    );
+  const materials = ordered.map(([, { name, colour, mirror = false, authored = true }]) => ({
+    name,
+    colour,
+    mirror,
+    authored,
+  }));
   return { materials, meshes, objects, warnings: [...warnings.values()] };
 }
 
@@ -88,13 +110,21 @@ function joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf }) {
     const { geometry } = mesh;
     const place = positionsOf(mesh);
     const count = place.length / 3;
-    const corners = geometry.index ? geometry.index.array.subarray(0, geometry.index.count) : Uint32Array.from({ length: count }, (_, i) => i);
+    const corners = geometry.index
+      ? geometry.index.array.subarray(0, geometry.index.count)
+      : Uint32Array.from({ length: count }, (_, i) => i);
     const whole = corners.length - (corners.length % 3);
-    if (whole < corners.length) warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out");
+    if (whole < corners.length)
+      warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out");
     const several = Array.isArray(mesh.material) ? mesh.material : null;
-    const runs = several && geometry.groups.length
-      ? geometry.groups.map(({ start, count: length, materialIndex }) => [start, Math.min(start + length, whole), several[materialIndex]])
-      : [[0, whole, several ? several[0] : mesh.material]];
+    const runs =
+      several && geometry.groups.length
+        ? geometry.groups.map(({ start, count: length, materialIndex }) => [
+            start,
+            Math.min(start + length, whole),
+            several[materialIndex],
+          ])
+        : [[0, whole, several ? several[0] : mesh.material]];
     for (const [start, end, material] of runs) {
       if (end <= start) continue;
       const look = appearanceOf(material, geometry, warn);
@@ -103,7 +133,9 @@ function joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf }) {
         continue;
       }
       let plain = null;
-      const covers = (at) => look && (!look.covers || look.covers(corners[at]) || look.covers(corners[at + 1]) || look.covers(corners[at + 2]));
+      const covers = (at) =>
+        look &&
+        (!look.covers || look.covers(corners[at]) || look.covers(corners[at + 1]) || look.covers(corners[at + 2]));
       for (let i = start; i < end; i += 3) {
         if (covers(i)) painted.push([triangles.length / 3, look, corners, i]);
         keys.push(covers(i) ? PAINTED : (plain ??= use(material)));
@@ -119,7 +151,10 @@ function joined(parts, { use, warn, appearanceOf, isLeftOut, normalsOf }) {
   positions.reduce((at, part) => (all.set(part, at), at + part.length), 0);
   const rows = Int32Array.from(triangles);
   return {
-    positions: all, triangles: rows, keys, ...(painted.length && { surface: surfaceOf(painted, keys.length) }),
+    positions: all,
+    triangles: rows,
+    keys,
+    ...(painted.length && { surface: surfaceOf(painted, keys.length) }),
     ...(given.length && { normals: { directions: joinedNormals(given, first), rows } }),
   };
 }
@@ -153,7 +188,8 @@ function surfaceOf(painted, count) {
   return { entries, rows, uv, colours };
 }
 
-const isDeformed = (mesh) => mesh.isSkinnedMesh || (mesh.morphTargetInfluences?.some((weight) => weight !== 0) ?? false);
+const isDeformed = (mesh) =>
+  mesh.isSkinnedMesh || (mesh.morphTargetInfluences?.some((weight) => weight !== 0) ?? false);
 
 function positionsOf(mesh) {
   const attribute = mesh.geometry.getAttribute("position");
@@ -162,7 +198,8 @@ function positionsOf(mesh) {
     return attribute.array.subarray(0, 3 * attribute.count);
   const positions = new Float64Array(3 * attribute.count);
   if (!deformed) {
-    for (let i = 0; i < attribute.count; i++) positions.set([attribute.getX(i), attribute.getY(i), attribute.getZ(i)], 3 * i);
+    for (let i = 0; i < attribute.count; i++)
+      positions.set([attribute.getX(i), attribute.getY(i), attribute.getZ(i)], 3 * i);
     return positions;
   }
   if (mesh.isSkinnedMesh) mesh.skeleton.update();
@@ -190,10 +227,19 @@ function appearanceOfThree(material, geometry, warn) {
   const known = looks.get(material);
   const kind = image ? "textured" : "coloured";
   known[kind] ??= {
-    name: material.name || "material", factor: [r, g, b, 1],
-    texture: image && { image, wrap: [WRAPS[material.map.wrapS], WRAPS[material.map.wrapT]], nearest: material.map.magFilter === NEAREST },
+    name: material.name || "material",
+    factor: [r, g, b, 1],
+    texture: image && {
+      image,
+      wrap: [WRAPS[material.map.wrapS], WRAPS[material.map.wrapT]],
+      nearest: material.map.magFilter === NEAREST,
+    },
   };
-  return { entry: known[kind], uvOf: image && coordinatesOf(uv, material.map), colourOf: colour ? colours(colour) : null };
+  return {
+    entry: known[kind],
+    uvOf: image && coordinatesOf(uv, material.map),
+    colourOf: colour ? colours(colour) : null,
+  };
 }
 
 // Sets u and v, which the texture's offset, repeat and rotation move.
@@ -239,7 +285,8 @@ function turned(image) {
   if (!upside.has(image)) {
     const { width, height, pixels } = image;
     const made = new Uint8Array(pixels.length);
-    for (let row = 0; row < height; row++) made.set(pixels.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
+    for (let row = 0; row < height; row++)
+      made.set(pixels.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
     upside.set(image, { width, height, pixels: made });
   }
   return upside.get(image);
@@ -248,7 +295,13 @@ function turned(image) {
 // A matrix of three.js (columns) as 3 rows of 4.
 const rows = (m) => [m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]];
 
-const product = (a, b) => Array.from({ length: 16 }, (_, at) => {
-  const [column, row] = [at >> 2, at & 3];
-  return a[row] * b[4 * column] + a[row + 4] * b[4 * column + 1] + a[row + 8] * b[4 * column + 2] + a[row + 12] * b[4 * column + 3];
-});
+const product = (a, b) =>
+  Array.from({ length: 16 }, (_, at) => {
+    const [column, row] = [at >> 2, at & 3];
+    return (
+      a[row] * b[4 * column] +
+      a[row + 4] * b[4 * column + 1] +
+      a[row + 8] * b[4 * column + 2] +
+      a[row + 12] * b[4 * column + 3]
+    );
+  });

@@ -38,33 +38,58 @@ export class Voxrt extends Instance {
   // bake: null, or {sun, sky, samples}: the direction towards the sun, linear light of the sky (red, green, blue), rays
   // to the sky per voxel. budget: null, or the most words that the memory may have; it gives up what is seen least.
   voxelize(scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null, budget = null } = {}) {
-    if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT) throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
+    if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT)
+      throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
     if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
     const { wasm } = this;
     return this.guard(() => {
       wasm.vx_scene_begin();
-      for (const { name, colour: [red, green, blue], mirror = false, authored = true } of scene.materials)
-        this.text(name, (at) => this.checked(wasm.vx_material(at, (red << 16) | (green << 8) | blue, mirror, authored)));
+      for (const {
+        name,
+        colour: [red, green, blue],
+        mirror = false,
+        authored = true,
+      } of scene.materials)
+        this.text(name, (at) =>
+          this.checked(wasm.vx_material(at, (red << 16) | (green << 8) | blue, mirror, authored)),
+        );
       const appearances = new Map();
       const images = new Map();
       for (const mesh of scene.meshes) {
         const [vertices, triangles] = [mesh.positions.length / 3, mesh.triangles.length / 3];
-        this.with(Float64Array, mesh.positions, (at) => this.with(Int32Array, mesh.triangles, (corners) => this.with(Uint8Array, mesh.materials, (ids) =>
-          this.checked(wasm.vx_mesh(at, vertices, corners, triangles, ids)))));
+        this.with(Float64Array, mesh.positions, (at) =>
+          this.with(Int32Array, mesh.triangles, (corners) =>
+            this.with(Uint8Array, mesh.materials, (ids) =>
+              this.checked(wasm.vx_mesh(at, vertices, corners, triangles, ids)),
+            ),
+          ),
+        );
         if (bake && mesh.normals)
-          this.with(Float64Array, mesh.normals.directions, (at) => this.with(Int32Array, mesh.normals.rows, (rows) =>
-            this.checked(wasm.vx_normals(at, mesh.normals.directions.length / 3, rows))));
+          this.with(Float64Array, mesh.normals.directions, (at) =>
+            this.with(Int32Array, mesh.normals.rows, (rows) =>
+              this.checked(wasm.vx_normals(at, mesh.normals.directions.length / 3, rows)),
+            ),
+          );
         if (!mesh.surface) continue;
         const { entries, rows, uv, colours: light } = mesh.surface;
         const numbers = entries.map((entry) => {
           if (!appearances.has(entry)) appearances.set(entry, this.#appearance(entry, images));
           return appearances.get(entry);
         });
-        this.with(Int32Array, numbers, (list) => this.with(Int32Array, rows, (of) => this.with(Float64Array, uv, (places) => this.with(Float32Array, light, (tints) =>
-          this.checked(wasm.vx_surface(list, numbers.length, of, places, tints))))));
+        this.with(Int32Array, numbers, (list) =>
+          this.with(Int32Array, rows, (of) =>
+            this.with(Float64Array, uv, (places) =>
+              this.with(Float32Array, light, (tints) =>
+                this.checked(wasm.vx_surface(list, numbers.length, of, places, tints)),
+              ),
+            ),
+          ),
+        );
       }
       for (const { name, mesh, transform } of scene.objects)
-        this.with(Float64Array, transform, (at) => this.text(name, (text) => this.checked(wasm.vx_object(mesh, at, text))));
+        this.with(Float64Array, transform, (at) =>
+          this.text(name, (text) => this.checked(wasm.vx_object(mesh, at, text))),
+        );
       const transparent = this.checked(wasm.vx_scene_end());
       this.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
       const baked = bake && this.#bake(bake);
@@ -72,14 +97,29 @@ export class Voxrt extends Instance {
       if (baked && fitted) baked.colours = fitted.colours;
       const words = this.view(Uint32Array, wasm.vx_words(), wasm.vx_word_count()).slice();
       const voxels = this.view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
-      const objects = Array.from(voxels, (count, i) => ({ name: this.string(wasm.vx_object_name(i)), mode: this.string(wasm.vx_object_mode(i)), voxels: Number(count) }));
+      const objects = Array.from(voxels, (count, i) => ({
+        name: this.string(wasm.vx_object_name(i)),
+        mode: this.string(wasm.vx_object_mode(i)),
+        voxels: Number(count),
+      }));
       const materials = Array.from({ length: wasm.vx_material_count() }, (_, id) => {
         const look = wasm.vx_material_look(id);
-        return { name: this.string(wasm.vx_material_name(id)), colour: [(look >> 16) & 255, (look >> 8) & 255, look & 255], mirror: Boolean(look & (1 << 24)), authored: Boolean(look & (1 << 25)) };
+        return {
+          name: this.string(wasm.vx_material_name(id)),
+          colour: [(look >> 16) & 255, (look >> 8) & 255, look & 255],
+          mirror: Boolean(look & (1 << 24)),
+          authored: Boolean(look & (1 << 25)),
+        };
       });
-      const warnings = transparent ? [{ kind: "transparent", message: "fully transparent faces were left out", count: transparent }] : [];
+      const warnings = transparent
+        ? [{ kind: "transparent", message: "fully transparent faces were left out", count: transparent }]
+        : [];
       for (let i = 0; i < wasm.vx_warning_count(); i++)
-        warnings.push({ kind: this.string(wasm.vx_warning_kind(i)), message: this.string(wasm.vx_warning_message(i)), count: wasm.vx_warning_objects(i) });
+        warnings.push({
+          kind: this.string(wasm.vx_warning_kind(i)),
+          message: this.string(wasm.vx_warning_message(i)),
+          count: wasm.vx_warning_objects(i),
+        });
       const grid = { origin: [...this.view(Float64Array, wasm.vx_origin(), 3)], voxelSize: wasm.vx_voxel_size() };
       wasm.vx_scene_begin();
       return { words, depth, grid, materials, objects, warnings, baked, fitted };
@@ -90,16 +130,23 @@ export class Voxrt extends Instance {
   #bake({ sun, sky, samples }) {
     const { wasm } = this;
     const wordsBefore = wasm.vx_word_count();
-    const voxels = this.with(Float64Array, sun, (towards) => this.with(Float64Array, sky, (light) => this.checked(wasm.vx_bake(towards, light, samples))));
+    const voxels = this.with(Float64Array, sun, (towards) =>
+      this.with(Float64Array, sky, (light) => this.checked(wasm.vx_bake(towards, light, samples))),
+    );
     return { sun, sky, samples, voxels, colours: BAKED_COLOURS, wordsBefore, words: wasm.vx_word_count() };
   }
 
   // Make the memory fit. Returns what was given up.
   #fit(words) {
-    if (!Number.isInteger(words) || words < 1 || words > 2 ** 32 - 1) throw new VoxrtError(`budget must be a number of words, 1 or more, not ${words}`);
+    if (!Number.isInteger(words) || words < 1 || words > 2 ** 32 - 1)
+      throw new VoxrtError(`budget must be a number of words, 1 or more, not ${words}`);
     const wordsBefore = this.wasm.vx_word_count();
     this.checked(this.wasm.vx_fit(words));
-    const [wordsShared, surface, changed, appeared, recoloured, colours] = this.view(Float64Array, this.wasm.vx_fit_figures(), 6);
+    const [wordsShared, surface, changed, appeared, recoloured, colours] = this.view(
+      Float64Array,
+      this.wasm.vx_fit_figures(),
+      6,
+    );
     return { words, wordsBefore, wordsShared, surface, changed, appeared, recoloured, colours };
   }
 
@@ -107,17 +154,37 @@ export class Voxrt extends Instance {
     const { image, wrap = ["repeat", "repeat"], nearest = false } = texture ?? {};
     if (image && !images.has(image)) images.set(image, this.wasm.vx_image(this.copy(Uint8Array, image.pixels)));
     const [u, v] = wrap.map((one) => WRAPS.indexOf(one));
-    return this.text(name, (text) => this.with(Float64Array, factor, (light) => this.checked(
-      this.wasm.vx_appearance(text, light, image ? images.get(image) : 0, image?.width ?? 0, image?.height ?? 0, u, v, nearest, cutoff, mirror))));
+    return this.text(name, (text) =>
+      this.with(Float64Array, factor, (light) =>
+        this.checked(
+          this.wasm.vx_appearance(
+            text,
+            light,
+            image ? images.get(image) : 0,
+            image?.width ?? 0,
+            image?.height ?? 0,
+            u,
+            v,
+            nearest,
+            cutoff,
+            mirror,
+          ),
+        ),
+      ),
+    );
   }
 
   // The words of voxels given one by one: x, y, z from 0 up to 2^depth, and a material, 1 … 255, each. Where a place
   // repeats, the first counts.
   fromPoints(places, materials, depth) {
-    return this.guard(() => this.with(Int32Array, places, (at) => this.with(Uint8Array, materials, (ids) => {
-      const count = this.checked(this.wasm.vx_points(at, ids, materials.length, depth));
-      return this.view(Uint32Array, this.wasm.vx_points_words(), count).slice();
-    })));
+    return this.guard(() =>
+      this.with(Int32Array, places, (at) =>
+        this.with(Uint8Array, materials, (ids) => {
+          const count = this.checked(this.wasm.vx_points(at, ids, materials.length, depth));
+          return this.view(Uint32Array, this.wasm.vx_points_words(), count).slice();
+        }),
+      ),
+    );
   }
 
   // Take the words of an octree memory (Uint32Array), which are checked.
@@ -142,9 +209,25 @@ export class Voxrt extends Instance {
     materials.forEach((colour, id) => table.set(colour, 3 * id));
     const flags = new Uint8Array(256);
     for (const id of mirrors) flags[id] = 1;
-    this.guard(() => this.with(Uint8Array, table, (colours) => this.with(Uint8Array, flags, (mirrored) =>
-      this.with(Uint8Array, faces ?? [], (brightness) => this.with(Int32Array, light?.position ?? [], (place) =>
-        this.wasm.vx_shading(colours, mirrored, bounces, flat, faces && !flat ? brightness : 0, light ? place : 0, light?.ambient ?? 0))))));
+    this.guard(() =>
+      this.with(Uint8Array, table, (colours) =>
+        this.with(Uint8Array, flags, (mirrored) =>
+          this.with(Uint8Array, faces ?? [], (brightness) =>
+            this.with(Int32Array, light?.position ?? [], (place) =>
+              this.wasm.vx_shading(
+                colours,
+                mirrored,
+                bounces,
+                flat,
+                faces && !flat ? brightness : 0,
+                light ? place : 0,
+                light?.ambient ?? 0,
+              ),
+            ),
+          ),
+        ),
+      ),
+    );
   }
 
   // Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. camera: {position in
@@ -153,10 +236,14 @@ export class Voxrt extends Instance {
     return this.guard(() => {
       const wordsRead = this.#trace(camera, width, height, first, end);
       const [top, bottom] = [16 * first, Math.min(16 * end, height)];
-      const part = (at, bytes) => this.view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
+      const part = (at, bytes) =>
+        this.view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
       return {
-        top, wordsRead, colour: part(this.wasm.vx_colour(), 3),
-        material: part(this.wasm.vx_frame_material(), 1), face: part(this.wasm.vx_frame_face(), 1),
+        top,
+        wordsRead,
+        colour: part(this.wasm.vx_colour(), 3),
+        material: part(this.wasm.vx_frame_material(), 1),
+        face: part(this.wasm.vx_frame_face(), 1),
       };
     });
   }
@@ -175,15 +262,21 @@ export class Voxrt extends Instance {
   }
 
   #trace({ position, look, right, up }, width, height, first, end) {
-    return this.with(Int32Array, [...position, ...look, ...right, ...up], (at) => this.checked(this.wasm.vx_render(at, width, height, first, end)));
+    return this.with(Int32Array, [...position, ...look, ...right, ...up], (at) =>
+      this.checked(this.wasm.vx_render(at, width, height, first, end)),
+    );
   }
 
-  tileRows(height) { return this.wasm.vx_tile_rows(height); }
+  tileRows(height) {
+    return this.wasm.vx_tile_rows(height);
+  }
 
   // Follow one ray: each word that it reads, and what it hits. origin: 1/16 voxel; direction: below 2^20.
   follow(origin, direction) {
     return this.guard(() => {
-      const count = this.with(Int32Array, origin, (from) => this.with(Int32Array, direction, (to) => this.checked(this.wasm.vx_follow(from, to))));
+      const count = this.with(Int32Array, origin, (from) =>
+        this.with(Int32Array, direction, (to) => this.checked(this.wasm.vx_follow(from, to))),
+      );
       const all = this.view(Int32Array, this.wasm.vx_readings(), 7 * count + 5).slice();
       const readings = Array.from({ length: count }, (_, i) => {
         const [address, word, level, x, y, z, axis] = all.subarray(7 * i, 7 * i + 7);
@@ -208,10 +301,14 @@ export class Voxrt extends Instance {
   }
 
   // Linear light, 0 … 1, as sRGB, 0 … 255.
-  srgb(linear) { return this.wasm.vx_srgb(linear); }
+  srgb(linear) {
+    return this.wasm.vx_srgb(linear);
+  }
 
   // sRGB, 0 … 255, as linear light.
-  linear(code) { return this.wasm.vx_linear(code); }
+  linear(code) {
+    return this.wasm.vx_linear(code);
+  }
 }
 
 const ALPHA = 0xff000000;
@@ -228,5 +325,6 @@ function opaque(rgb, rgba) {
     rgba[to + 2] = (b >>> 16) | ((c & 0xff) << 16) | ALPHA;
     rgba[to + 3] = (c >>> 8) | ALPHA;
   }
-  for (let to = 4 * fours; to < rgba.length; to++) rgba[to] = rgb[3 * to] | (rgb[3 * to + 1] << 8) | (rgb[3 * to + 2] << 16) | ALPHA;
+  for (let to = 4 * fours; to < rgba.length; to++)
+    rgba[to] = rgb[3 * to] | (rgb[3 * to + 1] << 8) | (rgb[3 * to + 2] << 16) | ALPHA;
 }

@@ -5,9 +5,13 @@ import { Picture, average } from "./picture.js";
 export class BandPicture extends Picture {
   show({ width, height, bands }, samples) {
     const [columns, rows] = [width / samples, height / samples];
-    if (this.canvas.width !== columns || this.canvas.height !== rows) Object.assign(this.canvas, { width: columns, height: rows });
+    if (this.canvas.width !== columns || this.canvas.height !== rows)
+      Object.assign(this.canvas, { width: columns, height: rows });
     for (const { top, pixels } of bands) {
-      const image = samples === 1 ? new ImageData(pixels, columns) : this.context.createImageData(columns, pixels.length / (4 * width * samples));
+      const image =
+        samples === 1
+          ? new ImageData(pixels, columns)
+          : this.context.createImageData(columns, pixels.length / (4 * width * samples));
       if (samples > 1) average(pixels, 4, width, columns, image.height, image.data);
       this.context.putImageData(image, 0, top / samples);
     }

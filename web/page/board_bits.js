@@ -16,7 +16,11 @@ export function fitBeam(voxrt, hardware, board, look, onProgress = () => {}) {
   voxrt.guard(() => voxrt.checked(wasm.vx_beam(board.orbit.cameras, board.clock, board.bufferLines)));
   for (;;) {
     const size = voxrt.checked(wasm.vx_beam_band());
-    const [scale, cyclesPerPixel, lead, framesPerSecond, done, total] = voxrt.view(Float64Array, wasm.vx_beam_figures(), 6);
+    const [scale, cyclesPerPixel, lead, framesPerSecond, done, total] = voxrt.view(
+      Float64Array,
+      wasm.vx_beam_figures(),
+      6,
+    );
     onProgress(done, total);
     if (!size) return { scale, cyclesPerPixel, lead, framesPerSecond };
     const registers = [...voxrt.view(Int32Array, wasm.vx_registers(), 12)];
@@ -42,12 +46,20 @@ function tableOf(voxrt, { boot, orbit, screen }, { words, depth, materials }, fl
   table.set(boot.lists[flat ? "flat" : "faces"][scale]);
   table[boot.depth] = depth;
   table[boot.root] = words[0];
-  materials.forEach(({ colour: [red, green, blue], mirror }, id) => { table[boot.materials + id] = (mirror << 24) | (red << 16) | (green << 8) | blue; });
-  const cameras = orbitOf(voxrt, orbit.cameras, screen.map((side) => side >> scale));
+  materials.forEach(({ colour: [red, green, blue], mirror }, id) => {
+    table[boot.materials + id] = (mirror << 24) | (red << 16) | (green << 8) | blue;
+  });
+  const cameras = orbitOf(
+    voxrt,
+    orbit.cameras,
+    screen.map((side) => side >> scale),
+  );
   for (let step = 0; step < orbit.cameras; step++) {
     const at = orbit.at + orbit.step * step;
     table.set(orbit.list, at);
-    orbit.places.forEach((place, i) => { table[at + place] = cameras[12 * step + i] & (2 ** orbit.bits[i] - 1); });
+    orbit.places.forEach((place, i) => {
+      table[at + place] = cameras[12 * step + i] & (2 ** orbit.bits[i] - 1);
+    });
   }
   return table;
 }
@@ -79,7 +91,8 @@ function replace(bits, blockRams, memory) {
 function checksum(bytes) {
   let sum = 0;
   const add = (byte) => {
-    for (let bit = 7; bit >= 0; bit--) sum = (((sum << 1) & 0xffff) | ((byte >> bit) & 1)) ^ (sum & 0x8000 ? 0x8005 : 0);
+    for (let bit = 7; bit >= 0; bit--)
+      sum = (((sum << 1) & 0xffff) | ((byte >> bit) & 1)) ^ (sum & 0x8000 ? 0x8005 : 0);
   };
   bytes.forEach(add);
   add(0);

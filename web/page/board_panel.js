@@ -14,7 +14,11 @@ export class BoardPanel {
 
   // A button for a board that the memory fits.
   button(board) {
-    const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Bitstream", title: "Fits: a file for openFPGALoader that shows this memory on a monitor, turning" });
+    const button = Object.assign(document.createElement("button"), {
+      type: "button",
+      textContent: "Bitstream",
+      title: "Fits: a file for openFPGALoader that shows this memory on a monitor, turning",
+    });
     button.setAttribute("aria-label", `Bitstream for ${board}`);
     button.onclick = () => this.make(board);
     return button;
@@ -31,13 +35,24 @@ export class BoardPanel {
     this.say(`${board}: counting the clocks of pictures from all around …`);
     try {
       await hand.start(this.module);
-      const made = await hand.call("bitstream", { name: board, words, depth, materials, lighting: lighting ?? PLAIN }, ({ share }) => { $("bitstream-progress").value = share; });
+      const made = await hand.call(
+        "bitstream",
+        { name: board, words, depth, materials, lighting: lighting ?? PLAIN },
+        ({ share }) => {
+          $("bitstream-progress").value = share;
+        },
+      );
       save(made.bits, `${name}.bit`);
       const late = made.lead < 0 ? "; some rows are repeated, because the next ones are late" : "";
-      const dark = made.missing.length ? `; left out, since the board has no hardware for it: ${made.missing.join(", ")}` : "";
-      this.say(`${board}: ${made.width}×${made.height}, ${made.framesPerSecond.toFixed(1)} frames per second${late}${dark}. Load it: openFPGALoader --board ${made.loader} ${name}.bit`);
+      const dark = made.missing.length
+        ? `; left out, since the board has no hardware for it: ${made.missing.join(", ")}`
+        : "";
+      this.say(
+        `${board}: ${made.width}×${made.height}, ${made.framesPerSecond.toFixed(1)} frames per second${late}${dark}. Load it: openFPGALoader --board ${made.loader} ${name}.bit`,
+      );
     } catch (error) {
-      if (this.hand === hand) this.say(error.message === "cancelled" ? "" : error.message, error.message !== "cancelled");
+      if (this.hand === hand)
+        this.say(error.message === "cancelled" ? "" : error.message, error.message !== "cancelled");
     }
     hand.stop();
     if (this.hand !== hand) return;

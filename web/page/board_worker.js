@@ -14,7 +14,9 @@ const load = async (path) => {
 };
 
 answerWith({
-  async start({ module }) { voxrt = await Voxrt.load(module); },
+  async start({ module }) {
+    voxrt = await Voxrt.load(module);
+  },
 
   // `lighting`: as of manifests. Answers {missing, bits, width, height, framesPerSecond, lead, loader}.
   async bitstream({ name, words, depth, materials, lighting }, say) {
@@ -22,7 +24,10 @@ answerWith({
     const board = await (await load(`boards/${name}.json`)).json();
     refuse(board, words, depth);
     const { flat, on, bounces, faces } = lighting;
-    if (!flat && String(faces) !== String(FACES)) throw new Error("This memory names a shading of its own, which bitstreams of this page have not: voxrt bitstream makes one");
+    if (!flat && String(faces) !== String(FACES))
+      throw new Error(
+        "This memory names a shading of its own, which bitstreams of this page have not: voxrt bitstream makes one",
+      );
     const missing = [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])];
     const [base, hardware] = await Promise.all([
       load(`boards/${name}.bit`).then((answer) => answer.arrayBuffer()),
@@ -30,7 +35,9 @@ answerWith({
     ]);
     hardware.setMemory(words, depth);
     const look = { materials: materials.map(({ colour }) => colour), flat };
-    const { scale, framesPerSecond, lead } = fitBeam(voxrt, hardware, board, look, (done, total) => say({ share: done / total }));
+    const { scale, framesPerSecond, lead } = fitBeam(voxrt, hardware, board, look, (done, total) =>
+      say({ share: done / total }),
+    );
     const [width, height] = board.screen.map((side) => side >> scale);
     const bits = bitstreamOf(voxrt, new Uint8Array(base), board, { words, depth, materials }, { flat, scale });
     return { missing, bits, width, height, framesPerSecond, lead, loader: board.loader };
@@ -40,5 +47,7 @@ answerWith({
 function refuse(board, words, depth) {
   if (words.length <= board.capacity && depth <= board.depth) return;
   const fits = Math.min(depth - voxrt.levelThatFits(board.capacity), board.depth);
-  throw new Error(`The memory has ${count(words.length)} words and ${depth} levels, and ${board.name} holds ${count(board.capacity)} words and ${board.depth} levels: choose ${count(2 ** fits)}³ or less, or a budget`);
+  throw new Error(
+    `The memory has ${count(words.length)} words and ${depth} levels, and ${board.name} holds ${count(board.capacity)} words and ${board.depth} levels: choose ${count(2 ** fits)}³ or less, or a budget`,
+  );
 }

@@ -17,7 +17,12 @@ export class Budget {
       soon = setTimeout(onChange, 300);
     };
     this.choose = choose;
-    $("budget").oninput = ({ target }) => choose(target.valueAsNumber >= STEPS ? null : Math.round(LEAST * (this.whole / LEAST) ** (target.valueAsNumber / STEPS)));
+    $("budget").oninput = ({ target }) =>
+      choose(
+        target.valueAsNumber >= STEPS
+          ? null
+          : Math.round(LEAST * (this.whole / LEAST) ** (target.valueAsNumber / STEPS)),
+      );
     $("budget-words").onchange = ({ target }) => {
       if (target.value === "") choose(null);
       else if (target.validity.valid) choose(target.valueAsNumber);
@@ -33,7 +38,10 @@ export class Budget {
   show() {
     const part = this.words === null ? 1 : Math.log(this.words / LEAST) / Math.log(this.whole / LEAST);
     $("budget").value = this.words === null ? STEPS : Math.min(STEPS - 1, Math.round(STEPS * part));
-    $("budget").setAttribute("aria-valuetext", this.words === null ? "no budget" : `${this.words.toLocaleString("en")} words`);
+    $("budget").setAttribute(
+      "aria-valuetext",
+      this.words === null ? "no budget" : `${this.words.toLocaleString("en")} words`,
+    );
     $("budget-words").value = this.words ?? "";
   }
 }

@@ -10,17 +10,20 @@ export class DaylightControl {
   constructor(onChange) {
     this.set(null);
     let soon = null;
-    for (const field of FIELDS) $(field).oninput = () => {
-      clearTimeout(soon);
-      if (this.on && FIELDS.every((one) => $(one).validity.valid)) soon = setTimeout(onChange, 300);
-    };
+    for (const field of FIELDS)
+      $(field).oninput = () => {
+        clearTimeout(soon);
+        if (this.on && FIELDS.every((one) => $(one).validity.valid)) soon = setTimeout(onChange, 300);
+      };
     $("bake").onclick = () => {
       this.show(!this.on);
       onChange();
     };
   }
 
-  get on() { return isPressed($("bake")); }
+  get on() {
+    return isPressed($("bake"));
+  }
 
   // As of Voxrt.voxelize.
   get options() {
@@ -31,7 +34,9 @@ export class DaylightControl {
 
   set(options) {
     const { sun, sky, samples } = options ?? DAYLIGHT;
-    [...sun, sky[0], samples].forEach((value, i) => { $(FIELDS[i]).value = value; });
+    [...sun, sky[0], samples].forEach((value, i) => {
+      $(FIELDS[i]).value = value;
+    });
     this.show(options !== null);
   }
 

@@ -4,8 +4,12 @@ import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
 
 const FOLDER = "./three/draco/";
 const TYPES = {
-  Float32Array: [Float32Array, "DT_FLOAT32"], Int8Array: [Int8Array, "DT_INT8"], Uint8Array: [Uint8Array, "DT_UINT8"],
-  Int16Array: [Int16Array, "DT_INT16"], Uint16Array: [Uint16Array, "DT_UINT16"], Uint32Array: [Uint32Array, "DT_UINT32"],
+  Float32Array: [Float32Array, "DT_FLOAT32"],
+  Int8Array: [Int8Array, "DT_INT8"],
+  Uint8Array: [Uint8Array, "DT_UINT8"],
+  Int16Array: [Int16Array, "DT_INT16"],
+  Uint16Array: [Uint16Array, "DT_UINT16"],
+  Uint32Array: [Uint32Array, "DT_UINT32"],
 };
 
 export class DracoDecoder {
@@ -19,7 +23,10 @@ export class DracoDecoder {
 }
 
 async function load() {
-  const [{ default: start }, answer] = await Promise.all([import(`${FOLDER}draco_decoder.js`), fetch(new URL(`${FOLDER}draco_decoder.wasm`, import.meta.url))]);
+  const [{ default: start }, answer] = await Promise.all([
+    import(`${FOLDER}draco_decoder.js`),
+    fetch(new URL(`${FOLDER}draco_decoder.wasm`, import.meta.url)),
+  ]);
   return start({ wasmBinary: await answer.arrayBuffer() });
 }
 
@@ -28,7 +35,8 @@ function decoded(draco, bytes, ids, types) {
   const mesh = new draco.Mesh();
   try {
     const status = decoder.DecodeArrayToMesh(bytes, bytes.length, mesh);
-    if (!status.ok() || mesh.ptr === 0) throw new Error(`Draco data cannot be decoded (${status.error_msg()}); export the file again`);
+    if (!status.ok() || mesh.ptr === 0)
+      throw new Error(`Draco data cannot be decoded (${status.error_msg()}); export the file again`);
     const copy = (Type, length, fill) => {
       const at = draco._malloc(length * Type.BYTES_PER_ELEMENT);
       fill(length * Type.BYTES_PER_ELEMENT, at);
@@ -37,12 +45,19 @@ function decoded(draco, bytes, ids, types) {
       return values;
     };
     const geometry = new BufferGeometry();
-    geometry.setIndex(new BufferAttribute(copy(Uint32Array, 3 * mesh.num_faces(), (size, at) => decoder.GetTrianglesUInt32Array(mesh, size, at)), 1));
+    geometry.setIndex(
+      new BufferAttribute(
+        copy(Uint32Array, 3 * mesh.num_faces(), (size, at) => decoder.GetTrianglesUInt32Array(mesh, size, at)),
+        1,
+      ),
+    );
     for (const [name, id] of Object.entries(ids)) {
       if (!(types[name] in TYPES)) continue;
       const attribute = decoder.GetAttributeByUniqueId(mesh, id);
       const [Type, kind] = TYPES[types[name]];
-      const values = copy(Type, mesh.num_points() * attribute.num_components(), (size, at) => decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, draco[kind], size, at));
+      const values = copy(Type, mesh.num_points() * attribute.num_components(), (size, at) =>
+        decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, draco[kind], size, at),
+      );
       geometry.setAttribute(name, new BufferAttribute(values, attribute.num_components()));
     }
     return geometry;

@@ -16,20 +16,30 @@ const stem = (name) => name.slice(0, name.lastIndexOf("."));
 // The first scene that no other one names: layers of USD refer to each other.
 function sceneAmong(files) {
   const scenes = files.filter(({ name }) => FORMATS.includes(extension(name)));
-  const texts = scenes.map(({ name, bytes }) => (scenes.length > 1 && extension(name).startsWith("usd") ? new TextDecoder("latin1").decode(bytes) : ""));
-  return scenes.find(({ name }) => !texts.some((text, i) => scenes[i].name !== name && text.includes(name))) ?? scenes[0];
+  const texts = scenes.map(({ name, bytes }) =>
+    scenes.length > 1 && extension(name).startsWith("usd") ? new TextDecoder("latin1").decode(bytes) : "",
+  );
+  return (
+    scenes.find(({ name }) => !texts.some((text, i) => scenes[i].name !== name && text.includes(name))) ?? scenes[0]
+  );
 }
 
 // Read files ({name, bytes}), one of which is a scene. Returns {name, file, scene} or {name, file, memory}.
 export async function readFiles(files, voxrt) {
   const main = sceneAmong(files);
-  if (!main) throw new FileError(`${files[0]?.name ?? "nothing"}: is no scene; drop ${FORMATS.map((format) => `.${format}`).join(", ")}`);
+  if (!main)
+    throw new FileError(
+      `${files[0]?.name ?? "nothing"}: is no scene; drop ${FORMATS.map((format) => `.${format}`).join(", ")}`,
+    );
   const known = { name: stem(main.name), file: main.name };
   const kind = extension(main.name);
   try {
     if (kind === "mem") {
       const { readMem } = await import("./read_mem.js");
-      const memory = readMem(main, files.find(({ name }) => name === `${stem(main.name)}.json`));
+      const memory = readMem(
+        main,
+        files.find(({ name }) => name === `${stem(main.name)}.json`),
+      );
       return { ...known, memory: { ...memory, depth: memory.depth ?? voxrt.depthOf(memory.words) } };
     }
     if (kind === "vox") {
@@ -86,7 +96,8 @@ class Folder {
 
   close() {
     for (const url of this.urls) URL.revokeObjectURL(url);
-    if (this.missing.length) throw new FileError(`${this.main.name}: needs ${this.missing[0]}; drop it together with the scene`);
+    if (this.missing.length)
+      throw new FileError(`${this.main.name}: needs ${this.missing[0]}; drop it together with the scene`);
   }
 }
 
@@ -101,7 +112,8 @@ async function readGltf(main, folder, voxrt) {
   loader.setDRACOLoader(new DracoDecoder());
   const looks = new GltfLooks(folder);
   const { Texture } = await import("./three/three.core.js");
-  for (const name of GltfLooks.loaders) loader.register((parser) => ({ name, loadTexture: (index) => looks.placeholder(parser, index, new Texture()) }));
+  for (const name of GltfLooks.loaders)
+    loader.register((parser) => ({ name, loadTexture: (index) => looks.placeholder(parser, index, new Texture()) }));
   let gltf;
   try {
     gltf = await loader.parseAsync(main.bytes.buffer, "");
@@ -117,28 +129,42 @@ async function readGltf(main, folder, voxrt) {
   // The primitives of a mesh hang below its node, or are the node.
   const groupOf = (mesh) => (place(mesh, "nodes") === undefined && mesh.parent ? mesh.parent : mesh);
   const nodeOf = (group) => place(group, "nodes");
-  const named = (group) => json.nodes[nodeOf(group)]?.name || json.meshes?.[json.nodes[nodeOf(group)]?.mesh]?.name || `nodes[${nodeOf(group)}]`;
+  const named = (group) =>
+    json.nodes[nodeOf(group)]?.name ||
+    json.meshes?.[json.nodes[nodeOf(group)]?.mesh]?.name ||
+    `nodes[${nodeOf(group)}]`;
   const counts = new Map();
   gltf.scene.traverse((object) => {
-    if (object.isMesh && groupOf(object) === object || object.isGroup && object.children.some((child) => child.isMesh && groupOf(child) === object))
+    if (
+      (object.isMesh && groupOf(object) === object) ||
+      (object.isGroup && object.children.some((child) => child.isMesh && groupOf(child) === object))
+    )
       counts.set(named(object), (counts.get(named(object)) ?? 0) + 1);
   });
   const scene = sceneOf(gltf.scene, voxrt, {
     groupOf,
-    nameOf: (_mesh, group) => (counts.get(named(group)) > 1 ? `${named(group)} (nodes[${nodeOf(group)}])` : named(group)),
+    nameOf: (_mesh, group) =>
+      counts.get(named(group)) > 1 ? `${named(group)} (nodes[${nodeOf(group)}])` : named(group),
     materialOf: (material) => {
       const index = place(material, "materials");
       if (index === undefined) return null;
       const extras = json.materials[index].extras ?? {};
       const { name, factor, mirror } = looks.properties(index);
-      return { key: extras.voxrt_material ? `${name} ${mirror}` : index, order: index, name, mirror, colour: factor.slice(0, 3).map((channel) => voxrt.srgb(channel)) };
+      return {
+        key: extras.voxrt_material ? `${name} ${mirror}` : index,
+        order: index,
+        name,
+        mirror,
+        colour: factor.slice(0, 3).map((channel) => voxrt.srgb(channel)),
+      };
     },
     isLeftOut: (material) => looks.isLeftOut(place(material, "materials")),
     appearanceOf: (material, geometry) => looks.appearance(place(material, "materials"), geometry),
   });
   scene.warnings.push(...looks.warnings.values());
   const ignored = (json.extensionsUsed ?? []).filter((name) => /^KHR_(physics|implicit|materials_variants)/.test(name));
-  for (const name of ignored) scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
+  for (const name of ignored)
+    scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
   return scene;
 }
 
@@ -179,7 +205,6 @@ async function readObj(main, folder, voxrt) {
   return scene;
 }
 
-
 async function bare(geometry, main, voxrt, rules = { appearanceOf: () => null }) {
   const { Mesh } = await import("./three/three.core.js");
   const mesh = new Mesh(geometry);
@@ -189,7 +214,10 @@ async function bare(geometry, main, voxrt, rules = { appearanceOf: () => null })
 
 async function readStl(main, _folder, voxrt) {
   const { STLLoader } = await addon("loaders/STLLoader");
-  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt, { appearanceOf: () => null, normalsOf: () => null }); // its normals are those of the faces
+  return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt, {
+    appearanceOf: () => null,
+    normalsOf: () => null,
+  }); // its normals are those of the faces
 }
 
 // Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early.
@@ -214,6 +242,6 @@ async function readPly(main, folder, voxrt) {
 }
 
 async function readUsd(main, folder, voxrt) {
-  const usd = await import("./usd.js");
+  const usd = await import("./usd/read.js");
   return usd.readUsd(main, folder, voxrt);
 }

@@ -33,7 +33,9 @@ export class GltfLooks {
   async read(parser) {
     this.json = parser.json;
     this.parser = parser;
-    const used = new Set((this.json.meshes ?? []).flatMap(({ primitives }) => primitives.map(({ material }) => material)));
+    const used = new Set(
+      (this.json.meshes ?? []).flatMap(({ primitives }) => primitives.map(({ material }) => material)),
+    );
     const images = new Map();
     for (const material of used) {
       const info = material === undefined ? null : this.properties(material).texture;
@@ -48,7 +50,12 @@ export class GltfLooks {
     const factor = "its materials took the colour of their factor";
     if (source === undefined) {
       const kind = Object.keys(UNREADABLE).find((name) => name in (texture.extensions ?? {}));
-      this.warn("texture", kind ? `textures[${index}] has only a ${UNREADABLE[kind]} image: ${factor}; convert its images to PNG or JPEG` : `textures[${index}] has no image: ${factor}`);
+      this.warn(
+        "texture",
+        kind
+          ? `textures[${index}] has only a ${UNREADABLE[kind]} image: ${factor}; convert its images to PNG or JPEG`
+          : `textures[${index}] has no image: ${factor}`,
+      );
       return null;
     }
     if (!images.has(source)) images.set(source, await this.image(source, factor));
@@ -95,7 +102,15 @@ export class GltfLooks {
 
   // The look of a primitive; null where its colour is uniform. `index`: of its material, undefined for none.
   appearance(index, geometry) {
-    const { name, factor, texture: info, cutoff, mirror } = index === undefined ? { name: "default", factor: [1, 1, 1, 1], cutoff: 0, mirror: false } : this.properties(index);
+    const {
+      name,
+      factor,
+      texture: info,
+      cutoff,
+      mirror,
+    } = index === undefined
+      ? { name: "default", factor: [1, 1, 1, 1], cutoff: 0, mirror: false }
+      : this.properties(index);
     const colourOf = this.colours(geometry);
     let uvOf = info && this.textures.get(info.index) ? this.coordinates(info, geometry) : null;
     const texture = uvOf ? this.textures.get(info.index) : null;
@@ -120,7 +135,8 @@ export class GltfLooks {
     if (white) return null;
     return (vertex, out) => {
       set(vertex, out);
-      for (let channel = 0; channel < 4; channel++) out[channel] = Number.isFinite(out[channel]) ? Math.min(Math.max(out[channel], 0), 1) : 0;
+      for (let channel = 0; channel < 4; channel++)
+        out[channel] = Number.isFinite(out[channel]) ? Math.min(Math.max(out[channel], 0), 1) : 0;
     };
   }
 
@@ -129,10 +145,17 @@ export class GltfLooks {
     const number = moved?.texCoord ?? info.texCoord ?? 0;
     const attribute = geometry.getAttribute(number === 0 ? "uv" : number < 4 ? `uv${number}` : `texcoord_${number}`);
     if (!attribute) {
-      this.warn("texture", `primitives without the TEXCOORD_${number} that their texture needs took the colour of their factor`);
+      this.warn(
+        "texture",
+        `primitives without the TEXCOORD_${number} that their texture needs took the colour of their factor`,
+      );
       return null;
     }
-    if (!moved) return (vertex, out) => { out[0] = attribute.getX(vertex); out[1] = attribute.getY(vertex); };
+    if (!moved)
+      return (vertex, out) => {
+        out[0] = attribute.getX(vertex);
+        out[1] = attribute.getY(vertex);
+      };
     const { offset = [0, 0], scale = [1, 1], rotation = 0 } = moved;
     const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
     return (vertex, out) => {

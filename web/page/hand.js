@@ -1,7 +1,9 @@
 // A worker as a hand of the page: calls that answer, stages that it reports, and an end that always works.
 
 export class Hand {
-  constructor(script = "./worker.js") { Object.assign(this, { script, calls: new Map() }); }
+  constructor(script = "./worker.js") {
+    Object.assign(this, { script, calls: new Map() });
+  }
 
   async start(module) {
     this.worker = new Worker(new URL(this.script, import.meta.url), { type: "module" });

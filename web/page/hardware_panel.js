@@ -27,8 +27,19 @@ export class HardwarePanel {
     try {
       await hand.start(this.module);
       this.say("Running …");
-      const job = { words: memory.words, depth: memory.depth, camera: toRegisters(this.app.view(), SIZE), size: SIZE, look: this.app.plainLook() };
-      this.show(await hand.call("run", job, ({ share }) => { $("hardware-progress").value = share; }), memory.name);
+      const job = {
+        words: memory.words,
+        depth: memory.depth,
+        camera: toRegisters(this.app.view(), SIZE),
+        size: SIZE,
+        look: this.app.plainLook(),
+      };
+      this.show(
+        await hand.call("run", job, ({ share }) => {
+          $("hardware-progress").value = share;
+        }),
+        memory.name,
+      );
     } catch (error) {
       this.say(error.message === "cancelled" ? "" : error.message, error.message !== "cancelled");
     }
@@ -39,11 +50,16 @@ export class HardwarePanel {
     $("hardware-progress").hidden = true;
   }
 
-  stop() { this.hand.stop(); }
+  stop() {
+    this.hand.stop();
+  }
 
   show({ colour, clocks, wordsRead, seconds, wrong }, name) {
     const pixels = SIZE[0] * SIZE[1];
-    this.say(`${count(wrong)} wrong pixels of ${count(pixels)}: ${wrong ? "the hardware and the model differ" : "the hardware and the model agree"}`, wrong > 0);
+    this.say(
+      `${count(wrong)} wrong pixels of ${count(pixels)}: ${wrong ? "the hardware and the model differ" : "the hardware and the model agree"}`,
+      wrong > 0,
+    );
     const canvas = $("hardware-picture");
     [canvas.width, canvas.height] = SIZE;
     const context = canvas.getContext("2d", { alpha: false });
@@ -51,12 +67,22 @@ export class HardwarePanel {
     for (let i = 0; i < pixels; i++) image.data.set([colour[3 * i], colour[3 * i + 1], colour[3 * i + 2], 255], 4 * i);
     context.putImageData(image, 0, 0);
     canvas.setAttribute("aria-label", `${name}, as the hardware shows it`);
-    const facts = { clocks: count(clocks), "clocks per pixel": (clocks / pixels).toFixed(2), "words per pixel": (wordsRead / pixels).toFixed(2), "seconds here": seconds.toFixed(2) };
-    $("hardware-facts").replaceChildren(...Object.entries(facts).map(([term, value]) => {
-      const box = document.createElement("div");
-      box.append(Object.assign(document.createElement("dt"), { textContent: term }), Object.assign(document.createElement("dd"), { textContent: value }));
-      return box;
-    }));
+    const facts = {
+      clocks: count(clocks),
+      "clocks per pixel": (clocks / pixels).toFixed(2),
+      "words per pixel": (wordsRead / pixels).toFixed(2),
+      "seconds here": seconds.toFixed(2),
+    };
+    $("hardware-facts").replaceChildren(
+      ...Object.entries(facts).map(([term, value]) => {
+        const box = document.createElement("div");
+        box.append(
+          Object.assign(document.createElement("dt"), { textContent: term }),
+          Object.assign(document.createElement("dd"), { textContent: value }),
+        );
+        return box;
+      }),
+    );
     $("hardware-result").hidden = false;
   }
 

@@ -25,8 +25,11 @@ answerWith({
     const limit = hardware.wordLimit;
     if (words.length > limit) {
       const fitting = depth - voxrt.levelThatFits(limit);
-      throw new Error(`The memory has ${count(words.length)} words, and the configuration tiny holds ${count(limit)}: ${
-        fitting ? `choose ${count(2 ** fitting)}³ or less` : "choose another model"}`);
+      throw new Error(
+        `The memory has ${count(words.length)} words, and the configuration tiny holds ${count(limit)}: ${
+          fitting ? `choose ${count(2 ** fitting)}³ or less` : "choose another model"
+        }`,
+      );
     }
     hardware.setMemory(words, depth);
     onProgress = (pixels) => say({ share: pixels / (size[0] * size[1]) });
@@ -41,6 +44,11 @@ answerWith({
 function differing(one, other) {
   let wrong = 0;
   for (let i = 0; i < one.material.length; i++)
-    if (one.material[i] !== other.material[i] || one.face[i] !== other.face[i] || [0, 1, 2].some((channel) => one.colour[3 * i + channel] !== other.colour[3 * i + channel])) wrong++;
+    if (
+      one.material[i] !== other.material[i] ||
+      one.face[i] !== other.face[i] ||
+      [0, 1, 2].some((channel) => one.colour[3 * i + channel] !== other.colour[3 * i + channel])
+    )
+      wrong++;
   return wrong;
 }

@@ -75,8 +75,10 @@ const app = {
 function shading() {
   const materials = memory.materials.map((material, id) => (id ? material.colour : look.background));
   return {
-    materials, mirrors: memory.materials.flatMap(({ mirror }, id) => (mirror ? [id] : [])),
-    flat: look.shading === "flat", faces: look.shading === "faces" ? memory.lighting?.faces ?? FACES : null,
+    materials,
+    mirrors: memory.materials.flatMap(({ mirror }, id) => (mirror ? [id] : [])),
+    flat: look.shading === "flat",
+    faces: look.shading === "faces" ? (memory.lighting?.faces ?? FACES) : null,
     light: look.features.includes("light") ? { position: look.light, ambient: look.ambient } : null,
     bounces: look.features.includes("mirrors") ? look.bounces : 0,
   };
@@ -86,11 +88,24 @@ function shading() {
 async function build(first) {
   const depth = Number($("depth").value);
   const wanted = source;
-  const show = (stage) => notice("progress", stage, source.files[0].name, { cancel: () => { builder.cancel(); dismiss(); } });
+  const show = (stage) =>
+    notice("progress", stage, source.files[0].name, {
+      cancel: () => {
+        builder.cancel();
+        dismiss();
+      },
+    });
   const timer = setTimeout(() => show("Building"), 250);
   let stage = "";
   try {
-    const built = await builder.build(source.files, { depth, fill: "auto", bake: daylight.options, budget: budget.words }, (now) => { stage = now; if (!$("notice").hidden) show(now); });
+    const built = await builder.build(
+      source.files,
+      { depth, fill: "auto", bake: daylight.options, budget: budget.words },
+      (now) => {
+        stage = now;
+        if (!$("notice").hidden) show(now);
+      },
+    );
     if (source !== wanted) return;
     clearTimeout(timer);
     await showMemory(built, first);
@@ -98,18 +113,25 @@ async function build(first) {
   } catch (error) {
     clearTimeout(timer);
     if (error.message === "cancelled") return;
-    notice("error", stage === "Reading" || !stage ? "The model cannot be shown" : "The model cannot be voxelized", error.message);
+    notice(
+      "error",
+      stage === "Reading" || !stage ? "The model cannot be shown" : "The model cannot be voxelized",
+      error.message,
+    );
   }
 }
 
 async function showMemory(built, first) {
   // A memory is shown as it says. What the user chooses then stays, until a memory says something else.
-  if ((first && built.lighting) || !same(built.lighting, memory?.lighting)) look = { ...look, ...lookOf(built.lighting) };
+  if ((first && built.lighting) || !same(built.lighting, memory?.lighting))
+    look = { ...look, ...lookOf(built.lighting) };
   const [background, old] = [built, memory].map(ownBackground);
   if (background || old) look.background = background ?? AROUND;
   memory = built;
   memory.bounds = [[0, 0, 0], Array(3).fill(2 ** built.depth)];
-  look.light = built.lighting?.on ? built.lighting.position : LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
+  look.light = built.lighting?.on
+    ? built.lighting.position
+    : LAMP.map((part) => Math.round(part * 16 * 2 ** built.depth));
   inspector.clear();
   await painter.load(built, shading());
   const { voxels, outline } = await painter.census();
@@ -135,24 +157,35 @@ function lookOf(lighting) {
   if (!lighting) return PLAIN_LOOK;
   const { position, ambient, on, flat, bounces, faces } = lighting;
   return {
-    shading: flat ? "flat" : faces ? "faces" : "report", light: position, ambient, bounces: bounces || PLAIN_LOOK.bounces,
+    shading: flat ? "flat" : faces ? "faces" : "report",
+    light: position,
+    ambient,
+    bounces: bounces || PLAIN_LOOK.bounces,
     features: [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])],
   };
 }
 
 // The background that a memory has of its own, or null.
-const ownBackground = (built) => (built?.manifest && !same(built.materials[0].colour, BACKGROUND) ? built.materials[0].colour : null);
+const ownBackground = (built) =>
+  built?.manifest && !same(built.materials[0].colour, BACKGROUND) ? built.materials[0].colour : null;
 
 let first_depth = 7; // of the memory that `view` belongs to
 
-const firstView = () => authoredView() ?? frame(lookAlong(pose([0, 0, 0], 0, 0, FIELD_OF_VIEW.usual, 1), CORNER), app.bounds(), app.size(), app.limit());
+const firstView = () =>
+  authoredView() ??
+  frame(lookAlong(pose([0, 0, 0], 0, 0, FIELD_OF_VIEW.usual, 1), CORNER), app.bounds(), app.size(), app.limit());
 
 const MADE_FOR = [640, 480]; // the cameras of manifests
 
 function authoredView() {
   if (!memory.view || !memory.view.look.some(Boolean)) return null;
   const [low, high] = memory.bounds;
-  return fromRegisters(memory.view, MADE_FOR, low.map((part, axis) => (part + high[axis]) / 2), app.size());
+  return fromRegisters(
+    memory.view,
+    MADE_FOR,
+    low.map((part, axis) => (part + high[axis]) / 2),
+    app.size(),
+  );
 }
 
 // The same view of a world of more or fewer levels.
@@ -163,61 +196,105 @@ function rescaled(old, levels) {
 
 function boundsOf(cubes) {
   if (!cubes.length) return null;
-  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  for (let i = 0; i < cubes.length; i += 4) for (let axis = 0; axis < 3; axis++) {
-    low[axis] = Math.min(low[axis], cubes[i + axis]);
-    high[axis] = Math.max(high[axis], cubes[i + axis] + cubes[i + 3]);
-  }
+  const [low, high] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
+  for (let i = 0; i < cubes.length; i += 4)
+    for (let axis = 0; axis < 3; axis++) {
+      low[axis] = Math.min(low[axis], cubes[i + axis]);
+      high[axis] = Math.max(high[axis], cubes[i + axis] + cubes[i + 3]);
+    }
   return [low, high];
 }
 
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
-const kib = (words) => (words < 262144 ? `${(words / 256).toLocaleString("en", { maximumFractionDigits: 1 })} KiB` : `${(words / 262144).toLocaleString("en", { maximumFractionDigits: 1 })} MiB`);
+const kib = (words) =>
+  words < 262144
+    ? `${(words / 256).toLocaleString("en", { maximumFractionDigits: 1 })} KiB`
+    : `${(words / 262144).toLocaleString("en", { maximumFractionDigits: 1 })} MiB`;
 
 function describe() {
   const { name, words, depth, voxels, warnings, fixed, seconds } = memory;
   const solid = voxels.reduce((sum, count, id) => (id ? sum + count : 0), 0);
   $("scene").textContent = name;
-  $("details").textContent = `${(2 ** depth).toLocaleString("en")}³ voxels · ${words.length.toLocaleString("en")} words${seconds ? ` · ${seconds.toFixed(2)} s` : ""}`;
+  $("details").textContent =
+    `${(2 ** depth).toLocaleString("en")}³ voxels · ${words.length.toLocaleString("en")} words${seconds ? ` · ${seconds.toFixed(2)} s` : ""}`;
   document.title = `${name} · voxrt`;
   for (const control of ["depth", "bake", "budget", "budget-words"]) $(control).disabled = Boolean(fixed);
   if (fixed) $("depth").value = depth;
   showDepth();
-  const facts = { words: words.length.toLocaleString("en"), memory: kib(words.length), "solid voxels": short.format(solid) };
+  const facts = {
+    words: words.length.toLocaleString("en"),
+    memory: kib(words.length),
+    "solid voxels": short.format(solid),
+  };
   const { fitted } = memory;
-  if (fitted) Object.assign(facts, { "without budget": fitted.wordsShared.toLocaleString("en"), "surface changed": `${((100 * fitted.changed) / (fitted.surface || 1)).toFixed(1)} %` });
+  if (fitted)
+    Object.assign(facts, {
+      "without budget": fitted.wordsShared.toLocaleString("en"),
+      "surface changed": `${((100 * fitted.changed) / (fitted.surface || 1)).toFixed(1)} %`,
+    });
   budget.fits(fitted?.wordsShared ?? words.length);
-  $("facts").replaceChildren(...Object.entries(facts).map(([term, value]) => {
-    const box = document.createElement("div");
-    box.append(Object.assign(document.createElement("dt"), { textContent: term }), Object.assign(document.createElement("dd"), { textContent: value }));
-    return box;
-  }));
-  $("boards").replaceChildren(...Object.entries(boards).map(([board, limit]) => {
-    const row = document.createElement("li");
-    const fits = words.length <= limit;
-    const meter = Object.assign(document.createElement("meter"), { min: 0, max: 1, high: 0.999, optimum: 0, value: Math.min(1, words.length / limit) });
-    meter.setAttribute("aria-label", `Memory of ${board} in use`);
-    const verdict = Object.assign(document.createElement("span"), { className: fits ? "fits" : "large", textContent: fits ? "fits" : `${(words.length / limit).toFixed(1)} × too large` });
-    row.append(Object.assign(document.createElement("span"), { textContent: board }), meter, verdict);
-    if (fits && designs.includes(board)) verdict.replaceWith(boardPanel.button(board));
-    else if (!fits && !fixed) verdict.replaceWith(fitButton(board, limit, verdict.textContent));
-    return row;
-  }));
-  $("warnings").replaceChildren(...warnings.map(({ message, count }) => Object.assign(document.createElement("li"), { textContent: count > 1 ? `${message} (${count})` : message })));
+  $("facts").replaceChildren(
+    ...Object.entries(facts).map(([term, value]) => {
+      const box = document.createElement("div");
+      box.append(
+        Object.assign(document.createElement("dt"), { textContent: term }),
+        Object.assign(document.createElement("dd"), { textContent: value }),
+      );
+      return box;
+    }),
+  );
+  $("boards").replaceChildren(
+    ...Object.entries(boards).map(([board, limit]) => {
+      const row = document.createElement("li");
+      const fits = words.length <= limit;
+      const meter = Object.assign(document.createElement("meter"), {
+        min: 0,
+        max: 1,
+        high: 0.999,
+        optimum: 0,
+        value: Math.min(1, words.length / limit),
+      });
+      meter.setAttribute("aria-label", `Memory of ${board} in use`);
+      const verdict = Object.assign(document.createElement("span"), {
+        className: fits ? "fits" : "large",
+        textContent: fits ? "fits" : `${(words.length / limit).toFixed(1)} × too large`,
+      });
+      row.append(Object.assign(document.createElement("span"), { textContent: board }), meter, verdict);
+      if (fits && designs.includes(board)) verdict.replaceWith(boardPanel.button(board));
+      else if (!fits && !fixed) verdict.replaceWith(fitButton(board, limit, verdict.textContent));
+      return row;
+    }),
+  );
+  $("warnings").replaceChildren(
+    ...warnings.map(({ message, count }) =>
+      Object.assign(document.createElement("li"), { textContent: count > 1 ? `${message} (${count})` : message }),
+    ),
+  );
   for (const chip of $("examples").children) pressed(chip, chip.dataset.example === source?.example);
 }
 
 function fitButton(board, limit, why) {
-  const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Fit", title: `${why}: give up what is seen least` });
+  const button = Object.assign(document.createElement("button"), {
+    type: "button",
+    textContent: "Fit",
+    title: `${why}: give up what is seen least`,
+  });
   button.setAttribute("aria-label", `Fit to ${board}`);
   button.onclick = () => budget.choose(limit);
   return button;
 }
 
-const showDepth = () => { $("depth-value").textContent = `${(2 ** Number($("depth").value)).toLocaleString("en")}³`; };
+const showDepth = () => {
+  $("depth-value").textContent = `${(2 ** Number($("depth").value)).toLocaleString("en")}³`;
+};
 
 async function openFiles(list) {
-  const files = await Promise.all([...list].map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) })));
+  const files = await Promise.all(
+    [...list].map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) })),
+  );
   if (!files.length) return;
   source = { files, example: null };
   history.replaceState(null, "", location.pathname + location.search);
@@ -225,11 +302,13 @@ async function openFiles(list) {
 }
 
 async function openExample(name) {
-  const files = await Promise.all(examples[name].files.map(async (file) => {
-    const answer = await fetch(`examples/${file}`);
-    if (!answer.ok) throw new Error(`examples/${file}: ${answer.status}`);
-    return { name: file, bytes: new Uint8Array(await answer.arrayBuffer()) };
-  }));
+  const files = await Promise.all(
+    examples[name].files.map(async (file) => {
+      const answer = await fetch(`examples/${file}`);
+      if (!answer.ok) throw new Error(`examples/${file}: ${answer.status}`);
+      return { name: file, bytes: new Uint8Array(await answer.arrayBuffer()) };
+    }),
+  );
   source = { files, example: name };
   await build(true);
 }
@@ -243,7 +322,7 @@ async function dropped(transfer) {
     if (entry.isFile) found.push(await new Promise((resolve, reject) => entry.file(resolve, reject)));
     else {
       const reader = entry.createReader();
-      for (let some = [null]; some.length;) {
+      for (let some = [null]; some.length; ) {
         some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
         for (const child of some) await read(child);
       }
@@ -262,7 +341,9 @@ async function followAt(x, y) {
   try {
     const followed = await painter.follow(registers.position, pixelDirection(registers, size, column, row));
     inspector.show(followed, registers, size, [column, row]);
-  } catch (error) { notice("error", "The ray cannot be followed", error.message); }
+  } catch (error) {
+    notice("error", "The ray cannot be followed", error.message);
+  }
 }
 
 async function focusAt(x, y) {
@@ -270,7 +351,14 @@ async function focusAt(x, y) {
   const size = [canvas.width, canvas.height];
   const registers = toRegisters(view, size);
   const { cell } = await painter.follow(registers.position, pixelDirection(registers, size, ...picture.pixelAt(x, y)));
-  if (cell) app.glide((now) => focus(now, cell.map((value) => value + 0.5), app.limit()));
+  if (cell)
+    app.glide((now) =>
+      focus(
+        now,
+        cell.map((value) => value + 0.5),
+        app.limit(),
+      ),
+    );
 }
 
 const middle = () => {
@@ -290,11 +378,16 @@ function listen() {
   const views = new Views(app);
   for (let i = 0; i < 7; i++) commands[`Digit${i + 1}`] = () => views.choose(i);
   let pressedAt = [0, 0];
-  canvas.addEventListener("pointerdown", ({ clientX, clientY }) => { pressedAt = [clientX, clientY]; });
-  canvas.addEventListener("click", ({ clientX, clientY }) => {
-    if (isPressed($("inspect")) && Math.hypot(clientX - pressedAt[0], clientY - pressedAt[1]) <= CLICK) followAt(clientX, clientY);
+  canvas.addEventListener("pointerdown", ({ clientX, clientY }) => {
+    pressedAt = [clientX, clientY];
   });
-  canvas.addEventListener("keydown", ({ code }) => { if (code === "Enter") $("fullscreen").click(); });
+  canvas.addEventListener("click", ({ clientX, clientY }) => {
+    if (isPressed($("inspect")) && Math.hypot(clientX - pressedAt[0], clientY - pressedAt[1]) <= CLICK)
+      followAt(clientX, clientY);
+  });
+  canvas.addEventListener("keydown", ({ code }) => {
+    if (code === "Enter") $("fullscreen").click();
+  });
   $("inspect").onclick = () => {
     pressed($("inspect"), !isPressed($("inspect")));
     document.body.classList.toggle("inspecting", isPressed($("inspect")));
@@ -304,20 +397,37 @@ function listen() {
   $("help").onclick = commands.KeyH;
   $("close").onclick = dismiss;
   makeToolbar($("tools"));
-  const setFigures = (on) => { pressed($("statistics"), on); $("figures").hidden = !on; };
+  const setFigures = (on) => {
+    pressed($("statistics"), on);
+    $("figures").hidden = !on;
+  };
   $("statistics").onclick = () => setFigures(!isPressed($("statistics")));
   setFigures(!matchMedia("(max-width: 56rem), (max-height: 30rem)").matches);
-  $("toggle-panel").onclick = ({ currentTarget }) => currentTarget.setAttribute("aria-expanded", String(!document.body.classList.toggle("panel-hidden")));
+  $("toggle-panel").onclick = ({ currentTarget }) =>
+    currentTarget.setAttribute("aria-expanded", String(!document.body.classList.toggle("panel-hidden")));
   $("fullscreen").hidden = !document.fullscreenEnabled;
-  $("fullscreen").onclick = () => (document.fullscreenElement ? document.exitFullscreen() : $("stage").requestFullscreen());
+  $("fullscreen").onclick = () =>
+    document.fullscreenElement ? document.exitFullscreen() : $("stage").requestFullscreen();
   document.addEventListener("fullscreenchange", () => pressed($("fullscreen"), document.fullscreenElement !== null));
 
   $("open").onclick = () => $("files").click();
-  $("files").onchange = ({ target }) => { openFiles(target.files); target.value = ""; };
+  $("files").onchange = ({ target }) => {
+    openFiles(target.files);
+    target.value = "";
+  };
   let over = 0;
-  addEventListener("dragenter", (event) => { event.preventDefault(); over++; $("drop").hidden = false; });
+  addEventListener("dragenter", (event) => {
+    event.preventDefault();
+    over++;
+    $("drop").hidden = false;
+  });
   addEventListener("dragover", (event) => event.preventDefault());
-  addEventListener("dragleave", () => { if (--over <= 0) { over = 0; $("drop").hidden = true; } });
+  addEventListener("dragleave", () => {
+    if (--over <= 0) {
+      over = 0;
+      $("drop").hidden = true;
+    }
+  });
   addEventListener("drop", async (event) => {
     event.preventDefault();
     over = 0;
@@ -332,17 +442,30 @@ function listen() {
   };
 
   $("save-mem").onclick = () => memory && save(memBytes(memory.words), `${memory.name}.mem`, "text/plain");
-  $("save-manifest").onclick = () => memory && save(`${JSON.stringify(manifestOf(memory, memory.voxels), null, 2)}\n`, `${memory.name}.json`, "application/json");
+  $("save-manifest").onclick = () =>
+    memory &&
+    save(`${JSON.stringify(manifestOf(memory, memory.voxels), null, 2)}\n`, `${memory.name}.json`, "application/json");
   $("save").onclick = () => memory && picture.save(memory.name);
   $("copy").onclick = async () => {
     if (!memory) return;
-    history.replaceState(null, "", linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, words: budget.words, view }));
-    const done = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+    history.replaceState(
+      null,
+      "",
+      linkOf({ example: source.example, depth: memory.depth, bake: daylight.options, words: budget.words, view }),
+    );
+    const done = await navigator.clipboard?.writeText(location.href).then(
+      () => true,
+      () => false,
+    );
     $("copy").textContent = done ? "Copied" : "In the address bar";
-    setTimeout(() => { $("copy").textContent = "Copy link"; }, 1500);
+    setTimeout(() => {
+      $("copy").textContent = "Copy link";
+    }, 1500);
   };
   for (const [name, { title }] of Object.entries(examples)) {
-    const chip = makeButton($("examples"), title, () => openExample(name).catch((error) => notice("error", "The example cannot be loaded", error.message)));
+    const chip = makeButton($("examples"), title, () =>
+      openExample(name).catch((error) => notice("error", "The example cannot be loaded", error.message)),
+    );
     chip.dataset.example = name;
     pressed(chip, false);
   }
@@ -370,7 +493,9 @@ let designs = []; // the boards that have bitstreams
 let examples = {};
 async function start() {
   const [module, { boards: known, designs: placed, examples: scenes }] = await Promise.all([
-    WebAssembly.compileStreaming(fetch("voxrt/voxrt.wasm")).catch(async () => WebAssembly.compile(await (await fetch("voxrt/voxrt.wasm")).arrayBuffer())),
+    WebAssembly.compileStreaming(fetch("voxrt/voxrt.wasm")).catch(async () =>
+      WebAssembly.compile(await (await fetch("voxrt/voxrt.wasm")).arrayBuffer()),
+    ),
     fetch("site.json").then((answer) => answer.json()),
   ]);
   boards = known;
@@ -385,7 +510,12 @@ async function start() {
   new HardwarePanel(app, module);
   boardPanel = new BoardPanel(app, module);
   painter.addEventListener("frame", ({ detail }) => {
-    window.voxrt = { newest: detail, colours: () => coloursOf(detail), view: () => view, shownCamera: () => toRegisters(view, [canvas.width, canvas.height]) }; // for scripts
+    window.voxrt = {
+      newest: detail,
+      colours: () => coloursOf(detail),
+      view: () => view,
+      shownCamera: () => toRegisters(view, [canvas.width, canvas.height]),
+    }; // for scripts
     const samples = frames.receive(detail);
     picture.show(detail, samples);
     figures.add(detail, samples);

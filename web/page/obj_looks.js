@@ -11,12 +11,17 @@ export async function objLooks(library, folder, voxrt) {
   const entries = new Map();
   const textures = new Map();
   for (const [name, { kd, map_kd: map, map_d: opacity }] of library) {
-    if (opacity) warnings.push({ kind: "texture", message: `map_d of ${name} is not used here; voxrt build uses it`, count: 1 });
+    if (opacity)
+      warnings.push({ kind: "texture", message: `map_d of ${name} is not used here; voxrt build uses it`, count: 1 });
     if (!map) continue;
     const placed = placement(map);
     const file = folder.find(placed.file);
     if (!file) {
-      warnings.push({ kind: "missing-texture", message: `texture '${placed.file}' was not found; its material's own value was used`, count: 1 });
+      warnings.push({
+        kind: "missing-texture",
+        message: `texture '${placed.file}' was not found; its material's own value was used`,
+        count: 1,
+      });
       continue;
     }
     const image = await decodeImage(file.bytes, `map_Kd ${placed.file}`);
@@ -50,8 +55,16 @@ export async function objLooks(library, folder, voxrt) {
         const stored = (part) => voxrt.linear(voxrt.srgb(part));
         return {
           entry: coloured(name),
-          covers: (vertex) => [colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].some((part) => part !== 1),
-          colourOf(vertex, out) { [out[0], out[1], out[2], out[3]] = [stored(colour.getX(vertex)), stored(colour.getY(vertex)), stored(colour.getZ(vertex)), 1]; },
+          covers: (vertex) =>
+            [colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].some((part) => part !== 1),
+          colourOf(vertex, out) {
+            [out[0], out[1], out[2], out[3]] = [
+              stored(colour.getX(vertex)),
+              stored(colour.getY(vertex)),
+              stored(colour.getZ(vertex)),
+              1,
+            ];
+          },
         };
       },
     },
@@ -74,7 +87,11 @@ function placement(text) {
   while (at < words.length - 1 && words[at].startsWith("-")) {
     const option = words[at++].toLowerCase();
     const values = [];
-    for (let most = VALUES[option] ?? 1; values.length < most && at < words.length - 1 && (!(option in VALUES) || Number.isFinite(Number(words[at])));) values.push(words[at++]);
+    for (
+      let most = VALUES[option] ?? 1;
+      values.length < most && at < words.length - 1 && (!(option in VALUES) || Number.isFinite(Number(words[at])));
+    )
+      values.push(words[at++]);
     if (option === "-s") placed.scale = [Number(values[0]), Number(values[1] ?? 1)];
     if (option === "-o") placed.offset = [Number(values[0]), Number(values[1] ?? 0)];
     if (option === "-clamp") placed.clamp = values[0] === "on";

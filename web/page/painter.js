@@ -23,31 +23,56 @@ export class Painter extends EventTarget {
     this.request = 0;
     this.sequence = 0;
     this.scene = 0;
-    this.hello = { viewer: 1, device: { name: "this browser", size: [4096, 4096], width_step: 1, position_limit: 2 ** 27, features: ["light", "mirrors"] } };
+    this.hello = {
+      viewer: 1,
+      device: {
+        name: "this browser",
+        size: [4096, 4096],
+        width_step: 1,
+        position_limit: 2 ** 27,
+        features: ["light", "mirrors"],
+      },
+    };
   }
 
-  get workers() { return this.hands.length; }
+  get workers() {
+    return this.hands.length;
+  }
 
   // Show another memory. `shading`: as of Voxrt.shade. Resolves when every worker has it.
   async load({ words, depth }, shading) {
-    const wanted = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, MOST, Math.floor(MEMORY / (4 * words.length))));
+    const wanted = Math.max(
+      1,
+      Math.min(navigator.hardwareConcurrency || 2, MOST, Math.floor(MEMORY / (4 * words.length))),
+    );
     this.scene++;
     this.sent.clear();
     this.queue = [];
     while (this.hands.length > wanted) this.hands.pop().stop();
     while (this.hands.length < wanted) this.hands.push(new Hand());
-    await Promise.all(this.hands.map(async (hand) => {
-      hand.bands ??= AHEAD; // none before it has started
-      if (!hand.worker) await hand.start(this.module).then(() => { hand.bands = 0; });
-      await hand.call("memory", { words, depth, shading });
-      this.next(hand);
-    }));
+    await Promise.all(
+      this.hands.map(async (hand) => {
+        hand.bands ??= AHEAD; // none before it has started
+        if (!hand.worker)
+          await hand.start(this.module).then(() => {
+            hand.bands = 0;
+          });
+        await hand.call("memory", { words, depth, shading });
+        this.next(hand);
+      }),
+    );
   }
 
-  shade(shading) { for (const hand of this.hands) hand.call("shade", { shading }).catch(() => {}); }
+  shade(shading) {
+    for (const hand of this.hands) hand.call("shade", { shading }).catch(() => {});
+  }
 
-  follow(origin, direction) { return this.hands[0].call("follow", { origin, direction }); }
-  census() { return this.hands[0].call("census"); }
+  follow(origin, direction) {
+    return this.hands[0].call("follow", { origin, direction });
+  }
+  census() {
+    return this.hands[0].call("census");
+  }
 
   // Ask for a frame; returns its number.
   changeView({ camera, size }) {
@@ -57,8 +82,18 @@ export class Painter extends EventTarget {
     this.sent.set(request, since);
     const tiles = Math.ceil(height / TILE);
     const step = Math.max(1, Math.ceil(tiles / (BANDS * this.hands.length)));
-    const job = { request, camera, size, since, scene: this.scene, left: Math.ceil(tiles / step), began: null, bands: [] };
-    for (let first = 0; first < tiles; first += step) this.queue.push({ job, first, end: Math.min(first + step, tiles) });
+    const job = {
+      request,
+      camera,
+      size,
+      since,
+      scene: this.scene,
+      left: Math.ceil(tiles / step),
+      began: null,
+      bands: [],
+    };
+    for (let first = 0; first < tiles; first += step)
+      this.queue.push({ job, first, end: Math.min(first + step, tiles) });
     this.hands.forEach((hand) => this.next(hand));
     return request;
   }
@@ -74,7 +109,9 @@ export class Painter extends EventTarget {
     job.began ??= performance.now();
     try {
       const { camera, size } = job;
-      job.bands.push(await hand.call("render", { camera, size, first, end, buffer }, undefined, buffer ? [buffer] : []));
+      job.bands.push(
+        await hand.call("render", { camera, size, first, end, buffer }, undefined, buffer ? [buffer] : []),
+      );
       hand.bands--;
       this.next(hand);
       if (--job.left > 0) return;
@@ -91,10 +128,24 @@ export class Painter extends EventTarget {
 
   finish({ request, since, size: [width, height], bands, camera, began }) {
     this.sent.delete(request);
-    this.dispatchEvent(new CustomEvent("frame", { detail: {
-      viewer: 1, request, requested: since, width, height, bands, camera,
-      seconds: (performance.now() - began) / 1000, rays: width * height, words: null, cycles: null, sequence: ++this.sequence,
-    } }));
+    this.dispatchEvent(
+      new CustomEvent("frame", {
+        detail: {
+          viewer: 1,
+          request,
+          requested: since,
+          width,
+          height,
+          bands,
+          camera,
+          seconds: (performance.now() - began) / 1000,
+          rays: width * height,
+          words: null,
+          cycles: null,
+          sequence: ++this.sequence,
+        },
+      }),
+    );
     const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
     for (const length of this.buffers.keys()) if (!lengths.has(length)) this.buffers.delete(length);
     this.release(this.shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));
@@ -103,7 +154,9 @@ export class Painter extends EventTarget {
 
   // Later bands may use the buffers of these.
   release(bands) {
-    for (const { pixels: { buffer } } of bands) {
+    for (const {
+      pixels: { buffer },
+    } of bands) {
       if (!this.buffers.has(buffer.byteLength)) this.buffers.set(buffer.byteLength, []);
       this.buffers.get(buffer.byteLength).push(buffer);
     }

@@ -4,7 +4,16 @@
 import { decodeImage } from "./images.js";
 
 const STORED = "stored_colour";
-const WHOLE = { char: 127, int8: 127, uchar: 255, uint8: 255, short: 32767, int16: 32767, ushort: 65535, uint16: 65535 };
+const WHOLE = {
+  char: 127,
+  int8: 127,
+  uchar: 255,
+  uint8: 255,
+  short: 32767,
+  int16: 32767,
+  ushort: 65535,
+  uint16: 65535,
+};
 
 export function readsColours(loader) {
   loader.setCustomPropertyNameMapping({ [STORED]: ["red", "green", "blue"] });
@@ -32,7 +41,8 @@ export async function plyLook(bytes, geometry, folder, voxrt) {
   const uv = geometry.getAttribute("uv");
   let entry = null;
   if (names.length > 1) warn("texture", "several textures of one PLY file are not shown here; voxrt build shows them");
-  else if (names.length && !uv) warn("texture", "the file names a texture and has no texture coordinates: the texture was not used");
+  else if (names.length && !uv)
+    warn("texture", "the file names a texture and has no texture coordinates: the texture was not used");
   else if (names.length) {
     const file = folder.find(names[0]);
     if (file) {
@@ -41,15 +51,35 @@ export async function plyLook(bytes, geometry, folder, voxrt) {
       entry = { name: "texture", texture: { image }, cutoff: clear ? 0.5 : 0 };
     } else warn("missing-texture", `texture '${names[0]}' was not found`);
   }
-  if (entry) return { warnings, rules: { appearanceOf: () => ({ entry, uvOf: (vertex, out) => { out[0] = uv.getX(vertex); out[1] = 1 - uv.getY(vertex); } }) } };
+  if (entry)
+    return {
+      warnings,
+      rules: {
+        appearanceOf: () => ({
+          entry,
+          uvOf: (vertex, out) => {
+            out[0] = uv.getX(vertex);
+            out[1] = 1 - uv.getY(vertex);
+          },
+        }),
+      },
+    };
   const byFace = "red" in ofFaces;
   const colour = geometry.getAttribute(byFace ? "color" : STORED);
   if (!colour || !("red" in (byFace ? ofFaces : ofVertices))) return { warnings, rules: { appearanceOf: () => null } };
-  if ("alpha" in (byFace ? ofFaces : ofVertices)) warn("vertex-colours", "the opacity of colours is not used here; voxrt build uses it");
+  if ("alpha" in (byFace ? ofFaces : ofVertices))
+    warn("vertex-colours", "the opacity of colours is not used here; voxrt build uses it");
   if (byFace) warn("vertex-colours", "dark colours of faces are coarse here; voxrt build has them exactly");
   const painted = { name: byFace ? "face colours" : "vertex colours" };
   const whole = WHOLE[ofVertices.red] ?? (colour.array.some((part) => part > 1) ? 255 : 1);
-  const code = byFace ? (part) => voxrt.srgb(part) : (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
-  const colourOf = (vertex, out) => { [out[0], out[1], out[2], out[3]] = [...[colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].map((part) => voxrt.linear(code(part))), 1]; };
+  const code = byFace
+    ? (part) => voxrt.srgb(part)
+    : (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
+  const colourOf = (vertex, out) => {
+    [out[0], out[1], out[2], out[3]] = [
+      ...[colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].map((part) => voxrt.linear(code(part))),
+      1,
+    ];
+  };
   return { warnings, rules: { appearanceOf: () => ({ entry: painted, colourOf }) } };
 }

@@ -12,16 +12,20 @@ export function withoutConcave(text) {
   const lines = text.replace(/\\\r?\n/g, " ").split("\n");
   if (!lines.some((line) => /^\s*f\s/.test(line) && line.trim().split(/\s+/).length > 4)) return text;
   const places = [];
-  return lines.map((line) => {
-    const words = line.split("#")[0].trim().split(/\s+/);
-    if (words[0] === "v") places.push(words.slice(1, 4).map(Number));
-    if (words[0] !== "f" || words.length < 5) return line;
-    const corners = words.slice(1);
-    const points = corners.map((corner) => places.at(Number.parseInt(corner, 10) - (corner.startsWith("-") ? 0 : 1)));
-    if (points.some((point) => !point?.every(Number.isFinite))) return line;
-    const triangles = cutConcave(points);
-    return triangles ? triangles.map((triangle) => `f ${triangle.map((at) => corners[at]).join(" ")}`).join("\n") : line;
-  }).join("\n");
+  return lines
+    .map((line) => {
+      const words = line.split("#")[0].trim().split(/\s+/);
+      if (words[0] === "v") places.push(words.slice(1, 4).map(Number));
+      if (words[0] !== "f" || words.length < 5) return line;
+      const corners = words.slice(1);
+      const points = corners.map((corner) => places.at(Number.parseInt(corner, 10) - (corner.startsWith("-") ? 0 : 1)));
+      if (points.some((point) => !point?.every(Number.isFinite))) return line;
+      const triangles = cutConcave(points);
+      return triangles
+        ? triangles.map((triangle) => `f ${triangle.map((at) => corners[at]).join(" ")}`).join("\n")
+        : line;
+    })
+    .join("\n");
 }
 
 // Triangles of a concave polygon, as indices; null for a convex one, or one without area. cut(points): the triangles of one
@@ -30,11 +34,23 @@ export function cutConcave(corners, cut = ears) {
   const count = corners.length;
   const points = corners.map((corner) => subtract(corner, corners[0])); // near the origin, products keep their digits
   const next = (i) => points[(i + 1) % count];
-  const normal = points.reduce((sum, point, i) => cross(point, next(i)).map((part, axis) => part + sum[axis]), [0, 0, 0]);
+  const normal = points.reduce(
+    (sum, point, i) => cross(point, next(i)).map((part, axis) => part + sum[axis]),
+    [0, 0, 0],
+  );
   const least = -STRAIGHT * dot(normal, normal);
-  const back = points.map((point, i) => dot(cross(subtract(point, points[(i + count - 1) % count]), subtract(next(i), point)), normal) < least);
+  const back = points.map(
+    (point, i) =>
+      dot(cross(subtract(point, points[(i + count - 1) % count]), subtract(next(i), point)), normal) < least,
+  );
   if (!back.some(Boolean)) return null;
-  if (count === 4) return back[1] || back[3] ? [[1, 2, 3], [1, 3, 0]] : null;
+  if (count === 4)
+    return back[1] || back[3]
+      ? [
+          [1, 2, 3],
+          [1, 3, 0],
+        ]
+      : null;
   return cut(flat(points, normal));
 }
 

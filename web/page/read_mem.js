@@ -10,18 +10,45 @@ export function readMem(mem, beside) {
   const text = new TextDecoder().decode(bytes).replace(/\/\*[\s\S]*?\*\/|\/\/[^\n]*/g, " ");
   const parts = text.split(/\s+/).filter(Boolean);
   const broken = parts.findIndex((part) => !/^[0-9A-Fa-f_]{1,16}$/.test(part));
-  if (broken >= 0) throw new Error(`${name}: word ${broken} is ${JSON.stringify(parts[broken].slice(0, 20))}, which is not hexadecimal`);
+  if (broken >= 0)
+    throw new Error(
+      `${name}: word ${broken} is ${JSON.stringify(parts[broken].slice(0, 20))}, which is not hexadecimal`,
+    );
   if (!parts.length) throw new Error(`${name}: has no words`);
   const words = Uint32Array.from(parts, (part) => parseInt(part.replaceAll("_", ""), 16));
-  if (!beside) return { words, depth: null, materials: Array.from({ length: 256 }, tinted), grid: null, objects: [], warnings: [], manifest: null, lighting: null, view: null };
+  if (!beside)
+    return {
+      words,
+      depth: null,
+      materials: Array.from({ length: 256 }, tinted),
+      grid: null,
+      objects: [],
+      warnings: [],
+      manifest: null,
+      lighting: null,
+      view: null,
+    };
   const manifest = readManifest(beside, mem);
-  if (manifest.words !== words.length) throw new Error(`${name}: has ${words.length} words, and its manifest says ${manifest.words}`);
+  if (manifest.words !== words.length)
+    throw new Error(`${name}: has ${words.length} words, and its manifest says ${manifest.words}`);
   const { depth, materials, objects, world, lighting, view, animation } = manifest;
   const warnings = [...manifest.warnings];
-  if (animation && animation.frames.length > 1) warnings.push({ kind: "frames", message: `${name} has ${animation.frames.length} frames, and the first is used`, count: 1 });
+  if (animation && animation.frames.length > 1)
+    warnings.push({
+      kind: "frames",
+      message: `${name} has ${animation.frames.length} frames, and the first is used`,
+      count: 1,
+    });
   return {
-    words, depth, materials, objects, warnings, manifest, grid: world ? { origin: world.origin, voxelSize: world.voxel_size } : null,
-    lighting: lighting ? { ...PLAIN, ...lighting } : null, view: view ?? null,
+    words,
+    depth,
+    materials,
+    objects,
+    warnings,
+    manifest,
+    grid: world ? { origin: world.origin, voxelSize: world.voxel_size } : null,
+    lighting: lighting ? { ...PLAIN, ...lighting } : null,
+    view: view ?? null,
   };
 }
 

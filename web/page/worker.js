@@ -9,7 +9,9 @@ let voxrt = null;
 let parsed = null; // the files that were read last: {source, read}
 
 answerWith({
-  async start({ module }) { voxrt = await Voxrt.load(module); },
+  async start({ module }) {
+    voxrt = await Voxrt.load(module);
+  },
 
   // `source` numbers the files: those that were read last are not read again.
   async build({ files, source, depth, fill, bake, budget }, say) {
@@ -25,8 +27,13 @@ answerWith({
     say(`Voxelizing ${(2 ** depth).toLocaleString("en")}³`);
     const built = voxrt.voxelize(read.scene, { depth, fill, bake, budget });
     return {
-      ...built, name: read.name, file: read.file, fill, seconds: (performance.now() - start) / 1000,
-      warnings: [...read.scene.warnings, ...built.warnings], lighting: built.baked ? FLAT : null,
+      ...built,
+      name: read.name,
+      file: read.file,
+      fill,
+      seconds: (performance.now() - start) / 1000,
+      warnings: [...read.scene.warnings, ...built.warnings],
+      lighting: built.baked ? FLAT : null,
     };
   },
 
@@ -34,9 +41,17 @@ answerWith({
     voxrt.setMemory(words, depth);
     voxrt.shade(shading);
   },
-  shade({ shading }) { voxrt.shade(shading); },
-  census() { return { voxels: voxrt.voxels(), outline: voxrt.outline() }; },
+  shade({ shading }) {
+    voxrt.shade(shading);
+  },
+  census() {
+    return { voxels: voxrt.voxels(), outline: voxrt.outline() };
+  },
 
-  render({ camera, size, first, end, buffer }) { return voxrt.renderImage(camera, size, first, end, buffer); },
-  follow({ origin, direction }) { return voxrt.follow(origin, direction); },
+  render({ camera, size, first, end, buffer }) {
+    return voxrt.renderImage(camera, size, first, end, buffer);
+  },
+  follow({ origin, direction }) {
+    return voxrt.follow(origin, direction);
+  },
 });

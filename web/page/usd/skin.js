@@ -1,8 +1,8 @@
 // Meshes of USD that a skeleton or blend shapes deform, at the stage's first moment (voxelize/formats/usd/skin.py). Joints
 // blend linearly.
 
-import { fieldsOf, targetsOf, upwards, valueOf } from "./usd_stage.js";
-import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
+import { fieldsOf, targetsOf, upwards, valueOf } from "./stage.js";
+import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
 // The points of a mesh: {positions, frame}, where frame places them in the mesh's parent, or null for the mesh's own
 // frame. null for meshes at rest.
@@ -23,7 +23,8 @@ export function posedPoints(composer, path, warn) {
     warn("skinning", "meshes whose skeleton has no pose are shown at rest");
     return moved ? { positions: blended, frame: null } : null;
   }
-  if (valueAbove(composer, path, "primvars:skel:skinningMethod") === "dualQuaternion") warn("skinning", "dual quaternion skinning was replaced by linear blending");
+  if (valueAbove(composer, path, "primvars:skel:skinningMethod") === "dualQuaternion")
+    warn("skinning", "dual quaternion skinning was replaced by linear blending");
   return { positions: skinned(blended, order, influences), frame: between(composer, path, skeleton) };
 }
 
@@ -44,14 +45,22 @@ function targetAbove(composer, path, name) {
 }
 
 function influencesOf(composer, path, count) {
-  const [joints, weights] = ["Indices", "Weights"].map((name) => valueAbove(composer, path, `primvars:skel:joint${name}`));
+  const [joints, weights] = ["Indices", "Weights"].map((name) =>
+    valueAbove(composer, path, `primvars:skel:joint${name}`),
+  );
   if (!joints?.length || !weights?.length) return null;
   const above = [...upwards(path)].find((at) => fieldsOf(composer, at, "primvars:skel:jointIndices"));
   const { elementSize = 1, interpolation = "constant" } = fieldsOf(composer, above, "primvars:skel:jointIndices");
   const rigid = interpolation === "constant";
-  const [matrix] = matrices(composer, valueAbove(composer, path, "primvars:skel:geomBindTransform"), 1) ?? [new Matrix4()];
+  const [matrix] = matrices(composer, valueAbove(composer, path, "primvars:skel:geomBindTransform"), 1) ?? [
+    new Matrix4(),
+  ];
   return {
-    each: elementSize, rigid, joints, weights, matrix,
+    each: elementSize,
+    rigid,
+    joints,
+    weights,
+    matrix,
     wrong: joints.length !== weights.length || joints.length !== elementSize * (rigid ? 1 : count),
     fits: (order) => joints.every((joint) => order[joint]),
   };
@@ -60,14 +69,19 @@ function influencesOf(composer, path, count) {
 // The skinning transform of each joint of a skeleton, by name; null where it has no pose.
 function posedJoints(composer, skeleton, animation) {
   const names = Array.from(valueOf(composer, skeleton, "joints") ?? []);
-  const [bind, rest] = ["bindTransforms", "restTransforms"].map((name) => matrices(composer, valueOf(composer, skeleton, name), names.length));
+  const [bind, rest] = ["bindTransforms", "restTransforms"].map((name) =>
+    matrices(composer, valueOf(composer, skeleton, name), names.length),
+  );
   const local = animated(composer, animation);
   if (!bind || !names.length) return null;
   const [placed, made] = [new Map(), new Map()];
   for (const [i, name] of names.entries()) {
     const matrix = local.get(name) ?? (rest && rest[i]);
     if (!matrix) return null;
-    const parent = [...upwards(`/${name}`)].slice(1).map((above) => placed.get(above.slice(1))).find(Boolean);
+    const parent = [...upwards(`/${name}`)]
+      .slice(1)
+      .map((above) => placed.get(above.slice(1)))
+      .find(Boolean);
     placed.set(name, parent ? new Matrix4().multiplyMatrices(parent, matrix) : matrix);
     made.set(name, new Matrix4().multiplyMatrices(placed.get(name), bind[i].invert()));
   }
@@ -79,16 +93,28 @@ function animated(composer, animation) {
   const made = new Map();
   if (composer.specsByPath[animation]?.fields.typeName !== "SkelAnimation") return made;
   const names = Array.from(valueOf(composer, animation, "joints") ?? []);
-  const [places, turns, sizes] = ["translations", "rotations", "scales"].map((name) => valueOf(composer, animation, name) ?? []);
-  if (places.length !== 3 * names.length || turns.length !== 4 * names.length || sizes.length !== 3 * names.length) return made;
+  const [places, turns, sizes] = ["translations", "rotations", "scales"].map(
+    (name) => valueOf(composer, animation, name) ?? [],
+  );
+  if (places.length !== 3 * names.length || turns.length !== 4 * names.length || sizes.length !== 3 * names.length)
+    return made;
   for (const [i, name] of names.entries())
-    made.set(name, new Matrix4().compose(new Vector3().fromArray(places, 3 * i), new Quaternion().fromArray(turns, 4 * i).normalize(), new Vector3().fromArray(sizes, 3 * i)));
+    made.set(
+      name,
+      new Matrix4().compose(
+        new Vector3().fromArray(places, 3 * i),
+        new Quaternion().fromArray(turns, 4 * i).normalize(),
+        new Vector3().fromArray(sizes, 3 * i),
+      ),
+    );
   return made;
 }
 
 function matrices(composer, values, count) {
   const flat = values && composer._flattenMatrixArray(Array.from(values), count);
-  return flat?.length === 16 * count ? Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i)) : null;
+  return flat?.length === 16 * count
+    ? Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i))
+    : null;
 }
 
 function skinned(points, order, { each, rigid, joints, weights, matrix }) {
@@ -114,7 +140,9 @@ function blend(composer, path, animation, points, warn) {
   const weights = animation && valueOf(composer, animation, "blendShapeWeights");
   const targets = targetsOf(fieldsOf(composer, path, "skel:blendShapeTargets")?.targetPaths, path);
   if (!weights?.length || !targets.length) return false;
-  const factors = new Map(Array.from(valueOf(composer, animation, "blendShapes") ?? [], (name, i) => [name, weights[i]]));
+  const factors = new Map(
+    Array.from(valueOf(composer, animation, "blendShapes") ?? [], (name, i) => [name, weights[i]]),
+  );
   const names = Array.from(valueOf(composer, path, "skel:blendShapes") ?? []);
   for (const [i, target] of targets.entries()) {
     const factor = factors.get(names[i]) ?? 0;
@@ -125,7 +153,8 @@ function blend(composer, path, animation, points, warn) {
     if (!factor) continue;
     for (let at = 0; 3 * at < offsets.length; at++) {
       const to = 3 * (places?.length ? places[at] : at);
-      for (let axis = 0; axis < 3; axis++) if (to + axis < points.length) points[to + axis] += Math.fround(offsets[3 * at + axis] * factor);
+      for (let axis = 0; axis < 3; axis++)
+        if (to + axis < points.length) points[to + axis] += Math.fround(offsets[3 * at + axis] * factor);
     }
   }
   return true;
@@ -136,7 +165,11 @@ function between(composer, path, skeleton) {
   const [from, to] = [[...upwards(skeleton)].reverse(), [...upwards(path)].slice(1).reverse()];
   let shared = 0;
   while (shared < to.length && from[shared] === to[shared]) shared++;
-  const frame = (paths) => paths.slice(shared).map((at) => localFrame(composer, at)).reduce((made, matrix) => made.multiply(matrix), new Matrix4());
+  const frame = (paths) =>
+    paths
+      .slice(shared)
+      .map((at) => localFrame(composer, at))
+      .reduce((made, matrix) => made.multiply(matrix), new Matrix4());
   return frame(to).invert().multiply(frame(from));
 }
 

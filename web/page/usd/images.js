@@ -1,6 +1,6 @@
 // The textures of a USD stage: images graded by their colour space, scale and bias, with the alpha of opacity textures.
 
-import { decodeImage } from "./images.js";
+import { decodeImage } from "../images.js";
 
 export class UsdImages {
   constructor(folder, voxrt) {
@@ -49,16 +49,20 @@ export class UsdImages {
     const made = Uint8Array.from(pixels);
     const plain = factor.slice(0, 3).every((part) => part === 1) && bias.slice(0, 3).every((part) => part === 0);
     if (plain && !raw) return made;
-    const curves = [0, 1, 2].map((channel) => Uint8Array.from({ length: 256 }, (_, code) =>
-      this.voxrt.srgb((raw ? code / 255 : this.voxrt.linear(code)) * factor[channel] + bias[channel])));
-    for (let at = 0; at < made.length; at += 4) for (let channel = 0; channel < 3; channel++) made[at + channel] = curves[channel][made[at + channel]];
+    const curves = [0, 1, 2].map((channel) =>
+      Uint8Array.from({ length: 256 }, (_, code) =>
+        this.voxrt.srgb((raw ? code / 255 : this.voxrt.linear(code)) * factor[channel] + bias[channel]),
+      ),
+    );
+    for (let at = 0; at < made.length; at += 4)
+      for (let channel = 0; channel < 3; channel++) made[at + channel] = curves[channel][made[at + channel]];
     return made;
   }
 }
 
 // Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go.
 export function coordinates({ turn, scale, offset }) {
-  const angle = turn * Math.PI / 180;
+  const angle = (turn * Math.PI) / 180;
   const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
   return (u, v, out, at) => {
     const [a, b] = [u * scale[0], v * scale[1]];

@@ -1,7 +1,7 @@
 // The frames of USD prims: all of UsdGeom's transform operations, without what decomposition into position, turn and scale
 // would lose.
 
-import { Matrix4, Quaternion, Vector3 } from "./three/three.core.js";
+import { Matrix4, Quaternion, Vector3 } from "../three/three.core.js";
 
 const AXES = { X: [1, 0, 0], Y: [0, 1, 0], Z: [0, 0, 1] };
 
@@ -11,7 +11,11 @@ export const frameMethods = (_kept, found) => ({
     const data = { ...fields, ...attributes };
     const order = typeof data.xformOpOrder === "string" ? [] : Array.from(data.xformOpOrder ?? []);
     const reset = order.lastIndexOf("!resetXformStack!");
-    if (reset >= 0) found.warn("transform", "transforms that do not follow those above them are not read here; voxrt build reads them");
+    if (reset >= 0)
+      found.warn(
+        "transform",
+        "transforms that do not follow those above them are not read here; voxrt build reads them",
+      );
     object.matrixAutoUpdate = false;
     object.matrix.identity();
     for (const name of order.slice(reset + 1).reverse()) {
@@ -36,7 +40,11 @@ function operation(name, data, found) {
   if (kind === "orient" && value.length === 4) return turnBy(value);
   const [, turns = ""] = /^rotate([XYZ]{1,3})$/.exec(kind) ?? [];
   if (turns.length === 1) return turnAbout(turns, x);
-  if (turns.length === 3) return [...turns].reduce((made, axis) => made.premultiply(turnAbout(axis, { X: x, Y: y, Z: z }[axis])), new Matrix4());
+  if (turns.length === 3)
+    return [...turns].reduce(
+      (made, axis) => made.premultiply(turnAbout(axis, { X: x, Y: y, Z: z }[axis])),
+      new Matrix4(),
+    );
   const lone = /^(translate|scale)([XYZ])$/.exec(kind);
   if (lone) {
     const rest = lone[1] === "scale" ? 1 : 0;
@@ -47,22 +55,37 @@ function operation(name, data, found) {
   return new Matrix4();
 }
 
-const turnAbout = (axis, degrees) => turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), degrees * Math.PI / 180).normalize());
+const turnAbout = (axis, degrees) =>
+  turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), (degrees * Math.PI) / 180).normalize());
 
 // By the angle that the real part gives and the axis of the others, whatever the length of the quaternion.
 function turnBy([x, y, z, w]) {
   const axis = new Vector3(x, y, z);
   if (axis.length() < 1e-6) return new Matrix4();
-  return turn(new Quaternion().setFromAxisAngle(axis.normalize(), 2 * Math.acos(Math.min(Math.max(w, -1), 1))).normalize());
+  return turn(
+    new Quaternion().setFromAxisAngle(axis.normalize(), 2 * Math.acos(Math.min(Math.max(w, -1), 1))).normalize(),
+  );
 }
 
 // As OpenUSD computes it, so that quarter turns round alike.
 function turn({ x, y, z, w }) {
   return new Matrix4().set(
-    1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (z * x + y * w), 0,
-    2 * (x * y + z * w), 1 - 2 * (z * z + x * x), 2 * (y * z - x * w), 0,
-    2 * (z * x - y * w), 2 * (y * z + x * w), 1 - 2 * (y * y + x * x), 0,
-    0, 0, 0, 1,
+    1 - 2 * (y * y + z * z),
+    2 * (x * y - z * w),
+    2 * (z * x + y * w),
+    0,
+    2 * (x * y + z * w),
+    1 - 2 * (z * z + x * x),
+    2 * (y * z - x * w),
+    0,
+    2 * (z * x - y * w),
+    2 * (y * z + x * w),
+    1 - 2 * (y * y + x * x),
+    0,
+    0,
+    0,
+    0,
+    1,
   );
 }
 
@@ -72,12 +95,14 @@ const UPWARDS = { X: [0, -1, 0, 1, 0, 0, 0, 0, 1], Y: [1, 0, 0, 0, 1, 0, 0, 0, 1
 export function sceneFrame({ upAxis = "Y", metersPerUnit = 0.01 }, warn) {
   const axis = String(upAxis).toUpperCase();
   if (!(axis in UPWARDS)) warn("up-axis", `upAxis '${upAxis}' is not X, Y or Z; Y was used`);
-  if (!(Number.isFinite(metersPerUnit) && metersPerUnit > 0)) throw new Error(`metersPerUnit ${metersPerUnit} is not a positive number; set it to the metres per unit`);
+  if (!(Number.isFinite(metersPerUnit) && metersPerUnit > 0))
+    throw new Error(`metersPerUnit ${metersPerUnit} is not a positive number; set it to the metres per unit`);
   return (UPWARDS[axis] ?? UPWARDS.Y).map((part) => part * metersPerUnit);
 }
 
 // A transform of 3 rows of 4 in that frame.
-export const framed = (frame, rows) => Array.from({ length: 12 }, (_, at) => {
-  const [row, column] = [at >> 2, at & 3];
-  return [0, 1, 2].reduce((sum, i) => sum + frame[3 * row + i] * rows[4 * i + column], 0);
-});
+export const framed = (frame, rows) =>
+  Array.from({ length: 12 }, (_, at) => {
+    const [row, column] = [at >> 2, at & 3];
+    return [0, 1, 2].reduce((sum, i) => sum + frame[3 * row + i] * rows[4 * i + column], 0);
+  });

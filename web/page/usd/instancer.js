@@ -1,7 +1,7 @@
 // Point instancers of USD: copies of their prototypes, which three.js' loader shows in their own place alone.
 
-import { fieldsOf, isShown, targetsOf } from "./usd_stage.js";
-import { Matrix4, Object3D, Quaternion, Vector3 } from "./three/three.core.js";
+import { fieldsOf, isShown, targetsOf } from "./stage.js";
+import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
 // Methods for USDComposer. `kept`: its own ones.
 export const instancerMethods = (kept, found) => ({
@@ -13,12 +13,17 @@ export const instancerMethods = (kept, found) => ({
 
 // Put the copies of the instancer at `path` into `object`, which stands in its place.
 function placeCopies(composer, object, path, found) {
-  const refuse = (problem) => { throw new Error(`${path}: ${problem}`); };
+  const refuse = (problem) => {
+    throw new Error(`${path}: ${problem}`);
+  };
   const given = composer._getAttributes(path);
   const { protoIndices = [], positions = [], scales = [] } = given;
   const names = targetsOf(fieldsOf(composer, path, "prototypes")?.targetPaths, path);
   const wrong = protoIndices.findIndex((index) => !names[index]);
-  if (wrong >= 0) refuse(`protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`);
+  if (wrong >= 0)
+    refuse(
+      `protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`,
+    );
   const absent = names.find((name) => !composer.specsByPath[name]);
   if (absent) refuse(`prototype ${absent} does not exist; repair its prototypes`);
   if (found.open.has(path)) refuse("the point instancer copies itself; repair its prototypes");
@@ -30,11 +35,16 @@ function placeCopies(composer, object, path, found) {
   const turns = turnsOf(given);
   const fits = (values, size) => values.length === 0 || values.length === size * count;
   if (positions.length !== 3 * count || !fits(turns, 4) || !fits(scales, 3))
-    refuse(`protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`);
+    refuse(
+      `protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`,
+    );
   const hidden = hiddenOf(composer, path, given, count, refuse, found);
   found.warn("invisible", "masked copies of point instancers were left out", hidden.size);
   const sizes = prototypes.map(objectsOf);
-  found.charge(path, Array.from(protoIndices).reduce((sum, index) => sum + 1 + sizes[index], 0));
+  found.charge(
+    path,
+    Array.from(protoIndices).reduce((sum, index) => sum + 1 + sizes[index], 0),
+  );
   for (let i = 0; i < count; i++) {
     if (hidden.has(i) || !prototypes[protoIndices[i]]) continue;
     const copy = new Object3D();
@@ -84,10 +94,13 @@ function half(value) {
 // The copies that are masked.
 function hiddenOf(composer, path, { ids = [], invisibleIds = [] }, count, refuse, found) {
   const has = (name) => composer.specsByPath[`${path}.${name}`];
-  if (composer.specsByPath[path].fields.inactiveIds !== undefined) refuse("copies that are not active are not read here; voxrt build reads them");
+  if (composer.specsByPath[path].fields.inactiveIds !== undefined)
+    refuse("copies that are not active are not read here; voxrt build reads them");
   // The loader leaves long arrays of 64 bits in binary files empty.
-  if (has("invisibleIds") && !invisibleIds.length) found.warn("instancer", "masks of point instancers that cannot be read here were not used; voxrt build uses them");
-  if (invisibleIds.length && has("ids") && ids.length !== count) refuse(`ids has ${ids.length} entries and there are ${count} copies; export the instancer again`);
+  if (has("invisibleIds") && !invisibleIds.length)
+    found.warn("instancer", "masks of point instancers that cannot be read here were not used; voxrt build uses them");
+  if (invisibleIds.length && has("ids") && ids.length !== count)
+    refuse(`ids has ${ids.length} entries and there are ${count} copies; export the instancer again`);
   const masked = new Set(Array.from(invisibleIds, Number));
   return new Set(Array.from({ length: count }, (_, i) => i).filter((i) => masked.has(Number(ids.length ? ids[i] : i))));
 }

@@ -3,11 +3,11 @@
 // Each corner of each triangle is a vertex of its own. What triangles show is known when all images are decoded: until then
 // meshes have an empty geometry.
 
-import { dimensionsOf, isNewSolid, isSolid } from "./usd_solids.js";
-import { posedPoints } from "./usd_skin.js";
-import { arrayOf, primvarOf, valueOf } from "./usd_stage.js";
-import { placesOf, surfaceOf } from "./usd_surface.js";
-import { BufferAttribute, BufferGeometry, Mesh, Object3D } from "./three/three.core.js";
+import { dimensionsOf, isNewSolid, isSolid } from "./solids.js";
+import { posedPoints } from "./skin.js";
+import { arrayOf, primvarOf, valueOf } from "./stage.js";
+import { placesOf, surfaceOf } from "./surface.js";
+import { BufferAttribute, BufferGeometry, Mesh, Object3D } from "../three/three.core.js";
 
 export class UsdMeshes {
   constructor(materials, warn) {
@@ -21,8 +21,12 @@ export class UsdMeshes {
   methods = (kept) => {
     const meshes = this;
     return {
-      _buildMesh(path) { return meshes.build(this, path, "Mesh"); },
-      _buildGeomPrimitive(path, _spec, kind) { return meshes.build(this, path, kind); },
+      _buildMesh(path) {
+        return meshes.build(this, path, "Mesh");
+      },
+      _buildGeomPrimitive(path, _spec, kind) {
+        return meshes.build(this, path, kind);
+      },
       _buildHierarchy(parent, path) {
         const kind = this.specsByPath[path]?.fields.typeName ?? "";
         if (isNewSolid(kind)) {
@@ -37,8 +41,10 @@ export class UsdMeshes {
   };
 
   note(kind) {
-    if (/^(\w*Curves|Points|NurbsPatch|TetMesh|Volume)$/.test(kind)) this.warn("unsupported-prim", `${kind} prims are not supported and were left out`);
-    else if (/^(\w+Light(_1)?|Camera|Skeleton|LightFilter|LightPortal)$/.test(kind)) this.warn("no-shape", `${kind} prims have no shape and were left out`);
+    if (/^(\w*Curves|Points|NurbsPatch|TetMesh|Volume)$/.test(kind))
+      this.warn("unsupported-prim", `${kind} prims are not supported and were left out`);
+    else if (/^(\w+Light(_1)?|Camera|Skeleton|LightFilter|LightPortal)$/.test(kind))
+      this.warn("no-shape", `${kind} prims have no shape and were left out`);
   }
 
   build(composer, path, kind) {
@@ -83,10 +89,13 @@ export class UsdMeshes {
     for (const row of rows) if (row >= 0) counts[row]++;
     const shown = shadings.map((shading, row) => this.materials.show(shading, composer, path, surface, counts[row]));
     const kept = [];
-    for (let triangle = 0; triangle < surface.faces.length; triangle++) if (shown[rows[surface.faces[triangle]]]) kept.push(triangle);
+    for (let triangle = 0; triangle < surface.faces.length; triangle++)
+      if (shown[rows[surface.faces[triangle]]]) kept.push(triangle);
     const gathered = (size, read, Kind = Float64Array) => {
       const values = new Kind(3 * size * kept.length);
-      kept.forEach((triangle, i) => { for (let corner = 0; corner < 3; corner++) read(triangle, corner, values, size * (3 * i + corner)); });
+      kept.forEach((triangle, i) => {
+        for (let corner = 0; corner < 3; corner++) read(triangle, corner, values, size * (3 * i + corner));
+      });
       return values;
     };
     const place = (triangle, corner, out, to) => {
@@ -118,10 +127,14 @@ export class UsdMeshes {
       normals = arrayOf(composer, path, "normals", "vertex");
       place = places(normals);
     }
-    return place && ((triangle, corner, out, to) => {
-      const at = place(triangle, corner);
-      for (let part = 0; part < 3; part++) out[to + part] = Number.isFinite(normals.values[at + part]) ? normals.values[at + part] : 0;
-    });
+    return (
+      place &&
+      ((triangle, corner, out, to) => {
+        const at = place(triangle, corner);
+        for (let part = 0; part < 3; part++)
+          out[to + part] = Number.isFinite(normals.values[at + part]) ? normals.values[at + part] : 0;
+      })
+    );
   }
 
   // Rules for sceneOf.
@@ -148,8 +161,18 @@ function settersOf({ setUv, setColour }, gathered) {
   const uv = setUv && gathered(2, setUv);
   const colour = setColour && gathered(3, setColour, Float32Array);
   return {
-    uvOf: uv && ((vertex, out) => { out[0] = uv[2 * vertex]; out[1] = uv[2 * vertex + 1]; }),
-    colourOf: colour && ((vertex, out) => { out.set(colour.subarray(3 * vertex, 3 * vertex + 3)); out[3] = 1; }),
+    uvOf:
+      uv &&
+      ((vertex, out) => {
+        out[0] = uv[2 * vertex];
+        out[1] = uv[2 * vertex + 1];
+      }),
+    colourOf:
+      colour &&
+      ((vertex, out) => {
+        out.set(colour.subarray(3 * vertex, 3 * vertex + 3));
+        out[3] = 1;
+      }),
   };
 }
 

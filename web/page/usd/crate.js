@@ -1,7 +1,9 @@
 // Binary USD files: types of values that the parser of three.js' loader leaves out.
 
 const [BOOL, UCHAR, INT64, UINT64, MATRIX_3D, QUATD, QUATH] = [1, 2, 5, 6, 14, 16, 18];
-const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, TOKENS] = [19, 21, 22, 23, 25, 26, 27, 29, 30, 32];
+const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, TOKENS] = [
+  19, 21, 22, 23, 25, 26, 27, 29, 30, 32,
+];
 const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 const half = (parser) => parser._readHalf();
 const double = ({ reader }) => reader.readFloat64();
@@ -32,14 +34,23 @@ export const crateMethods = (kept) => ({
   // Whole numbers that fit are bytes in the place of the value's address.
   _readInlinedValue(rep) {
     const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0];
-    if (numbers < 2 || numbers === 9 || bytes < 2 || rep.typeEnum === VEC_2H || rep.typeEnum === QUATD || rep.typeEnum === QUATH) return kept._readInlinedValue.call(this, rep);
+    if (
+      numbers < 2 ||
+      numbers === 9 ||
+      bytes < 2 ||
+      rep.typeEnum === VEC_2H ||
+      rep.typeEnum === QUATD ||
+      rep.typeEnum === QUATH
+    )
+      return kept._readInlinedValue.call(this, rep);
     return Array.from({ length: numbers }, (_, i) => (rep.lo << (24 - 8 * i)) >> 24);
   },
   _readScalarValue(type) {
     if (type === TOKENS) return listed(this, ({ reader, tokens }) => tokens[reader.readUint32()] ?? "");
     if (type === REFERENCES) return [listed(this, (parser) => reference(parser, true)).join(", ")];
     if (type === PAYLOADS) return listed(this, (parser) => reference(parser, false)).join(", ");
-    if (type === STRINGS) return Array.from({ length: countOf(this) }, () => this.tokens[this.strings[this.reader.readUint32()]] ?? "");
+    if (type === STRINGS)
+      return Array.from({ length: countOf(this) }, () => this.tokens[this.strings[this.reader.readUint32()]] ?? "");
     if (type === PAYLOAD) return reference(this, false);
     const found = TYPES.get(type);
     if (!found || found[0] === 1) return kept._readScalarValue.call(this, type);
@@ -52,7 +63,8 @@ export const crateMethods = (kept) => ({
     const [numbers, bytes, read, Kind] = found;
     const size = version.major === 0 && version.minor < 7 ? reader.readUint32() : reader.readUint64();
     const count = numbers * size;
-    if (!(count * bytes <= this.buffer.byteLength - reader.tell())) throw new Error(`an array of ${size} values does not fit into the file; it is damaged`);
+    if (!(count * bytes <= this.buffer.byteLength - reader.tell()))
+      throw new Error(`an array of ${size} values does not fit into the file; it is damaged`);
     const values = new Kind(count);
     for (let i = 0; i < count; i++) values[i] = read(this);
     return values;
@@ -62,7 +74,8 @@ export const crateMethods = (kept) => ({
 // A count of values of four bytes or more.
 function countOf({ reader, buffer }) {
   const count = reader.readUint64();
-  if (!(4 * count <= buffer.byteLength - reader.tell())) throw new Error(`a list of ${count} values does not fit into the file; it is damaged`);
+  if (!(4 * count <= buffer.byteLength - reader.tell()))
+    throw new Error(`a list of ${count} values does not fit into the file; it is damaged`);
   return count;
 }
 
@@ -82,6 +95,7 @@ function listed(parser, read) {
 function reference({ reader, tokens, strings, paths, version }, hasNotes) {
   const [file, prim] = [tokens[strings[reader.readUint32()]] ?? "", paths[reader.readUint32()] ?? ""];
   if (hasNotes || version.minor >= 8) reader.seek(reader.tell() + 16); // the offset of its time
-  if (hasNotes && reader.readUint64()) throw new Error(`${file}${prim}: a reference with custom data is not read here; voxrt build reads it`);
+  if (hasNotes && reader.readUint64())
+    throw new Error(`${file}${prim}: a reference with custom data is not read here; voxrt build reads it`);
   return `${file ? `@${file}@` : ""}${prim ? `<${prim}>` : ""}`;
 }

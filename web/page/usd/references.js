@@ -1,7 +1,7 @@
 // References of USD prims to prims of the same file, of other files of a package and of files dropped together, prims that
 // inherit from others, and sublayers: their specs are put in place of the reference, below what the prim itself says.
 
-import { targetsOf } from "./usd_stage.js";
+import { targetsOf } from "./stage.js";
 
 const ARCS = ["references", "payload", "inheritPaths", "specializes"];
 export const ELSEWHERE = [...ARCS, "subLayers"];
@@ -29,7 +29,9 @@ class Layer {
 
   follow() {
     const { fields } = this.specs["/"] ?? { fields: {} };
-    const refers = Object.keys(this.specs).filter((path) => path !== "/" && arcsOf(this.specs[path].fields, path).length);
+    const refers = Object.keys(this.specs).filter(
+      (path) => path !== "/" && arcsOf(this.specs[path].fields, path).length,
+    );
     const varies = this.isRoot && Object.values(this.specs).some((spec) => spec.fields?.variantSetChildren);
     if (!refers.length && !fields.subLayers && !varies) return this;
     this.below = new Map();
@@ -38,9 +40,15 @@ class Layer {
     for (const file of filesOf(fields.subLayers)) {
       const layer = this.layer(file);
       if (!layer) continue;
-      fields.subLayers = [fields.subLayers].flat().map((one) => String(one).replaceAll(file, "")).filter((one) => /[^@\s,[\]]/.test(one));
-      for (const path of layer.below.get("") ?? []) if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path, true);
-      fields.primChildren = [...new Set([...(layer.specs["/"].fields.primChildren ?? []), ...(fields.primChildren ?? [])])];
+      fields.subLayers = [fields.subLayers]
+        .flat()
+        .map((one) => String(one).replaceAll(file, ""))
+        .filter((one) => /[^@\s,[\]]/.test(one));
+      for (const path of layer.below.get("") ?? [])
+        if (path.startsWith("/") && path !== "/") this.copy(layer, path, path, path, path, true);
+      fields.primChildren = [
+        ...new Set([...(layer.specs["/"].fields.primChildren ?? []), ...(fields.primChildren ?? [])]),
+      ];
     }
     if (fields.subLayers?.length === 0) delete fields.subLayers;
     return this;
@@ -52,7 +60,15 @@ class Layer {
     if (!this.layers.has(path)) {
       this.layers.set(path, null);
       const specs = this.layerOf(path);
-      const made = specs && new Layer(specs, path.slice(0, Math.max(path.lastIndexOf("/"), 0)), this.layerOf, this.layers, this.charge).follow();
+      const made =
+        specs &&
+        new Layer(
+          specs,
+          path.slice(0, Math.max(path.lastIndexOf("/"), 0)),
+          this.layerOf,
+          this.layers,
+          this.charge,
+        ).follow();
       if (made && !made.below) {
         made.below = new Map();
         for (const one in specs) made.note(one);
@@ -88,9 +104,15 @@ class Layer {
       const layer = file ? this.layer(file) : this;
       const target = prim || `/${layer?.specs["/"]?.fields.defaultPrim ?? ""}`;
       if (!layer?.specs[target] || target === "/") continue;
-      if (layer === this && `${path}/`.startsWith(`${target}/`)) throw new Error(`${path}: refers to itself; repair its references`);
+      if (layer === this && `${path}/`.startsWith(`${target}/`))
+        throw new Error(`${path}: refers to itself; repair its references`);
       if (layer === this) this.settleAll(target);
-      for (const name of ARCS) if (fields[name]) fields[name] = [fields[name]].flat().map((one) => without(one, text)).filter(Boolean);
+      for (const name of ARCS)
+        if (fields[name])
+          fields[name] = [fields[name]]
+            .flat()
+            .map((one) => without(one, text))
+            .filter(Boolean);
       this.copy(layer, target, path, target, path, layer === this);
     }
     for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
@@ -134,14 +156,16 @@ class Layer {
       const targets = targetsOf(fields[name], from).filter((path) => keeps || isInside(path));
       fields[name] = targets.map((path) => (isInside(path) ? place + path.slice(source.length) : path));
     }
-    if (layer !== this && fields.typeName === "asset" && typeof fields.default === "string") fields.default = layer.resolved(fields.default.replace(/^@+|@+$/g, ""));
+    if (layer !== this && fields.typeName === "asset" && typeof fields.default === "string")
+      fields.default = layer.resolved(fields.default.replace(/^@+|@+$/g, ""));
     const own = this.specs[to];
     if (own) {
       for (const name of ARCS) delete fields[name];
       const specifier = own.fields.specifier === 1 ? fields.specifier : own.fields.specifier;
       for (const name of ["primChildren", "variantSetChildren", "apiSchemas"])
         if (fields[name] && own.fields[name]) own.fields[name] = [...new Set([...fields[name], ...own.fields[name]])];
-      if (fields.variantSelection) own.fields.variantSelection = { ...fields.variantSelection, ...own.fields.variantSelection };
+      if (fields.variantSelection)
+        own.fields.variantSelection = { ...fields.variantSelection, ...own.fields.variantSelection };
       Object.assign(own.fields, { ...fields, ...own.fields });
       if (specifier !== undefined) own.fields.specifier = specifier;
       own.fields.typeName ||= fields.typeName;
@@ -149,20 +173,33 @@ class Layer {
       this.note(to);
       this.specs[to] = { specType: theirs.specType, fields };
     }
-    for (const part of [...(layer.below.get(from) ?? [])]) this.copy(layer, part, to + part.slice(from.length), source, place, keeps);
+    for (const part of [...(layer.below.get(from) ?? [])])
+      this.copy(layer, part, to + part.slice(from.length), source, place, keeps);
   }
 }
 
 // What a prim refers to: {file, prim, text}; either of the first two may be empty.
 function arcsOf(fields, path) {
-  return ARCS.flatMap((name) => [(fields ?? {})[name] ?? []].flat().flatMap((one) => {
-    if (typeof one !== "string") return [];
-    if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
-    return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({ file, prim: there ?? (here ? targetsOf(here, path)[0] ?? "" : ""), text }));
-  }));
+  return ARCS.flatMap((name) =>
+    [(fields ?? {})[name] ?? []].flat().flatMap((one) => {
+      if (typeof one !== "string") return [];
+      if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
+      return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({
+        file,
+        prim: there ?? (here ? (targetsOf(here, path)[0] ?? "") : ""),
+        text,
+      }));
+    }),
+  );
 }
 
-const filesOf = (list) => [list ?? []].flat().flatMap((one) => (String(one).includes("@") ? Array.from(String(one).matchAll(/@([^@]+)@/g), (match) => match[1]) : [String(one)]));
+const filesOf = (list) =>
+  [list ?? []]
+    .flat()
+    .flatMap((one) =>
+      String(one).includes("@") ? Array.from(String(one).matchAll(/@([^@]+)@/g), (match) => match[1]) : [String(one)],
+    );
 
 // A field without one of its references; empty where none is left.
-const without = (one, text) => (typeof one !== "string" || one === text ? "" : one.replace(text, "").replace(/^[\s,[\]]*$/, ""));
+const without = (one, text) =>
+  typeof one !== "string" || one === text ? "" : one.replace(text, "").replace(/^[\s,[\]]*$/, "");

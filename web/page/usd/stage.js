@@ -12,7 +12,12 @@ export const valueOf = (composer, prim, name) => composer._resolveAttributeValue
 
 // What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]".
 export function targetsOf(paths, prim) {
-  const names = [paths ?? []].flat().join().replace(/[[\]<>\s]/g, "").split(",").filter((name) => name && name !== "None");
+  const names = [paths ?? []]
+    .flat()
+    .join()
+    .replace(/[[\]<>\s]/g, "")
+    .split(",")
+    .filter((name) => name && name !== "None");
   return names.map((name) => (name.startsWith("/") ? name : `${prim}/${name}`));
 }
 
@@ -23,19 +28,25 @@ export const stageMethods = (kept, found) => ({
     for (const [parent, children] of this.childrenByPath) {
       const order = this.specsByPath[parent]?.fields.primChildren;
       const places = new Map(order ? Array.from(order, (name, i) => [name, i]) : []);
-      const sorted = places.size ? children.toSorted((a, b) => (places.get(a.name) ?? Infinity) - (places.get(b.name) ?? Infinity) || 0) : children;
-      this.childrenByPath.set(parent, sorted.filter(({ path }) => isShown(this, path, found)));
+      const sorted = places.size
+        ? children.toSorted((a, b) => (places.get(a.name) ?? Infinity) - (places.get(b.name) ?? Infinity) || 0)
+        : children;
+      this.childrenByPath.set(
+        parent,
+        sorted.filter(({ path }) => isShown(this, path, found)),
+      );
     }
   },
   _resolveAttributeValue(path) {
     const fields = this.specsByPath[String(path).replace(/[<>]/g, "")]?.fields;
     if (!fields) return undefined;
     const { typeName = "", timeSamples } = fields;
-    if (timeSamples?.times?.length) return singles(sampleOf(timeSamples.times, timeSamples.values, found.moment, typeName), typeName);
+    if (timeSamples?.times?.length)
+      return singles(sampleOf(timeSamples.times, timeSamples.values, found.moment, typeName), typeName);
     fields.default = singles(fields.default, typeName);
     return fields.default;
   },
-  _getVariantPaths: () => [], // usd_references.js has chosen them
+  _getVariantPaths: () => [], // references.js has chosen them
   _buildSkeleton: () => null,
   _buildAnimations: () => [],
 });
@@ -62,7 +73,11 @@ export function isShown(composer, path, found, isPrototype = false) {
   if (!fields) return false;
   const { typeName, specifier, active } = fields;
   const above = composer.specsByPath[path.slice(0, path.lastIndexOf("/"))]?.fields ?? {};
-  if (active === false || (specifier >= OVER && !isPrototype && above.typeName !== "PointInstancer" && !(above.specifier >= OVER))) return false;
+  if (
+    active === false ||
+    (specifier >= OVER && !isPrototype && above.typeName !== "PointInstancer" && !(above.specifier >= OVER))
+  )
+    return false;
   if (!typeName) return true;
   if (valueOf(composer, path, "visibility") === "invisible") {
     found.warn("invisible", "invisible prims and their descendants were left out");
@@ -111,7 +126,8 @@ export function arrayOf(composer, prim, name, usual) {
   const indices = valueOf(composer, prim, `${name}:indices`);
   if (!indices?.length) return all.length >= size ? { values: all, size, interpolation } : null;
   const values = new Float64Array(size * indices.length);
-  for (let i = 0; i < indices.length; i++) for (let part = 0; part < size; part++) values[size * i + part] = all[size * indices[i] + part] ?? 0;
+  for (let i = 0; i < indices.length; i++)
+    for (let part = 0; part < size; part++) values[size * i + part] = all[size * indices[i] + part] ?? 0;
   return { values, size, interpolation };
 }
 

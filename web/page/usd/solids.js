@@ -7,12 +7,64 @@ const AXES = { X: 0, Y: 1, Z: 2 };
 const SOLIDS = {
   Cube: [[["size", 2]], cube],
   Sphere: [[["radius", 1]], (radius) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), "Z")],
-  Cylinder: [[["radius", 1], ["height", 2], ["axis", "Z"]], (radius, height, axis) => cylinder(radius, radius, height, axis)],
-  Cylinder_1: [[["radiusBottom", 1], ["radiusTop", 1], ["height", 2], ["axis", "Z"]], cylinder],
-  Cone: [[["radius", 1], ["height", 2], ["axis", "Z"]], (radius, height, axis) => revolved([[0, -height / 2], [radius, -height / 2], [0, height / 2]], axis)],
-  Capsule: [[["radius", 0.5], ["height", 1], ["axis", "Z"]], (radius, height, axis) => capsule(radius, radius, height, axis)],
-  Capsule_1: [[["radiusBottom", 0.5], ["radiusTop", 0.5], ["height", 1], ["axis", "Z"]], capsule],
-  Plane: [[["width", 2], ["length", 2], ["axis", "Z"]], plane],
+  Cylinder: [
+    [
+      ["radius", 1],
+      ["height", 2],
+      ["axis", "Z"],
+    ],
+    (radius, height, axis) => cylinder(radius, radius, height, axis),
+  ],
+  Cylinder_1: [
+    [
+      ["radiusBottom", 1],
+      ["radiusTop", 1],
+      ["height", 2],
+      ["axis", "Z"],
+    ],
+    cylinder,
+  ],
+  Cone: [
+    [
+      ["radius", 1],
+      ["height", 2],
+      ["axis", "Z"],
+    ],
+    (radius, height, axis) =>
+      revolved(
+        [
+          [0, -height / 2],
+          [radius, -height / 2],
+          [0, height / 2],
+        ],
+        axis,
+      ),
+  ],
+  Capsule: [
+    [
+      ["radius", 0.5],
+      ["height", 1],
+      ["axis", "Z"],
+    ],
+    (radius, height, axis) => capsule(radius, radius, height, axis),
+  ],
+  Capsule_1: [
+    [
+      ["radiusBottom", 0.5],
+      ["radiusTop", 0.5],
+      ["height", 1],
+      ["axis", "Z"],
+    ],
+    capsule,
+  ],
+  Plane: [
+    [
+      ["width", 2],
+      ["length", 2],
+      ["axis", "Z"],
+    ],
+    plane,
+  ],
 };
 
 export const isSolid = (kind) => Object.hasOwn(SOLIDS, kind);
@@ -24,8 +76,10 @@ export const isNewSolid = (kind) => ["Cylinder_1", "Capsule_1", "Plane"].include
 export function dimensionsOf(kind, path, read) {
   return SOLIDS[kind][0].map(([name, usual]) => {
     const value = read(name) ?? usual;
-    if (name === "axis" && !(value in AXES)) throw new Error(`${path}: axis '${value}' is not X, Y or Z; use one of them`);
-    if (name !== "axis" && !(typeof value === "number" && value >= 0 && value < 1e70)) throw new Error(`${path}: ${name} ${value} is not a length; use a positive number`);
+    if (name === "axis" && !(value in AXES))
+      throw new Error(`${path}: axis '${value}' is not X, Y or Z; use one of them`);
+    if (name !== "axis" && !(typeof value === "number" && value >= 0 && value < 1e70))
+      throw new Error(`${path}: ${name} ${value} is not a length; use a positive number`);
     return value;
   });
 }
@@ -34,23 +88,45 @@ export function dimensionsOf(kind, path, read) {
 export const solidOf = (kind, dimensions) => SOLIDS[kind][1](...dimensions);
 
 function cube(size) {
-  const positions = [-1, 1].flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].flatMap((x) => [x, y, z]))).map((part) => part * (size / 2));
-  const quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const positions = [-1, 1]
+    .flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].flatMap((x) => [x, y, z])))
+    .map((part) => part * (size / 2));
+  const quads = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+  ];
   return { positions, triangles: quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
 }
 
 function plane(width, length, axis) {
   const [across, along] = { X: [2, 1], Y: [0, 2], Z: [0, 1] }[axis];
   const positions = new Array(12).fill(0);
-  [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([u, v], i) => {
-    positions[3 * i + across] = u * width / 2;
-    positions[3 * i + along] = v * length / 2;
+  [
+    [-1, -1],
+    [1, -1],
+    [1, 1],
+    [-1, 1],
+  ].forEach(([u, v], i) => {
+    positions[3 * i + across] = (u * width) / 2;
+    positions[3 * i + along] = (v * length) / 2;
   });
   return { positions, triangles: axis === "Z" ? [0, 1, 2, 0, 2, 3] : [2, 1, 0, 3, 2, 0] };
 }
 
 function cylinder(bottom, top, height, axis) {
-  return revolved([[0, -height / 2], [bottom, -height / 2], [top, height / 2], [0, height / 2]], axis);
+  return revolved(
+    [
+      [0, -height / 2],
+      [bottom, -height / 2],
+      [top, height / 2],
+      [0, height / 2],
+    ],
+    axis,
+  );
 }
 
 function capsule(bottom, top, height, axis) {
@@ -59,10 +135,13 @@ function capsule(bottom, top, height, axis) {
 
 // Part of a circle as radius and height; a half turn has half of the segments.
 function arc(radius, start, stop, centre) {
-  const steps = Math.round(SEGMENTS * (stop - start) / (2 * Math.PI));
+  const steps = Math.round((SEGMENTS * (stop - start)) / (2 * Math.PI));
   return Array.from({ length: steps + 1 }, (_, i) => {
     const angle = i === steps ? stop : start + i * ((stop - start) / steps);
-    return [Math.abs(Math.abs(angle) - Math.PI / 2) < 1e-12 ? 0 : radius * Math.cos(angle), centre + radius * Math.sin(angle)];
+    return [
+      Math.abs(Math.abs(angle) - Math.PI / 2) < 1e-12 ? 0 : radius * Math.cos(angle),
+      centre + radius * Math.sin(angle),
+    ];
   });
 }
 
@@ -75,14 +154,16 @@ function revolved(profile, axis) {
   const put = (x, y, z) => {
     const at = positions.length;
     positions.push(0, 0, 0);
-    [x, y, z].forEach((part, i) => { positions[at + (i + turn) % 3] = part; });
+    [x, y, z].forEach((part, i) => {
+      positions[at + ((i + turn) % 3)] = part;
+    });
   };
   put(0, 0, profile[0][1]);
   put(0, 0, profile.at(-1)[1]);
   const rings = profile.slice(1, -1);
   for (const [radius, height] of rings)
     for (let i = 0; i < SEGMENTS; i++) {
-      const angle = 2 * Math.PI * i / SEGMENTS;
+      const angle = (2 * Math.PI * i) / SEGMENTS;
       put(radius * rounded(Math.cos(angle)), radius * rounded(Math.sin(angle)), height);
     }
   const around = Array.from({ length: SEGMENTS }, (_, here) => [here, (here + 1) % SEGMENTS]);

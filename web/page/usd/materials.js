@@ -1,10 +1,10 @@
 // What each face of a prim of USD shows, as voxrt build reads it (voxelize/formats/usd/materials.py): the material bound to
 // it or to its subset, else its displayColor, else the default material.
 
-import { noShading, readShading } from "./usd_shading.js";
-import { coordinates } from "./usd_images.js";
-import { boundMaterial, fieldsOf, isMaterial, primvarOf, targetsOf, valueOf } from "./usd_stage.js";
-import { placesOf } from "./usd_surface.js";
+import { noShading, readShading } from "./shading.js";
+import { coordinates } from "./images.js";
+import { boundMaterial, fieldsOf, isMaterial, primvarOf, targetsOf, valueOf } from "./stage.js";
+import { placesOf } from "./surface.js";
 
 const DEFAULT_COLOUR = [200, 200, 200];
 
@@ -23,11 +23,19 @@ export class UsdMaterials {
     const rows = new Int32Array(surface.faceCount).fill(-1);
     const row = (shading) => (shadings.includes(shading) ? shadings.indexOf(shading) : shadings.push(shading) - 1);
     for (const { path: subset } of composer.childrenByPath.get(path) ?? []) {
-      if (composer.specsByPath[subset]?.fields.typeName !== "GeomSubset" || valueOf(composer, subset, "familyName") !== "materialBind") continue;
+      if (
+        composer.specsByPath[subset]?.fields.typeName !== "GeomSubset" ||
+        valueOf(composer, subset, "familyName") !== "materialBind"
+      )
+        continue;
       const indices = valueOf(composer, subset, "indices") ?? [];
-      if (!indices.every((face) => face >= 0 && face < surface.faceCount)) throw new Error(`${subset}: a face subset refers to faces beyond the mesh's ${surface.faceCount}; export the mesh again`);
+      if (!indices.every((face) => face >= 0 && face < surface.faceCount))
+        throw new Error(
+          `${subset}: a face subset refers to faces beyond the mesh's ${surface.faceCount}; export the mesh again`,
+        );
       const [material] = targetsOf(fieldsOf(composer, subset, "material:binding")?.targetPaths, subset);
-      if (material && !isMaterial(composer, material)) this.warn("missing-material", "bindings to materials that do not exist were ignored", indices.length);
+      if (material && !isMaterial(composer, material))
+        this.warn("missing-material", "bindings to materials that do not exist were ignored", indices.length);
       if (!isMaterial(composer, material)) continue;
       const at = row(this.shading(composer, material));
       for (const face of indices) rows[face] = at;
@@ -63,7 +71,9 @@ export class UsdMaterials {
     const colour = equalOf(given);
     if (colour?.length >= 3) {
       const linear = colour.slice(0, 3);
-      const code = this.srgb(linear).map((part) => part.toString(16).padStart(2, "0")).join("");
+      const code = this.srgb(linear)
+        .map((part) => part.toString(16).padStart(2, "0"))
+        .join("");
       return this.one({ ...noShading, name: `#${code}`, colour: linear, opacity });
     }
     return this.one({ ...noShading, opacity, ...(given && { name: "displayColor", primvar: "displayColor" }) });
@@ -77,10 +87,15 @@ export class UsdMaterials {
   // (voxrt.js), and setUv(triangle, corner, out, at) or setColour of the same kind.
   show(shading, composer, path, surface, faces) {
     if (!shading.alpha && shading.opacity < shading.cutoff) {
-      this.warn("transparent", "faces of materials below their opacity threshold (0.5 by default) were left out", faces);
+      this.warn(
+        "transparent",
+        "faces of materials below their opacity threshold (0.5 by default) were left out",
+        faces,
+      );
       return null;
     }
-    const look = this.textured(shading, composer, path, surface, faces) ?? this.coloured(shading, composer, path, surface);
+    const look =
+      this.textured(shading, composer, path, surface, faces) ?? this.coloured(shading, composer, path, surface);
     return look ? { look } : { uniform: this.uniform(shading, faces) };
   }
 
@@ -89,22 +104,45 @@ export class UsdMaterials {
     if (!source) return null;
     const texture = this.images.texture(shading);
     if (!texture) {
-      this.warn("missing-texture", "textures that are missing or of an unsupported format were replaced by the fallback or default colour", faces);
+      this.warn(
+        "missing-texture",
+        "textures that are missing or of an unsupported format were replaced by the fallback or default colour",
+        faces,
+      );
       return null;
     }
     const stored = primvarOf(composer, path, source.primvar);
     const place = stored && stored.size >= 2 ? placesOf(source.primvar, stored, surface, this.warn) : null;
     if (!place && !source.point) {
-      this.warn("texture", "textured faces without texture coordinates took the texture's fallback or the default colour", faces);
+      this.warn(
+        "texture",
+        "textured faces without texture coordinates took the texture's fallback or the default colour",
+        faces,
+      );
       return null;
     }
-    if (!place) this.warn("texture", "textured faces took one colour of their image: no texture coordinates are connected to it", faces);
-    else if (source.point) this.warn("texture", "textures without connected coordinates were placed by the coordinates 'st' of their meshes", faces);
+    if (!place)
+      this.warn(
+        "texture",
+        "textured faces took one colour of their image: no texture coordinates are connected to it",
+        faces,
+      );
+    else if (source.point)
+      this.warn(
+        "texture",
+        "textures without connected coordinates were placed by the coordinates 'st' of their meshes",
+        faces,
+      );
     const plain = !shading.image && shading.colour ? shading.colour : [1, 1, 1];
     const moved = coordinates(source);
     const finite = (value) => (Number.isFinite(value) ? value : 0);
     return {
-      entry: this.entry(shading, { name: shading.name ?? "texture", factor: [...plain, shading.alpha ? 1 : shading.opacity], texture, cutoff: shading.alpha ? shading.cutoff : 0 }),
+      entry: this.entry(shading, {
+        name: shading.name ?? "texture",
+        factor: [...plain, shading.alpha ? 1 : shading.opacity],
+        texture,
+        cutoff: shading.alpha ? shading.cutoff : 0,
+      }),
       setUv: (triangle, corner, out, to) => {
         const at = place?.(triangle, corner);
         const [u, v] = place ? [finite(stored.values[at]), finite(stored.values[at + 1])] : source.point;
