@@ -1,8 +1,13 @@
 // What few people need: numbers of the camera, size of the frames, registers and counters.
 
 import { axes, FIELD_OF_VIEW, fieldOfView, focal, lookAlong } from "./camera.js";
-import { $, isPressed, makeSlider, pressed } from "./elements.js";
+import { $, element, isPressed, makeSlider, part, pressed } from "./elements.js";
 import { clamp } from "./vectors.js";
+
+/** @import { App } from "./app.js" */
+/** @import { Hello, State } from "./protocol.js" */
+/** @import { Limits, OnNumber } from "./elements.js" */
+/** @import { Vector } from "./vectors.js" */
 
 const SIZES = [
   [320, 240],
@@ -13,13 +18,15 @@ const SIZES = [
   [1920, 1080],
 ];
 
-// `app` is that of main.js.
 export class Advanced {
+  /** @param {App} app */
   constructor(app) {
     this.app = app;
-    const camera = $("camera");
-    const slider = (label, limits, onInput) => makeSlider(camera, label, limits, onInput, true);
+    /** @param {string} label @param {Limits} limits @param {OnNumber} onInput */
+    const slider = (label, limits, onInput) => makeSlider($("camera"), label, limits, onInput, true);
+    /** @param {Vector} triple @param {number} i @param {number} value */
     const replaced = (triple, i, value) => triple.map((old, j) => (j === i ? value : old));
+    /** @param {number} fov */
     const zoomed = (fov) => app.change((view) => ({ ...view, fov: clamp(fov, FIELD_OF_VIEW.min, FIELD_OF_VIEW.max) }));
     this.position = [0, 1, 2].map((i) =>
       slider(`Position ${"XYZ"[i]}`, { step: 0.0625 }, (value) =>
@@ -37,12 +44,15 @@ export class Advanced {
     this.fov = slider("Field of view", { min: FIELD_OF_VIEW.min, max: FIELD_OF_VIEW.max, step: 0.1 }, zoomed);
     $("flip-x").onclick = () => app.change((view) => ({ ...view, flipX: !view.flipX }));
     $("flip-y").onclick = () => app.change((view) => ({ ...view, flipY: !view.flipY }));
-    $("size").onchange = ({ target }) =>
-      app.fixSize(target.value === "stage" ? null : target.value.split("x").map(Number));
-    $("nonstop").onclick = ({ currentTarget }) => app.set({ nonstop: !isPressed(currentTarget) });
+    $("size").onchange = () => {
+      const { value } = $("size");
+      app.fixSize(value === "stage" ? null : value.split("x").map(Number));
+    };
+    $("nonstop").onclick = () => app.set({ nonstop: !isPressed($("nonstop")) });
     $("advanced").addEventListener("toggle", () => this.readRegisters());
   }
 
+  /** @param {Hello} hello */
   hello({ device }) {
     const sizes = SIZES.filter(
       (size) => size.every((part, i) => part <= device.size[i]) && size[0] % device.width_step === 0,
@@ -54,14 +64,17 @@ export class Advanced {
     this.app.fixSize(null);
   }
 
+  /** @param {State} state */
   show({ view, scene }) {
     const side = 2 ** scene.depth;
-    this.position.forEach((slider) => slider.range(-2 * side, 3 * side));
+    for (const slider of this.position) slider.range(-2 * side, 3 * side);
     pressed($("nonstop"), view.nonstop);
+    this.showCamera();
   }
 
-  showCamera(view) {
-    if (!$("advanced").open) return;
+  showCamera() {
+    const view = this.app.view();
+    if (!view || !$("advanced").open) return;
     const { look } = axes(view);
     this.position.forEach((slider, i) => slider.set(Math.round(view.eye[i] * 16) / 16));
     this.direction.forEach((slider, i) => slider.set(look[i].toFixed(3)));
@@ -81,19 +94,15 @@ export class Advanced {
       ]);
       const rows = [
         ...Object.entries(registers),
-        ...Object.entries(counters).map(([name, value]) => [`server ${name}`, value]),
+        ...Object.entries(counters).map(([name, value]) => /** @type {const} */ ([`server ${name}`, value])),
       ];
-      $("registers")
-        .querySelector("tbody")
-        .replaceChildren(
-          ...rows.map(([name, value]) => {
-            const row = document.createElement("tr");
-            for (const text of [name, value.toLocaleString()]) row.insertCell().textContent = text;
-            return row;
-          }),
-        );
+      part($("registers"), "tbody").replaceChildren(
+        ...rows.map(([name, value]) =>
+          element("tr", {}, element("td", {}, name), element("td", {}, value.toLocaleString())),
+        ),
+      );
     } catch {
-      /* the connection was lost; the page says so */
+      // The connection was lost, and the page shows it.
     }
   }
 }

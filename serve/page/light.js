@@ -1,7 +1,25 @@
 // The light of the scene: shading, shadows of a lamp, mirrors, background.
 
-import { $, makeButton, makeSlider, makeToolbar, pressed } from "./elements.js";
+import { $, all, makeButton, makeSlider, makeToolbar, pressed } from "./elements.js";
 import { add, clamp, length, scale, subtract } from "./vectors.js";
+
+/** @import { Page } from "./pilot.js" */
+/** @import { Device } from "./protocol.js" */
+/** @import { Vector } from "./vectors.js" */
+
+/**
+ * How hits are coloured; `light`: the place of the lamp in 1/16 voxel.
+ * @typedef {object} Look
+ * @property {string} shading faces, report or flat
+ * @property {string[]} features some of: light, mirrors
+ * @property {Vector} light
+ * @property {number} ambient
+ * @property {number} bounces
+ * @property {number[]} background sRGB
+ */
+
+/** @typedef {{ view: Look, scene: { depth: number } }} LitState */
+/** @typedef {Page & { device(): Device, state(): LitState, set(fields: Partial<Look>): void }} LitPage */
 
 const SHADINGS = {
   faces: ["Faces", "Each face has its own brightness; tops are the brightest"],
@@ -12,8 +30,8 @@ const FEATURES = { light: ["Shadows", "A lamp casts shadows"], mirrors: ["Mirror
 const FAR = 1.5; // from the middle of the scene to the lamp, in diagonals of the scene
 const DEGREE = Math.PI / 180;
 
-// `app` is that of main.js.
 export class Light {
+  /** @param {LitPage} app */
   constructor(app) {
     this.app = app;
     this.direction = makeSlider($("light"), "Direction", { min: -180, max: 180, step: 1 }, (value) =>
@@ -34,10 +52,10 @@ export class Light {
         true,
       ),
     );
-    $("background").oninput = ({ target }) =>
-      app.set({ background: [1, 3, 5].map((at) => parseInt(target.value.slice(at, at + 2), 16)) });
-    $("bounces").oninput = ({ target }) => {
-      if (target.value !== "") app.set({ bounces: clamp(Math.round(Number(target.value)), 0, 15) });
+    $("background").oninput = () =>
+      app.set({ background: [1, 3, 5].map((at) => Number.parseInt($("background").value.slice(at, at + 2), 16)) });
+    $("bounces").oninput = () => {
+      if ($("bounces").value !== "") app.set({ bounces: clamp(Math.round($("bounces").valueAsNumber), 0, 15) });
     };
     for (const [name, [label, title]] of Object.entries(SHADINGS))
       makeButton($("shading"), label, () => app.set({ shading: name }), title).dataset.shading = name;
@@ -49,12 +67,13 @@ export class Light {
     return { centre: scale(add(low, high), 0.5), far: FAR * length(subtract(high, low)) };
   }
 
-  // Degrees around the scene, 0 in front and 90 at the right, and above the ground.
+  /** Degrees around the scene, 0 in front and 90 at the right, and above the ground. */
   angles() {
     const [x, y, z] = subtract(scale(this.app.state().view.light, 1 / 16), this.middle().centre);
     return { direction: Math.atan2(x, z) / DEGREE, height: Math.atan2(y, Math.hypot(x, z)) / DEGREE };
   }
 
+  /** @param {{ direction?: number, height?: number }} changed */
   move(changed) {
     const { direction, height } = { ...this.angles(), ...changed };
     const { centre, far } = this.middle();
@@ -68,7 +87,7 @@ export class Light {
     this.app.set({ light: add(centre, towards, far).map((place) => clamp(Math.round(place * 16), -limit, limit)) });
   }
 
-  // Show what the device can do.
+  /** Show what the device can do. @param {{ device: Device }} hello */
   hello({ device }) {
     $("features").replaceChildren();
     for (const [name, [label, title]] of Object.entries(FEATURES)) {
@@ -87,15 +106,16 @@ export class Light {
     }
   }
 
+  /** @param {LitState} state */
   show({ view, scene }) {
-    for (const made of $("shading").children) pressed(made, made.dataset.shading === view.shading);
-    for (const made of $("features").children) pressed(made, view.features.includes(made.dataset.feature));
+    for (const made of all("button", $("shading"))) pressed(made, made.dataset.shading === view.shading);
+    for (const made of all("button", $("features"))) pressed(made, view.features.includes(made.dataset.feature ?? ""));
     const lit = view.features.includes("light");
     $("light").hidden = $("light-place").hidden = !lit;
     $("bounces-row").hidden = !view.features.includes("mirrors");
     if (document.activeElement !== $("background"))
       $("background").value = `#${view.background.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
-    if (document.activeElement !== $("bounces")) $("bounces").value = view.bounces;
+    if (document.activeElement !== $("bounces")) $("bounces").valueAsNumber = view.bounces;
     const side = 2 ** scene.depth;
     this.place.forEach((slider, i) => {
       slider.range(-2 * side, 3 * side);

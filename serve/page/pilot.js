@@ -7,17 +7,39 @@ import { Gestures } from "./gestures.js";
 import { dolly, fly, look, orbit, pan } from "./navigation.js";
 import { scale } from "./vectors.js";
 
-const flies = () => isPressed($("fly"));
-const mirrored = (of) => [of.flipX ? -1 : 1, of.flipY ? -1 : 1];
+/** @import { Pose, Size } from "./camera.js" */
+/** @import { Commands } from "./tools.js" */
+/** @import { Vector } from "./vectors.js" */
+/** @import { Move } from "./viewpoint.js" */
 
-// `app` has change(how), limit() and side(); `commands` are functions by the code of a key; focus(x, y) is for a double
-// click at a place of the page. Returns {gestures, flight}, whose step() is called once per frame of the screen.
+/**
+ * What controls of the camera ask of a page; places are in voxels.
+ * @typedef {object} Page
+ * @property {() => Pose | null} view
+ * @property {() => Size} size of the picture
+ * @property {() => number} side of the world
+ * @property {() => [Vector, Vector]} bounds of what is solid
+ * @property {() => number} limit of the eye's coordinates
+ * @property {(how: Move) => void} change
+ * @property {(how: Move) => void} glide
+ */
+
+const flies = () => isPressed($("fly"));
+/** @param {Pose} view */
+const mirrored = ({ flipX, flipY }) => [flipX ? -1 : 1, flipY ? -1 : 1];
+
+/**
+ * `focus` is for a double click at a place of the page. Returns what has a step() for each frame of the screen.
+ * @param {Page} app
+ * @param {HTMLCanvasElement} canvas
+ * @param {Commands} commands
+ * @param {(x: number, y: number) => void} focus
+ */
 export function makePilot(app, canvas, commands, focus) {
   const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
   const gestures = new Gestures(canvas, {
     turn: (right, down) =>
       app.change((now) => {
-        // pixels of the page: the scene follows the pointer
         const [x, y] = mirrored(now);
         const angle = flies() ? (now.fov * Math.PI) / 180 / across() : (2 * Math.PI) / canvas.clientHeight;
         return flies()
@@ -34,10 +56,10 @@ export function makePilot(app, canvas, commands, focus) {
   });
   const flight = new Flight($("pad"), {
     commands,
-    fly: (...parts) =>
+    fly: (right, up, forward) =>
       app.change((now) => {
         const [x, y] = mirrored(now);
-        return fly(now, scale([parts[0] * x, parts[1] * y, parts[2]], app.side()), app.limit());
+        return fly(now, scale([right * x, up * y, forward], app.side()), app.limit());
       }),
     rotate: (right, up) =>
       app.change((now) =>
@@ -52,6 +74,7 @@ export function makePilot(app, canvas, commands, focus) {
   return { gestures, flight };
 }
 
+/** @param {boolean} on */
 function setFlying(on) {
   pressed($("fly"), on);
   pressed($("orbit"), !on);
