@@ -1,0 +1,284 @@
+// A scene as voxels in an octree memory: what Voxrt.voxelize takes and gives.
+
+import { textBytes, VoxrtError } from "./instance.js";
+
+/** @import { Voxrt } from "./voxrt.js" */
+
+/** @typedef {readonly number[]} Triple three numbers */
+/** @typedef {"surface" | "solid" | "auto"} Fill */
+/** @typedef {"repeat" | "mirror" | "clamp"} Wrap */
+
+/**
+ * @typedef {object} Material
+ * @property {string} name
+ * @property {Triple} colour sRGB, 0 … 255
+ * @property {boolean} [mirror]
+ * @property {boolean} [authored] false for one that replaces a missing material
+ */
+
+/**
+ * Row 0 is at v = 0; pixels have 4 bytes: sRGB and alpha.
+ * @typedef {{ width: number, height: number, pixels: ArrayLike<number> }} Image
+ */
+
+/**
+ * @typedef {object} Appearance
+ * @property {string} name
+ * @property {readonly number[]} [factor] linear red, green, blue and alpha, multiplied with the texture and the vertex colours
+ * @property {{ image: Image, wrap?: readonly Wrap[], nearest?: boolean } | null} [texture] it is continued by `wrap` along u, v
+ * @property {number} [cutoff] the surface is cut away where its alpha is below this; 0 for opaque ones
+ * @property {boolean} [mirror]
+ */
+
+/**
+ * Textures and vertex colours of a mesh.
+ * @typedef {object} Surface
+ * @property {Appearance[]} entries
+ * @property {ArrayLike<number>} rows each triangle's entry, or -1
+ * @property {ArrayLike<number>} uv u and v of the three corners of each triangle
+ * @property {ArrayLike<number>} colours linear colour and alpha of the three corners of each triangle
+ */
+
+/**
+ * For baked light: three numbers per direction, of any length, zeros for none; the direction of each corner, or -1.
+ * @typedef {{ directions: ArrayLike<number>, rows: ArrayLike<number> }} Normals
+ */
+
+/**
+ * @typedef {object} Mesh
+ * @property {ArrayLike<number>} positions three numbers per vertex
+ * @property {ArrayLike<number>} triangles three vertices per triangle, counter-clockwise seen from outside
+ * @property {ArrayLike<number>} materials per triangle: 1 is the first of the scene; 0 where the surface has an appearance
+ * @property {Surface} [surface]
+ * @property {Normals} [normals]
+ */
+
+/**
+ * @typedef {object} SceneObject
+ * @property {string} name
+ * @property {number} mesh index into the scene's meshes
+ * @property {ArrayLike<number>} transform rows of a 3 x 4 matrix to the scene frame: right-handed, metres, y up
+ */
+
+/** @typedef {{ materials: Material[], meshes: Mesh[], objects: SceneObject[] }} Scene */
+/** @typedef {{ kind: string, message: string, count: number }} Warning */
+
+/**
+ * A distant sun and a sky that shines evenly.
+ * @typedef {object} Daylight
+ * @property {Triple} sun the direction towards the sun; zeros for none
+ * @property {Triple} sky linear red, green and blue
+ * @property {number} samples rays to the sky per voxel, 1 … 4096
+ */
+
+/**
+ * @typedef {object} Options
+ * @property {number} [depth] 1 … 16
+ * @property {Fill} [fill]
+ * @property {number} [colours] the most for all textures and vertex colours
+ * @property {Daylight | null} [bake] light that is put into the colours
+ * @property {number | null} [budget] the most words that the memory may have; it gives up what is seen least
+ */
+
+/** @typedef {Daylight & { voxels: number, colours: number, wordsBefore: number, words: number }} Baked */
+
+/**
+ * What a budget gave up, in voxels.
+ * @typedef {object} Fitted
+ * @property {number} words
+ * @property {number} wordsBefore
+ * @property {number} wordsShared
+ * @property {number} surface
+ * @property {number} changed
+ * @property {number} appeared
+ * @property {number} recoloured
+ * @property {number} colours
+ */
+
+/**
+ * @typedef {object} Built
+ * @property {Uint32Array} words the octree memory: pointers to blocks of eight words, and leaves 0xFFFFFFmm
+ * @property {number} depth
+ * @property {{ origin: number[], voxelSize: number }} grid
+ * @property {Required<Material>[]} materials by id; entry 0 is empty space, with the background's colour
+ * @property {{ name: string, mode: string, voxels: number }[]} objects
+ * @property {Warning[]} warnings
+ * @property {Baked | null} baked what was baked; such a memory is shown flat
+ * @property {Fitted | null} fitted
+ */
+
+/** @type {readonly Fill[]} */
+export const FILLS = ["surface", "solid", "auto"];
+export const DEPTH_LIMIT = 16;
+/** @type {readonly Wrap[]} */
+export const WRAPS = ["repeat", "mirror", "clamp"];
+/** @type {Daylight} */
+export const DAYLIGHT = { sun: [1, 3, 2], sky: [0.4, 0.4, 0.4], samples: 64 };
+export const BAKED_COLOURS = 254;
+export const COLOURS = 32; // for all textures and vertex colours of a scene
+
+const MIRROR = 1 << 24;
+const AUTHORED = 1 << 25;
+
+/**
+ * @param {Voxrt} voxrt
+ * @param {Scene} scene
+ * @param {Options} options
+ * @returns {Built}
+ */
+export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null, budget = null }) {
+  if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT)
+    throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
+  if (!FILLS.includes(fill)) throw new VoxrtError(`fill must be ${FILLS.join(", ")}, not ${fill}`);
+  const { wasm } = voxrt;
+  return voxrt.guard(() => {
+    const transparent = describe(voxrt, scene, bake !== null);
+    voxrt.checked(wasm.vx_voxelize(depth, FILLS.indexOf(fill), colours));
+    const baked = bake && bakeLight(voxrt, bake);
+    const fitted = budget ? fit(voxrt, budget) : null;
+    if (baked && fitted) baked.colours = fitted.colours;
+    const built = { ...read(voxrt), depth, baked, fitted };
+    if (transparent)
+      built.warnings.unshift({
+        kind: "transparent",
+        message: "fully transparent faces were left out",
+        count: transparent,
+      });
+    wasm.vx_scene_begin();
+    return built;
+  });
+}
+
+/**
+ * Hand a scene to the module; returns how many triangles are fully transparent.
+ * @param {Voxrt} voxrt
+ * @param {Scene} scene
+ * @param {boolean} hasNormals
+ */
+function describe(voxrt, { materials, meshes, objects }, hasNormals) {
+  const { wasm } = voxrt;
+  wasm.vx_scene_begin();
+  for (const { name, colour, mirror = false, authored = true } of materials) {
+    const [red, green, blue] = colour;
+    voxrt.with([[Uint8Array, textBytes(name)]], (text) =>
+      voxrt.checked(wasm.vx_material(text, (red << 16) | (green << 8) | blue, mirror, authored)),
+    );
+  }
+  /** @type {Map<Appearance, number>} */
+  const appearances = new Map();
+  /** @type {Map<Image, number>} */
+  const images = new Map();
+  for (const { positions, triangles, materials: ids, normals, surface } of meshes) {
+    voxrt.with(
+      [
+        [Float64Array, positions],
+        [Int32Array, triangles],
+        [Uint8Array, ids],
+      ],
+      (at, corners, list) => voxrt.checked(wasm.vx_mesh(at, positions.length / 3, corners, triangles.length / 3, list)),
+    );
+    if (hasNormals && normals)
+      voxrt.with(
+        [
+          [Float64Array, normals.directions],
+          [Int32Array, normals.rows],
+        ],
+        (at, rows) => voxrt.checked(wasm.vx_normals(at, normals.directions.length / 3, rows)),
+      );
+    if (!surface) continue;
+    const { entries, rows, uv, colours } = surface;
+    const numbers = entries.map((entry) => {
+      const number = appearances.get(entry) ?? addAppearance(voxrt, entry, images);
+      appearances.set(entry, number);
+      return number;
+    });
+    voxrt.with(
+      [
+        [Int32Array, numbers],
+        [Int32Array, rows],
+        [Float64Array, uv],
+        [Float32Array, colours],
+      ],
+      (list, ...at) => voxrt.checked(wasm.vx_surface(list, numbers.length, ...at)),
+    );
+  }
+  for (const { name, mesh, transform } of objects)
+    voxrt.with(
+      [
+        [Float64Array, transform],
+        [Uint8Array, textBytes(name)],
+      ],
+      (at, text) => voxrt.checked(wasm.vx_object(mesh, at, text)),
+    );
+  return voxrt.checked(wasm.vx_scene_end());
+}
+
+/** @param {Voxrt} voxrt @param {Appearance} appearance @param {Map<Image, number>} images */
+function addAppearance(voxrt, { name, factor = [1, 1, 1, 1], texture = null, cutoff = 0, mirror = false }, images) {
+  const { wasm } = voxrt;
+  const { image, wrap = ["repeat", "repeat"], nearest = false } = texture ?? {};
+  if (image && !images.has(image)) images.set(image, wasm.vx_image(voxrt.copy(Uint8Array, image.pixels)));
+  const number = image ? (images.get(image) ?? 0) : 0;
+  const [u, v] = wrap.map((one) => WRAPS.indexOf(one));
+  return voxrt.with(
+    [
+      [Uint8Array, textBytes(name)],
+      [Float64Array, factor],
+    ],
+    (text, light) =>
+      voxrt.checked(
+        wasm.vx_appearance(text, light, number, image?.width ?? 0, image?.height ?? 0, u, v, nearest, cutoff, mirror),
+      ),
+  );
+}
+
+/** Put light into the colours. @param {Voxrt} voxrt @param {Daylight} daylight @returns {Baked} */
+function bakeLight(voxrt, { sun, sky, samples }) {
+  const wordsBefore = voxrt.wasm.vx_word_count();
+  const voxels = voxrt.with(
+    [
+      [Float64Array, sun],
+      [Float64Array, sky],
+    ],
+    (towards, light) => voxrt.checked(voxrt.wasm.vx_bake(towards, light, samples)),
+  );
+  return { sun, sky, samples, voxels, colours: BAKED_COLOURS, wordsBefore, words: voxrt.wasm.vx_word_count() };
+}
+
+/** Make the memory fit. @param {Voxrt} voxrt @param {number} words @returns {Fitted} */
+function fit(voxrt, words) {
+  if (!Number.isInteger(words) || words < 1 || words > 2 ** 32 - 1)
+    throw new VoxrtError(`budget must be a number of words, 1 or more, not ${words}`);
+  const { wasm } = voxrt;
+  const wordsBefore = wasm.vx_word_count();
+  voxrt.checked(wasm.vx_fit(words));
+  const figures = voxrt.view(Float64Array, wasm.vx_fit_figures(), 6);
+  const [wordsShared, surface, changed, appeared, recoloured, colours] = figures;
+  return { words, wordsBefore, wordsShared, surface, changed, appeared, recoloured, colours };
+}
+
+/** Read what was built. @param {Voxrt} voxrt */
+function read(voxrt) {
+  const { wasm } = voxrt;
+  const voxels = voxrt.view(BigInt64Array, wasm.vx_object_voxels(), wasm.vx_object_count()).slice();
+  return {
+    words: voxrt.view(Uint32Array, wasm.vx_words(), wasm.vx_word_count()).slice(),
+    grid: { origin: [...voxrt.view(Float64Array, wasm.vx_origin(), 3)], voxelSize: wasm.vx_voxel_size() },
+    materials: Array.from({ length: wasm.vx_material_count() }, (_, id) => {
+      const look = wasm.vx_material_look(id);
+      const colour = [(look >> 16) & 255, (look >> 8) & 255, look & 255];
+      const [mirror, authored] = [(look & MIRROR) !== 0, (look & AUTHORED) !== 0];
+      return { name: voxrt.string(wasm.vx_material_name(id)), colour, mirror, authored };
+    }),
+    objects: Array.from(voxels, (count, i) => ({
+      name: voxrt.string(wasm.vx_object_name(i)),
+      mode: voxrt.string(wasm.vx_object_mode(i)),
+      voxels: Number(count),
+    })),
+    warnings: Array.from({ length: wasm.vx_warning_count() }, (_, i) => ({
+      kind: voxrt.string(wasm.vx_warning_kind(i)),
+      message: voxrt.string(wasm.vx_warning_message(i)),
+      count: wasm.vx_warning_objects(i),
+    })),
+  };
+}
