@@ -17,10 +17,9 @@ import { add, scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
 
-/** @import { Registers, Size } from "./camera.js" */
+/** @import { Box, Registers, Size } from "./camera.js" */
 /** @import { Away } from "./connection.js" */
 /** @import { Frame, Hello, State, View } from "./protocol.js" */
-/** @import { Vector } from "./vectors.js" */
 /** @import { Move } from "./viewpoint.js" */
 
 const CONTROLS = "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button";
@@ -80,7 +79,7 @@ export class App {
     return 2 ** this.state().scene.depth;
   }
 
-  /** @returns {[Vector, Vector]} the lowest and the highest corner of what is solid */
+  /** @returns {Box} what is solid */
   bounds() {
     return this.state().scene.bounds ?? [[0, 0, 0], Array(3).fill(this.side())];
   }

@@ -10,7 +10,8 @@ export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
 
 /** @import { Vector } from "./vectors.js" */
 
-/** @typedef {number[]} Size columns and rows of a frame */
+/** @typedef {readonly number[]} Size columns and rows of a frame */
+/** @typedef {[Vector, Vector]} Box its lowest and its highest corner */
 
 /**
  * The camera for people. The eye is in voxels. Yaw and pitch are in radians, both 0 for a look along -z. The field of view

@@ -4,7 +4,7 @@
 import { axes, focal, target } from "./camera.js";
 import { add, clamp, dot, scale, subtract } from "./vectors.js";
 
-/** @import { Pose, Size } from "./camera.js" */
+/** @import { Box, Pose, Size } from "./camera.js" */
 /** @import { Vector } from "./vectors.js" */
 
 const UPRIGHT = Math.PI / 2;
@@ -77,7 +77,7 @@ export function fly(view, [sideways, upwards, forwards], limit) {
  * Stand as near as all corners of a box (lowest and highest) stay in the frame, without turning. A point is in the frame
  * when its distance aside is at most a part of its depth, on both sides: linear in where the eye stands.
  * @param {Pose} view
- * @param {[Vector, Vector]} box
+ * @param {Box} box
  * @param {Size} size
  * @param {number} limit
  */

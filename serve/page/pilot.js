@@ -7,9 +7,8 @@ import { Gestures } from "./gestures.js";
 import { dolly, fly, look, orbit, pan } from "./navigation.js";
 import { scale } from "./vectors.js";
 
-/** @import { Pose, Size } from "./camera.js" */
+/** @import { Box, Pose, Size } from "./camera.js" */
 /** @import { Commands } from "./tools.js" */
-/** @import { Vector } from "./vectors.js" */
 /** @import { Move } from "./viewpoint.js" */
 
 /**
@@ -18,7 +17,7 @@ import { scale } from "./vectors.js";
  * @property {() => Pose | null} view
  * @property {() => Size} size of the picture
  * @property {() => number} side of the world
- * @property {() => [Vector, Vector]} bounds of what is solid
+ * @property {() => Box} bounds of what is solid
  * @property {() => number} limit of the eye's coordinates
  * @property {(how: Move) => void} change
  * @property {(how: Move) => void} glide

@@ -1,8 +1,7 @@
 // The messages of the frame server (docs/protocol.md), and how its frames are read.
 
-/** @import { Registers, Size } from "./camera.js" */
+/** @import { Box, Registers, Size } from "./camera.js" */
 /** @import { Look } from "./light.js" */
-/** @import { Vector } from "./vectors.js" */
 
 export const PROTOCOL = 2;
 const HEADER = 56;
@@ -25,7 +24,7 @@ const HEADER = 56;
  * @property {string} name
  * @property {number} depth
  * @property {number} words
- * @property {[Vector, Vector] | null} bounds
+ * @property {Box | null} bounds
  * @property {Registers} camera
  * @property {Size} size
  * @property {number} [frames]

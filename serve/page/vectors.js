@@ -1,6 +1,6 @@
 // Vectors of three numbers.
 
-/** @typedef {number[]} Vector three numbers */
+/** @typedef {readonly number[]} Vector three numbers */
 
 /** @param {Vector} a @param {Vector} b */
 export const add = (a, b, factor = 1) => a.map((value, axis) => value + b[axis] * factor);

@@ -13,10 +13,13 @@ import { Warnings } from "./warnings.js";
 
 export { colours } from "./three_looks.js";
 
+/** @typedef {import("./three_looks.js").Attribute} Attribute */
+/** @typedef {import("./three_looks.js").Look} Look */
+/** @typedef {import("./three_looks.js").Setter} Setter */
+
 /** @import { BufferGeometry, InstancedMesh, Material as ThreeMaterial, Mesh as ThreeMesh, Object3D } from "three" */
-/** @import { Attribute, Look } from "./three_looks.js" */
 /** @import { Joined } from "./triangles.js" */
-/** @import { Mesh, Scene, SceneObject, Triple, Warning } from "./voxelize.js" */
+/** @import { Mesh, Scene, SceneObject, Triple, Warning } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 /** @import { Warn } from "./warnings.js" */
 

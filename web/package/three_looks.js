@@ -1,7 +1,7 @@
 // What materials of three.js look like: their colours, textures, and the colours of vertices.
 
 /** @import { BufferAttribute, BufferGeometry, InterleavedBufferAttribute, Material, MeshBasicMaterial, Texture } from "three" */
-/** @import { Appearance, Image, Wrap } from "./voxelize.js" */
+/** @import { Appearance, Image, Wrap } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 /** @import { Warn } from "./warnings.js" */
 

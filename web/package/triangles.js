@@ -3,7 +3,7 @@
 /** @import { BufferGeometry, Material, Mesh as ThreeMesh, SkinnedMesh } from "three" */
 /** @import { Rules } from "./scene.js" */
 /** @import { Attribute, Look } from "./three_looks.js" */
-/** @import { Mesh, Surface } from "./voxelize.js" */
+/** @import { Mesh, Surface } from "./scene_format.js" */
 /** @import { Warn } from "./warnings.js" */
 
 /** @typedef {Omit<Mesh, "materials"> & { keys: unknown[] }} Joined `keys`: of the material of each triangle */

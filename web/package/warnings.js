@@ -1,6 +1,6 @@
 // Warnings by their message, each with a count.
 
-/** @import { Warning } from "./voxelize.js" */
+/** @import { Warning } from "./scene_format.js" */
 
 /** @typedef {(kind: string, message: string, count?: number) => void} Warn */
 

@@ -2,7 +2,40 @@
 
 import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
 
+/** @import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js" */
+
+/** @typedef {Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array} Values */
+/** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind of array */
+/** @typedef {"DT_FLOAT32" | "DT_INT8" | "DT_UINT8" | "DT_INT16" | "DT_UINT16" | "DT_UINT32"} Code of a kind */
+
+/**
+ * What is used of the decoder.
+ * @typedef {Record<Code, number> & Library} Draco
+ */
+
+/**
+ * @typedef {object} Library
+ * @property {new () => Decoder} Decoder
+ * @property {new () => Mesh} Mesh
+ * @property {Int8Array} HEAP8
+ * @property {(bytes: number) => number} _malloc
+ * @property {(at: number) => void} _free
+ * @property {(made: object) => void} destroy
+ */
+
+/** @typedef {{ ptr: number, num_faces(): number, num_points(): number }} Mesh */
+/** @typedef {{ num_components(): number }} Attribute */
+
+/**
+ * @typedef {object} Decoder
+ * @property {(bytes: Int8Array, length: number, mesh: Mesh) => { ok(): boolean, error_msg(): string }} DecodeArrayToMesh
+ * @property {(mesh: Mesh, bytes: number, at: number) => void} GetTrianglesUInt32Array
+ * @property {(mesh: Mesh, id: number) => Attribute} GetAttributeByUniqueId
+ * @property {(mesh: Mesh, attribute: Attribute, kind: number, bytes: number, at: number) => void} GetAttributeDataArrayForAllPoints
+ */
+
 const FOLDER = "./three/draco/";
+/** @type {Record<string, [Kind, Code]>} */
 const TYPES = {
   Float32Array: [Float32Array, "DT_FLOAT32"],
   Int8Array: [Int8Array, "DT_INT8"],
@@ -12,16 +45,33 @@ const TYPES = {
   Uint32Array: [Uint32Array, "DT_UINT32"],
 };
 
+/** What GLTFLoader needs of a decoder. */
 export class DracoDecoder {
+  /** @type {Promise<Draco> | null} */
+  #library = null;
+
   preload() {}
 
-  // What GLTFLoader calls. `ids`: of attributes by name; `types`: the names of their arrays.
+  /**
+   * @param {ArrayBuffer} buffer
+   * @param {(geometry: BufferGeometry) => void} use
+   * @param {Record<string, number>} ids of attributes by name
+   * @param {Record<string, string>} types the names of their arrays
+   * @param {string} _space
+   * @param {(error: Error) => void} refuse
+   */
   decodeDracoFile(buffer, use, ids, types, _space, refuse) {
-    this.library ??= load();
-    this.library.then((draco) => use(decoded(draco, new Int8Array(buffer), ids, types))).catch(refuse);
+    this.#library ??= load();
+    this.#library.then((draco) => use(decoded(draco, new Int8Array(buffer), ids, types))).catch(refuse);
+  }
+
+  /** GLTFLoader's type names a class, and only calls two methods. */
+  asLoader() {
+    return /** @type {DRACOLoader} */ (/** @type {unknown} */ (this));
   }
 }
 
+/** @returns {Promise<Draco>} */
 async function load() {
   const [{ default: start }, answer] = await Promise.all([
     import(`${FOLDER}draco_decoder.js`),
@@ -30,6 +80,7 @@ async function load() {
   return start({ wasmBinary: await answer.arrayBuffer() });
 }
 
+/** @param {Draco} draco @param {Int8Array} bytes @param {Record<string, number>} ids @param {Record<string, string>} types */
 function decoded(draco, bytes, ids, types) {
   const decoder = new draco.Decoder();
   const mesh = new draco.Mesh();
@@ -37,6 +88,7 @@ function decoded(draco, bytes, ids, types) {
     const status = decoder.DecodeArrayToMesh(bytes, bytes.length, mesh);
     if (!status.ok() || mesh.ptr === 0)
       throw new Error(`Draco data cannot be decoded (${status.error_msg()}); export the file again`);
+    /** @param {Kind} Type @param {number} length @param {(bytes: number, at: number) => void} fill */
     const copy = (Type, length, fill) => {
       const at = draco._malloc(length * Type.BYTES_PER_ELEMENT);
       fill(length * Type.BYTES_PER_ELEMENT, at);
@@ -45,12 +97,10 @@ function decoded(draco, bytes, ids, types) {
       return values;
     };
     const geometry = new BufferGeometry();
-    geometry.setIndex(
-      new BufferAttribute(
-        copy(Uint32Array, 3 * mesh.num_faces(), (size, at) => decoder.GetTrianglesUInt32Array(mesh, size, at)),
-        1,
-      ),
+    const triangles = copy(Uint32Array, 3 * mesh.num_faces(), (size, at) =>
+      decoder.GetTrianglesUInt32Array(mesh, size, at),
     );
+    geometry.setIndex(new BufferAttribute(triangles, 1));
     for (const [name, id] of Object.entries(ids)) {
       if (!(types[name] in TYPES)) continue;
       const attribute = decoder.GetAttributeByUniqueId(mesh, id);

@@ -1,14 +1,31 @@
 // Textures and vertex colours of OBJ files: map_Kd of the material, else its vertices' colours.
 
 import { decodeImage } from "./images.js";
+import { colours } from "./voxrt/scene.js";
+
+/** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" */
+/** @import { Folder } from "./folder.js" */
+/** @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
+/** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
+
+/** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image and its coordinates */
 
 const OPAQUE_FROM = 0.5;
+/** @type {Record<string, number>} */
 const VALUES = { "-s": 3, "-o": 3, "-t": 3, "-mm": 2 }; // the most numbers of an option; others have one word
 
-// `library`: MTLLoader's materials by name. Returns rules for sceneOf, and warnings.
+/**
+ * @param {Map<string, MaterialInfo>} library by name
+ * @param {Folder} folder
+ * @param {Voxrt} voxrt
+ * @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>}
+ */
 export async function objLooks(library, folder, voxrt) {
+  /** @type {Warning[]} */
   const warnings = [];
+  /** @type {Map<string, Appearance>} */
   const entries = new Map();
+  /** @type {Map<string, Placed>} */
   const textures = new Map();
   for (const [name, { kd, map_kd: map, map_d: opacity }] of library) {
     if (opacity)
@@ -29,11 +46,13 @@ export async function objLooks(library, folder, voxrt) {
     textures.set(name, placed);
     entries.set(`${name} textured`, { name, texture: { image, wrap: [wrap, wrap] } });
   }
+  /** @param {string} name */
   const coloured = (name) => {
     const key = `${name} coloured`;
     const kd = library.get(name)?.kd?.map((part) => voxrt.linear(code(part)));
-    if (!entries.has(key)) entries.set(key, { name: name || "vertex colours", factor: [...(kd ?? [1, 1, 1]), 1] });
-    return entries.get(key);
+    const entry = entries.get(key) ?? { name: name || "vertex colours", factor: [...(kd ?? [1, 1, 1]), 1] };
+    entries.set(key, entry);
+    return entry;
   };
   return {
     warnings,
@@ -41,29 +60,20 @@ export async function objLooks(library, folder, voxrt) {
       isLeftOut: ({ name }) => isClear(library.get(name)),
       appearanceOf({ name }, geometry) {
         if (isClear(library.get(name))) return null;
-        const placed = textures.get(name);
+        const [placed, textured] = [textures.get(name), entries.get(`${name} textured`)];
         const uv = geometry.getAttribute("uv");
-        if (placed && uv) {
-          const uvOf = (vertex, out) => {
-            out[0] = uv.getX(vertex) * placed.scale[0] + placed.offset[0];
-            out[1] = 1 - (uv.getY(vertex) * placed.scale[1] + placed.offset[1]);
-          };
-          return { entry: entries.get(`${name} textured`), uvOf };
-        }
+        if (placed && textured && uv) return { entry: textured, uvOf: uvSetter(uv, placed) };
         const colour = geometry.getAttribute("color");
         if (!colour) return null;
-        const stored = (part) => voxrt.linear(voxrt.srgb(part));
+        const set = colours(colour);
         return {
           entry: coloured(name),
           covers: (vertex) =>
             [colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].some((part) => part !== 1),
           colourOf(vertex, out) {
-            [out[0], out[1], out[2], out[3]] = [
-              stored(colour.getX(vertex)),
-              stored(colour.getY(vertex)),
-              stored(colour.getZ(vertex)),
-              1,
-            ];
+            set(vertex, out);
+            for (let channel = 0; channel < 3; channel++) out[channel] = voxrt.linear(voxrt.srgb(out[channel]));
+            out[3] = 1;
           },
         };
       },
@@ -71,21 +81,31 @@ export async function objLooks(library, folder, voxrt) {
   };
 }
 
-// A part of a colour, 0 … 1, as 0 … 255; halves become even.
+/** @param {Attribute} uv @param {Placed} placed @returns {Setter} */
+const uvSetter =
+  (uv, { scale, offset }) =>
+  (vertex, out) => {
+    out[0] = uv.getX(vertex) * scale[0] + offset[0];
+    out[1] = 1 - (uv.getY(vertex) * scale[1] + offset[1]);
+  };
+
+/** A part of a colour, 0 … 1, as 0 … 255; halves become even. @param {number} part */
 export function code(part) {
   const value = 255 * Math.min(1, Math.max(0, part));
   return value % 1 === 0.5 ? 2 * Math.round(value / 2) : Math.round(value);
 }
 
+/** @param {MaterialInfo | undefined} material */
 const isClear = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr)) < OPAQUE_FROM;
 
-// The arguments of map_Kd: options, then the name of a file, which may have blanks.
+/** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text @returns {Placed} */
 function placement(text) {
   const words = text.trim().split(/\s+/);
   const placed = { scale: [1, 1], offset: [0, 0], clamp: false };
   let at = 0;
   while (at < words.length - 1 && words[at].startsWith("-")) {
     const option = words[at++].toLowerCase();
+    /** @type {string[]} */
     const values = [];
     for (
       let most = VALUES[option] ?? 1;

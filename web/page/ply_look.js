@@ -2,8 +2,18 @@
 // properties of our own.
 
 import { decodeImage } from "./images.js";
+import { Warnings } from "./voxrt/warnings.js";
+
+/** @import { BufferGeometry } from "three" */
+/** @import { PLYLoader } from "three/addons/loaders/PLYLoader.js" */
+/** @import { Folder } from "./folder.js" */
+/** @import { Rules, Setter } from "./voxrt/scene.js" */
+/** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
+
+/** @typedef {Record<string, string>} Properties their types by name */
 
 const STORED = "stored_colour";
+/** @type {Record<string, number>} */
 const WHOLE = {
   char: 127,
   int8: 127,
@@ -15,71 +25,88 @@ const WHOLE = {
   uint16: 65535,
 };
 
+/** @param {PLYLoader} loader */
 export function readsColours(loader) {
   loader.setCustomPropertyNameMapping({ [STORED]: ["red", "green", "blue"] });
   return loader;
 }
 
-// The types of the properties of each element, by name.
+/** The properties of each element, by name. @param {string} header */
 function elementsOf(header) {
+  /** @type {Record<string, Properties>} */
   const elements = {};
+  /** @type {Properties} */
   let properties = {};
   for (const words of header.split("\n").map((line) => line.trim().split(/\s+/))) {
-    if (words[0] === "element") elements[words[1]] = properties = {};
-    if (words[0] === "property") properties[words.at(-1)] = words[1];
+    if (words[0] === "element") {
+      properties = {};
+      elements[words[1]] = properties;
+    }
+    if (words[0] === "property") properties[words[words.length - 1]] = words[1];
   }
   return elements;
 }
 
-// `geometry`: of a PLYLoader that readsColours(). Returns rules for sceneOf, and warnings.
+/**
+ * @param {Uint8Array} bytes
+ * @param {BufferGeometry} geometry of a PLYLoader that readsColours()
+ * @param {Folder} folder
+ * @param {Voxrt} voxrt
+ * @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>}
+ */
 export async function plyLook(bytes, geometry, folder, voxrt) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16)).split("end_header")[0];
   const names = [...header.matchAll(/^comment\s+TextureFile\s+(.+?)\s*$/gm)].map(([, name]) => name);
   const { vertex: ofVertices = {}, face: ofFaces = {} } = elementsOf(header);
-  const warnings = [];
-  const warn = (kind, message) => warnings.push({ kind, message, count: 1 });
+  const warnings = new Warnings();
+  const look =
+    (await textured(names, geometry, folder, warnings)) ?? coloured(elementsOf(header), geometry, voxrt, warnings);
+  return { warnings: warnings.list(), rules: { appearanceOf: () => look } };
+}
+
+/** @param {string[]} names of images @param {BufferGeometry} geometry @param {Folder} folder @param {Warnings} warnings */
+async function textured(names, geometry, folder, { warn }) {
   const uv = geometry.getAttribute("uv");
-  let entry = null;
   if (names.length > 1) warn("texture", "several textures of one PLY file are not shown here; voxrt build shows them");
   else if (names.length && !uv)
     warn("texture", "the file names a texture and has no texture coordinates: the texture was not used");
-  else if (names.length) {
-    const file = folder.find(names[0]);
-    if (file) {
-      const image = await decodeImage(file.bytes, `texture ${names[0]}`);
-      const clear = image.pixels.some((byte, i) => i % 4 === 3 && byte < 255);
-      entry = { name: "texture", texture: { image }, cutoff: clear ? 0.5 : 0 };
-    } else warn("missing-texture", `texture '${names[0]}' was not found`);
+  if (names.length !== 1 || !uv) return null;
+  const file = folder.find(names[0]);
+  if (!file) {
+    warn("missing-texture", `texture '${names[0]}' was not found`);
+    return null;
   }
-  if (entry)
-    return {
-      warnings,
-      rules: {
-        appearanceOf: () => ({
-          entry,
-          uvOf: (vertex, out) => {
-            out[0] = uv.getX(vertex);
-            out[1] = 1 - uv.getY(vertex);
-          },
-        }),
-      },
-    };
-  const byFace = "red" in ofFaces;
-  const colour = geometry.getAttribute(byFace ? "color" : STORED);
-  if (!colour || !("red" in (byFace ? ofFaces : ofVertices))) return { warnings, rules: { appearanceOf: () => null } };
-  if ("alpha" in (byFace ? ofFaces : ofVertices))
-    warn("vertex-colours", "the opacity of colours is not used here; voxrt build uses it");
-  if (byFace) warn("vertex-colours", "dark colours of faces are coarse here; voxrt build has them exactly");
-  const painted = { name: byFace ? "face colours" : "vertex colours" };
-  const whole = WHOLE[ofVertices.red] ?? (colour.array.some((part) => part > 1) ? 255 : 1);
-  const code = byFace
-    ? (part) => voxrt.srgb(part)
-    : (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
-  const colourOf = (vertex, out) => {
-    [out[0], out[1], out[2], out[3]] = [
-      ...[colour.getX(vertex), colour.getY(vertex), colour.getZ(vertex)].map((part) => voxrt.linear(code(part))),
-      1,
-    ];
+  const image = await decodeImage(file.bytes, `texture ${names[0]}`);
+  const clear = image.pixels.some((byte, i) => i % 4 === 3 && byte < 255);
+  /** @type {Appearance} */
+  const entry = { name: "texture", texture: { image }, cutoff: clear ? 0.5 : 0 };
+  /** @type {Setter} */
+  const uvOf = (vertex, out) => {
+    out[0] = uv.getX(vertex);
+    out[1] = 1 - uv.getY(vertex);
   };
-  return { warnings, rules: { appearanceOf: () => ({ entry: painted, colourOf }) } };
+  return { entry, uvOf };
+}
+
+/** @param {Record<string, Properties>} elements @param {BufferGeometry} geometry @param {Voxrt} voxrt @param {Warnings} warnings */
+function coloured({ vertex: ofVertices = {}, face: ofFaces = {} }, geometry, voxrt, { warn }) {
+  const byFace = "red" in ofFaces;
+  const properties = byFace ? ofFaces : ofVertices;
+  const colour = geometry.getAttribute(byFace ? "color" : STORED);
+  if (!colour || !("red" in properties)) return null;
+  if ("alpha" in properties) warn("vertex-colours", "the opacity of colours is not used here; voxrt build uses it");
+  if (byFace) warn("vertex-colours", "dark colours of faces are coarse here; voxrt build has them exactly");
+  const whole = WHOLE[ofVertices.red] ?? (colour.array.some((part) => part > 1) ? 255 : 1);
+  /** @param {number} part */
+  const stored = (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
+  /** @param {number} part */
+  const linear = (part) => voxrt.linear(byFace ? voxrt.srgb(part) : stored(part));
+  /** @type {Setter} */
+  const colourOf = (vertex, out) => {
+    out[0] = linear(colour.getX(vertex));
+    out[1] = linear(colour.getY(vertex));
+    out[2] = linear(colour.getZ(vertex));
+    out[3] = 1;
+  };
+  return { entry: { name: byFace ? "face colours" : "vertex colours" }, colourOf };
 }

@@ -2,6 +2,13 @@
 // (W3C), and the inflate that browsers and Node have.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
+/** @import { Pixels } from "./images.js" */
+
+/** @typedef {{ width: number, height: number, depth: number, type: number, interlaced: boolean }} Head */
+/** @typedef {(line: Uint8Array, i: number) => number} Read a value of a line */
+/** @typedef {(line: Uint8Array, column: number, out: Uint8Array, at: number) => void} Write a pixel of a line */
+
+/** @type {Record<number, number>} by the type of the image */
 const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 const PASSES = [
   [0, 0, 8, 8],
@@ -14,13 +21,19 @@ const PASSES = [
 ]; // x, y, steps
 export const MOST_PIXELS = 1 << 26;
 
+/** @param {Uint8Array} bytes */
 export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
 
-// Returns {width, height, pixels}: 4 bytes per pixel, of 16 bits the upper 8. Throws an Error where the file is broken.
+/** The pixels have 4 bytes, of 16 bits the upper 8. Throws an Error where the file is broken. @param {Uint8Array<ArrayBuffer>} bytes @returns {Promise<Pixels>} */
 export async function decodePng(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const parts = [];
-  let [head, palette, clear] = [null, null, null];
+  /** @type {Head | null} */
+  let head = null;
+  /** @type {Uint8Array | null} */
+  let palette = null;
+  /** @type {Uint8Array | null} */
+  let clear = null;
   for (let at = 8; at + 12 <= bytes.length; ) {
     const length = view.getUint32(at);
     const kind = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
@@ -77,6 +90,7 @@ export async function decodePng(bytes) {
   return { width, height, pixels };
 }
 
+/** @param {Uint8Array<ArrayBuffer>[]} parts @param {number} size */
 async function inflated(parts, size) {
   const out = new Uint8Array(size);
   const reader = new Blob(parts).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
@@ -96,6 +110,7 @@ async function inflated(parts, size) {
   return out;
 }
 
+/** @param {number} filter @param {Uint8Array} line @param {Uint8Array} above @param {number} step */
 function unfilter(filter, line, above, step) {
   if (filter > 4) throw new Error("the image is broken");
   for (let i = 0; i < line.length; i++) {
@@ -116,34 +131,43 @@ function unfilter(filter, line, above, step) {
   }
 }
 
-// A function that writes one pixel of a line.
+/** @param {number} depth bits per value @returns {Read} */
+function reading(depth) {
+  if (depth === 8) return (line, i) => line[i];
+  if (depth === 16) return (line, i) => line[2 * i];
+  return (line, i) => (line[(i * depth) >> 3] >> (8 - depth - ((i * depth) & 7))) & ((1 << depth) - 1);
+}
+
+/** @param {Head} head @param {Uint8Array | null} palette @param {Uint8Array | null} clear @returns {Write} */
 function colouring({ type, depth }, palette, clear) {
-  const value =
-    depth === 8
-      ? (line, i) => line[i]
-      : depth === 16
-        ? (line, i) => line[2 * i]
-        : (line, i) => (line[(i * depth) >> 3] >> (8 - depth - ((i * depth) & 7))) & ((1 << depth) - 1);
-  const exact = depth === 16 ? (line, i) => (line[2 * i] << 8) | line[2 * i + 1] : value;
+  const value = reading(depth);
+  /** @type {Read} */
+  const exact = depth === 16 ? (line, i) => 256 * line[2 * i] + line[2 * i + 1] : value;
+  /** @param {number} channel */
   const key = (channel) =>
-    clear && clear.length > 2 * channel + 1 ? (clear[2 * channel] << 8) | clear[2 * channel + 1] : -1;
+    clear && clear.length > 2 * channel + 1 ? 256 * clear[2 * channel] + clear[2 * channel + 1] : -1;
   const scale = depth < 8 ? 255 / ((1 << depth) - 1) : 1;
   if (type === 3)
     return (line, column, out, at) => {
       const entry = value(line, column);
-      for (let channel = 0; channel < 3; channel++) out[at + channel] = palette[3 * entry + channel] ?? 0;
-      out[at + 3] = clear ? (clear[entry] ?? 255) : 255;
+      for (let channel = 0; channel < 3; channel++) out[at + channel] = palette?.[3 * entry + channel] ?? 0;
+      out[at + 3] = clear?.[entry] ?? 255;
     };
-  if (type === 0 || type === 4)
+  if (type === 4)
     return (line, column, out, at) => {
-      const first = type === 4 ? 2 * column : column;
-      out.fill(value(line, first) * scale, at, at + 3);
-      out[at + 3] = type === 4 ? value(line, first + 1) : depth < 16 && exact(line, first) === key(0) ? 0 : 255;
+      out.fill(value(line, 2 * column) * scale, at, at + 3);
+      out[at + 3] = value(line, 2 * column + 1);
     };
+  if (type === 0)
+    return (line, column, out, at) => {
+      out.fill(value(line, column) * scale, at, at + 3);
+      out[at + 3] = depth < 16 && exact(line, column) === key(0) ? 0 : 255;
+    };
+  const channels = type === 6 ? 4 : 3;
   return (line, column, out, at) => {
-    const channels = type === 6 ? 4 : 3;
     for (let channel = 0; channel < channels; channel++) out[at + channel] = value(line, channels * column + channel);
-    if (type === 2)
-      out[at + 3] = clear && [0, 1, 2].every((channel) => exact(line, 3 * column + channel) === key(channel)) ? 0 : 255;
+    if (type !== 2) return;
+    const isClear = clear && [0, 1, 2].every((channel) => exact(line, 3 * column + channel) === key(channel));
+    out[at + 3] = isClear ? 0 : 255;
   };
 }

@@ -1,10 +1,20 @@
 // Reads .mem files, and the manifest beside them.
 
 import { readManifest } from "./manifest.js";
-import { PLAIN } from "./mem.js";
+import { PLAIN } from "./memory.js";
+import { BACKGROUND } from "./voxrt/voxrt.js";
 
-// Read words of the report dialect ({name, bytes}), and what their manifest ({name, bytes}, or none) says: {words, depth,
-// materials, objects, grid, warnings, manifest}, and the lighting and the camera of the memory, or null.
+/** @import { DroppedFile } from "./folder.js" */
+/** @import { Memory } from "./memory.js" */
+
+/** @typedef {Omit<Memory, "name" | "file" | "depth"> & { depth: number | null }} ReadMemory `depth`: null where nothing tells it */
+
+/**
+ * Read words of the report dialect, and what their manifest says.
+ * @param {DroppedFile} mem
+ * @param {DroppedFile | undefined} beside the manifest
+ * @returns {ReadMemory}
+ */
 export function readMem(mem, beside) {
   const { name, bytes } = mem;
   const text = new TextDecoder().decode(bytes).replace(/\/\*[\s\S]*?\*\/|\/\/[^\n]*/g, " ");
@@ -15,7 +25,7 @@ export function readMem(mem, beside) {
       `${name}: word ${broken} is ${JSON.stringify(parts[broken].slice(0, 20))}, which is not hexadecimal`,
     );
   if (!parts.length) throw new Error(`${name}: has no words`);
-  const words = Uint32Array.from(parts, (part) => parseInt(part.replaceAll("_", ""), 16));
+  const words = Uint32Array.from(parts, (part) => Number.parseInt(part.replaceAll("_", ""), 16));
   if (!beside)
     return {
       words,
@@ -52,12 +62,14 @@ export function readMem(mem, beside) {
   };
 }
 
+/** @param {unknown} _ @param {number} id */
 const tinted = (_, id) => ({ name: id ? `material ${id}` : "empty", colour: tint(id), mirror: false, authored: false });
 
-// Distinct colours for ids without a table.
+/** Distinct colours for ids without a table. @param {number} id */
 function tint(id) {
-  if (id === 0) return [24, 28, 36];
+  if (id === 0) return BACKGROUND;
   const hue = (id * 137.508) % 360;
+  /** @param {number} shift */
   const channel = (shift) => Math.round(255 * (0.62 + 0.3 * Math.cos(((hue + shift) * Math.PI) / 180)));
   return [channel(0), channel(240), channel(120)];
 }
