@@ -39,3 +39,14 @@ declare module "*/voxrt/warnings.js" {
 declare module "*/voxrt/words.js" {
   export * from "voxrt/words.js";
 }
+
+// @types/three leaves these classes out.
+declare module "*/loaders/usd/USDAParser.js" {
+  export const USDAParser: new () => import("./page/usd/three_private.js").TextParser;
+}
+declare module "*/loaders/usd/USDCParser.js" {
+  export const USDCParser: new () => import("./page/usd/three_private.js").CrateParser;
+}
+declare module "*/loaders/usd/USDComposer.js" {
+  export const USDComposer: new () => import("./page/usd/three_private.js").Composer;
+}

@@ -5,14 +5,25 @@ const [VEC_2D, VEC_2H, VEC_2I, VEC_3D, VEC_3H, VEC_3I, VEC_4D, VEC_4H, VEC_4I, T
   19, 21, 22, 23, 25, 26, 27, 29, 30, 32,
 ];
 const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
-const half = (parser) => parser._readHalf();
-const double = ({ reader }) => reader.readFloat64();
-const integer = ({ reader }) => reader.readInt32();
 
-// Numbers per value, bytes per number, how to read one, the array for them.
+/** @import { CrateParser, MethodsOf } from "./three_private.js" */
+
+/** @typedef {(parser: CrateParser) => number} Read a number */
+/** @typedef {{ new (length: number): { [index: number]: number } }} Kind of array */
+
+/** @type {Read} */
+const half = (parser) => parser._readHalf();
+/** @type {Read} */
+const double = ({ reader }) => reader.readFloat64();
+/** @type {Read} */
+const integer = ({ reader }) => reader.readInt32();
+/** @type {Read} */
+const byte = ({ reader }) => reader.readUint8();
+
+/** @type {Map<number, [number, number, Read, Kind]>} numbers per value, bytes per number, how to read one, the array for them */
 const TYPES = new Map([
-  [BOOL, [1, 1, ({ reader }) => reader.readUint8() !== 0, Array]],
-  [UCHAR, [1, 1, ({ reader }) => reader.readUint8(), Uint8Array]],
+  [BOOL, [1, 1, ({ reader }) => Number(reader.readUint8() !== 0), Array]],
+  [UCHAR, [1, 1, byte, Uint8Array]],
   [INT64, [1, 8, ({ reader }) => reader.readInt64(), Float64Array]],
   [UINT64, [1, 8, ({ reader }) => reader.readUint64(), Float64Array]],
   [MATRIX_3D, [9, 8, double, Float64Array]],
@@ -29,11 +40,11 @@ const TYPES = new Map([
   [VEC_4I, [4, 4, integer, Int32Array]],
 ]);
 
-// Methods for USDCParser. `kept`: its own ones.
+/** @type {MethodsOf<CrateParser>} */
 export const crateMethods = (kept) => ({
   // Whole numbers that fit are bytes in the place of the value's address.
   _readInlinedValue(rep) {
-    const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0];
+    const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0, 0];
     if (
       numbers < 2 ||
       numbers === 9 ||
@@ -71,7 +82,7 @@ export const crateMethods = (kept) => ({
   },
 });
 
-// A count of values of four bytes or more.
+/** A count of values of four bytes or more. @param {CrateParser} parser */
 function countOf({ reader, buffer }) {
   const count = reader.readUint64();
   if (!(4 * count <= buffer.byteLength - reader.tell()))
@@ -79,10 +90,16 @@ function countOf({ reader, buffer }) {
   return count;
 }
 
-// A list with its edits; those that it deletes are left out.
+/**
+ * A list with its edits; those that it deletes are left out.
+ * @template T
+ * @param {CrateParser} parser
+ * @param {(parser: CrateParser) => T} read
+ */
 function listed(parser, read) {
   const { reader } = parser;
   const flags = reader.readUint8();
+  /** @type {T[]} */
   const found = [];
   for (const bit of [0x02, 0x04, 0x20, 0x40]) {
     if (!(flags & bit)) continue;
@@ -91,7 +108,7 @@ function listed(parser, read) {
   return found;
 }
 
-// As text has it: "@file@<prim>".
+/** A reference as text has it: "@file@<prim>". @param {CrateParser} parser @param {boolean} hasNotes */
 function reference({ reader, tokens, strings, paths, version }, hasNotes) {
   const [file, prim] = [tokens[strings[reader.readUint32()]] ?? "", paths[reader.readUint32()] ?? ""];
   if (hasNotes || version.minor >= 8) reader.seek(reader.tell() + 16); // the offset of its time

@@ -3,13 +3,19 @@
 
 import { Matrix4, Quaternion, Vector3 } from "../three/three.core.js";
 
+/** @import { Attributes, Fields, Found, Numbers } from "./stage.js" */
+/** @import { Composer, MethodsOf } from "./three_private.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+
+/** @type {Record<string, [number, number, number]>} */
 const AXES = { X: [1, 0, 0], Y: [0, 1, 0], Z: [0, 0, 1] };
 
-// Methods for USDComposer. `kept`: its own ones.
-export const frameMethods = (_kept, found) => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */
+export const frameMethods = (found) => () => ({
   applyTransform(object, fields, attributes = {}) {
     const data = { ...fields, ...attributes };
-    const order = typeof data.xformOpOrder === "string" ? [] : Array.from(data.xformOpOrder ?? []);
+    const { xformOpOrder } = /** @type {Attributes} */ (data);
+    const order = Array.isArray(xformOpOrder) ? xformOpOrder.map(String) : [];
     const reset = order.lastIndexOf("!resetXformStack!");
     if (reset >= 0)
       found.warn(
@@ -29,11 +35,13 @@ export const frameMethods = (_kept, found) => ({
   _findSingleMesh: () => null,
 });
 
+/** @param {string} name @param {Attributes} data @param {Found} found */
 function operation(name, data, found) {
-  const value = data[name];
-  const [, kind] = /^xformOp:(\w+)/.exec(name) ?? [];
-  if (!name || value === undefined || value === null) return new Matrix4();
-  const [x, y, z] = typeof value === "number" ? [value, value, value] : value;
+  const given = data[name];
+  const [, kind = ""] = /^xformOp:(\w+)/.exec(name) ?? [];
+  if (!name || given === undefined || given === null) return new Matrix4();
+  const value = typeof given === "number" ? [given, given, given] : /** @type {Numbers} */ (given);
+  const [x, y, z] = value;
   if (kind === "translate") return new Matrix4().makeTranslation(x, y, z);
   if (kind === "scale") return new Matrix4().makeScale(x, y, z);
   if (kind === "transform" && value.length === 16) return new Matrix4().fromArray(value);
@@ -55,10 +63,11 @@ function operation(name, data, found) {
   return new Matrix4();
 }
 
+/** @param {string} axis @param {number} degrees */
 const turnAbout = (axis, degrees) =>
   turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), (degrees * Math.PI) / 180).normalize());
 
-// By the angle that the real part gives and the axis of the others, whatever the length of the quaternion.
+/** A turn by the angle that the real part gives, about the axis of the others, whatever the length of the quaternion. @param {Numbers} parts */
 function turnBy([x, y, z, w]) {
   const axis = new Vector3(x, y, z);
   if (axis.length() < 1e-6) return new Matrix4();
@@ -67,7 +76,7 @@ function turnBy([x, y, z, w]) {
   );
 }
 
-// As OpenUSD computes it, so that quarter turns round alike.
+/** The matrix as OpenUSD computes it, so that quarter turns round alike. @param {Quaternion} quaternion */
 function turn({ x, y, z, w }) {
   return new Matrix4().set(
     1 - 2 * (y * y + z * z),
@@ -89,9 +98,10 @@ function turn({ x, y, z, w }) {
   );
 }
 
+/** @type {Record<string, number[]>} */
 const UPWARDS = { X: [0, -1, 0, 1, 0, 0, 0, 0, 1], Y: [1, 0, 0, 0, 1, 0, 0, 0, 1], Z: [1, 0, 0, 0, 0, 1, 0, -1, 0] };
 
-// The rotation to y up and metres, 9 numbers by rows, of a stage with these root fields.
+/** The rotation to y up and metres, 9 numbers by rows, of a stage with these root fields. @param {Fields} fields @param {Warn} warn */
 export function sceneFrame({ upAxis = "Y", metersPerUnit = 0.01 }, warn) {
   const axis = String(upAxis).toUpperCase();
   if (!(axis in UPWARDS)) warn("up-axis", `upAxis '${upAxis}' is not X, Y or Z; Y was used`);
@@ -100,7 +110,7 @@ export function sceneFrame({ upAxis = "Y", metersPerUnit = 0.01 }, warn) {
   return (UPWARDS[axis] ?? UPWARDS.Y).map((part) => part * metersPerUnit);
 }
 
-// A transform of 3 rows of 4 in that frame.
+/** A transform of 3 rows of 4 in that frame. @param {number[]} frame @param {ArrayLike<number>} rows */
 export const framed = (frame, rows) =>
   Array.from({ length: 12 }, (_, at) => {
     const [row, column] = [at >> 2, at & 3];

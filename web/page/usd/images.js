@@ -2,50 +2,68 @@
 
 import { decodeImage } from "../images.js";
 
+/** @import { Folder } from "../folder.js" */
+/** @import { Pixels } from "../images.js" */
+/** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" */
+/** @import { Coordinates, Shading, Texture } from "./shading.js" */
+/** @import { Composer } from "./three_private.js" */
+
 export class UsdImages {
+  /** @type {Map<string, Uint8Array<ArrayBuffer>>} files of a package */
+  #bytes = new Map();
+  /** @type {Map<string, Pixels | null>} by file */
+  #images = new Map();
+  /** @type {Map<Shading, Appearance["texture"]>} */
+  #textures = new Map();
+
+  /** @param {Folder} folder @param {Voxrt} voxrt */
   constructor(folder, voxrt) {
     this.folder = folder;
     this.voxrt = voxrt;
-    this.bytes = new Map(); // file -> bytes of a package
-    this.images = new Map(); // file -> image, or null
-    this.textures = new Map();
   }
 
-  // Note the file of a source, as its layer names it.
+  /** Note the file of a texture, as its layer names it. @param {Composer} composer @param {Texture} source */
   add(composer, source) {
     const path = composer._resolveFilePath(source.file);
     const held = composer.assets[path] ?? composer.assets[source.file];
     source.file = path;
-    if (held instanceof Uint8Array) this.bytes.set(path, held);
-    this.images.set(path, null);
+    if (held instanceof Uint8Array) this.#bytes.set(path, held);
+    this.#images.set(path, null);
   }
 
-  // Decode all of them; those that cannot be decoded are missing.
+  /** Decode all of them; those that cannot be decoded are missing. */
   async read() {
-    for (const file of this.images.keys()) {
-      const found = this.bytes.has(file) ? { name: file, bytes: this.bytes.get(file) } : file && this.folder.find(file);
-      if (found) this.images.set(file, await decodeImage(found.bytes, found.name).catch(() => null));
+    for (const file of this.#images.keys()) {
+      const packed = this.#bytes.get(file);
+      const found = packed ? { name: file, bytes: packed } : this.folder.find(file);
+      if (file && found) this.#images.set(file, await decodeImage(found.bytes, found.name).catch(() => null));
     }
   }
 
-  // The texture of a shading; null where its image is missing.
+  /** The texture of a shading; null where its image is missing. @param {Shading} shading */
   texture(shading) {
-    if (!this.textures.has(shading)) this.textures.set(shading, this.combined(shading));
-    return this.textures.get(shading);
+    const texture = this.#textures.get(shading) ?? this.#combined(shading);
+    this.#textures.set(shading, texture);
+    return texture;
   }
 
-  combined({ image, alpha }) {
-    const [colour, opacity] = [image, alpha].map((source) => source && this.images.get(source.file));
-    if (image ? !colour : !opacity) return null;
-    const { width, height } = colour ?? opacity;
-    const pixels = colour ? this.graded(colour.pixels, image) : new Uint8Array(4 * width * height).fill(255);
+  /** @param {Shading} shading @returns {Appearance["texture"]} */
+  #combined({ image, alpha }) {
+    const colour = image && this.#images.get(image.file);
+    const opacity = alpha && this.#images.get(alpha.file);
+    const shape = image ? colour : opacity;
+    const placed = image ?? alpha;
+    if (!shape || !placed) return null;
+    const { width, height } = shape;
+    const pixels = colour && image ? this.#graded(colour.pixels, image) : new Uint8Array(4 * width * height).fill(255);
     const fits = opacity && opacity.width === width && opacity.height === height;
-    const channel = fits ? Math.max("rgba".indexOf(alpha.channel), 0) : 0;
+    const channel = fits ? Math.max("rgba".indexOf(alpha?.channel ?? "r"), 0) : 0;
     for (let at = 0; at < pixels.length; at += 4) pixels[at + 3] = fits ? opacity.pixels[at + channel] : 255;
-    return { image: { width, height, pixels }, wrap: (image ?? alpha).wrap, nearest: false };
+    return { image: { width, height, pixels }, wrap: placed.wrap, nearest: false };
   }
 
-  graded(pixels, { raw, factor, bias }) {
+  /** @param {Uint8Array} pixels @param {Texture} texture */
+  #graded(pixels, { raw, factor, bias }) {
     const made = Uint8Array.from(pixels);
     const plain = factor.slice(0, 3).every((part) => part === 1) && bias.slice(0, 3).every((part) => part === 0);
     if (plain && !raw) return made;
@@ -60,10 +78,11 @@ export class UsdImages {
   }
 }
 
-// Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go.
+/** Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go. @param {Coordinates} moved */
 export function coordinates({ turn, scale, offset }) {
   const angle = (turn * Math.PI) / 180;
   const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
+  /** @param {number} u @param {number} v @param {{ [at: number]: number }} out @param {number} at */
   return (u, v, out, at) => {
     const [a, b] = [u * scale[0], v * scale[1]];
     out[at] = a * cosine - b * sine + offset[0];

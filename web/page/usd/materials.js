@@ -1,34 +1,57 @@
 // What each face of a prim of USD shows, as voxrt build reads it (voxelize/formats/usd/materials.py): the material bound to
 // it or to its subset, else its displayColor, else the default material.
 
-import { noShading, readShading } from "./shading.js";
 import { coordinates } from "./images.js";
-import { boundMaterial, fieldsOf, isMaterial, primvarOf, targetsOf, valueOf } from "./stage.js";
+import { noShading, readShading } from "./shading.js";
+import { attributeOf, boundMaterial, fieldsOf, isMaterial, numbersOf, primvarOf, targetsOf } from "./stage.js";
 import { placesOf } from "./surface.js";
+
+/** @import { UsdImages } from "./images.js" */
+/** @import { Described } from "../voxrt/scene.js" */
+/** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Shading, Unnumbered } from "./shading.js" */
+/** @import { Primvar } from "./stage.js" */
+/** @import { FaceSurface } from "./surface.js" */
+/** @import { Composer } from "./three_private.js" */
+
+/** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner writes numbers of a corner */
+/** @typedef {{ entry: Appearance, setUv?: SetCorner, setColour?: SetCorner }} CornerLook */
+/** @typedef {{ uniform: Described, look?: undefined } | { look: CornerLook, uniform?: undefined }} Shows what faces of a shading show */
 
 const DEFAULT_COLOUR = [200, 200, 200];
 
 export class UsdMaterials {
+  /** @type {Map<string, Shading>} by path */
+  #read = new Map();
+  /** @type {Map<Shading, { textured?: Appearance, coloured?: Appearance }>} entries of surfaces */
+  #entries = new Map();
+  /** @type {Map<string, Shading>} equal shadings are one */
+  #known = new Map();
+  /** @type {Map<string, number>} keys of uniform materials by their first use */
+  #order = new Map();
+
+  /** @param {UsdImages} images @param {Voxrt} voxrt @param {Warn} warn */
   constructor(images, voxrt, warn) {
-    Object.assign(this, { images, voxrt, warn });
-    this.read = new Map(); // path -> shading
-    this.entries = new Map(); // shading -> its entries of surfaces
-    this.known = new Map(); // equal shadings are one
-    this.order = new Map(); // keys of uniform materials by their first use
+    this.images = images;
+    this.voxrt = voxrt;
+    this.warn = warn;
   }
 
-  // The shadings of a prim, and the one of each face as an index, -1 for holes.
+  /** The shadings of a prim, and the one of each face as an index, -1 for holes. @param {Composer} composer @param {string} path @param {FaceSurface} surface */
   ofFaces(composer, path, surface) {
+    /** @type {Shading[]} */
     const shadings = [];
     const rows = new Int32Array(surface.faceCount).fill(-1);
+    /** @param {Shading} shading */
     const row = (shading) => (shadings.includes(shading) ? shadings.indexOf(shading) : shadings.push(shading) - 1);
     for (const { path: subset } of composer.childrenByPath.get(path) ?? []) {
       if (
         composer.specsByPath[subset]?.fields.typeName !== "GeomSubset" ||
-        valueOf(composer, subset, "familyName") !== "materialBind"
+        attributeOf(composer, subset, "familyName") !== "materialBind"
       )
         continue;
-      const indices = valueOf(composer, subset, "indices") ?? [];
+      const indices = Array.from(numbersOf(composer, subset, "indices") ?? []);
       if (!indices.every((face) => face >= 0 && face < surface.faceCount))
         throw new Error(
           `${subset}: a face subset refers to faces beyond the mesh's ${surface.faceCount}; export the mesh again`,
@@ -48,43 +71,56 @@ export class UsdMaterials {
     return { shadings, rows };
   }
 
+  /** @param {Composer} composer @param {string} material */
   shading(composer, material) {
-    if (!this.read.has(material)) {
-      const made = readShading(composer, material, this.warn);
-      for (const source of [made.image, made.alpha]) if (source) this.images.add(composer, source);
-      this.read.set(material, this.one(made));
-    }
-    return this.read.get(material);
+    const known = this.#read.get(material);
+    if (known) return known;
+    const made = readShading(composer, material, this.warn);
+    for (const source of [made.image, made.alpha]) if (source) this.images.add(composer, source);
+    const one = this.one(made);
+    this.#read.set(material, one);
+    return one;
   }
 
+  /** @param {Unnumbered} shading */
   one(shading) {
     const key = JSON.stringify(shading);
-    if (!this.known.has(key)) this.known.set(key, { ...shading, id: this.known.size });
-    return this.known.get(key);
+    const known = this.#known.get(key) ?? { ...shading, id: this.#known.size };
+    this.#known.set(key, known);
+    return known;
   }
 
+  /** @param {Composer} composer @param {string} path */
   own(composer, path) {
     const material = boundMaterial(composer, path);
     if (material) return this.shading(composer, material);
     const [opacity = 1] = equalOf(primvarOf(composer, path, "displayOpacity")) ?? [];
-    const given = primvarOf(composer, path, "displayColor");
-    const colour = equalOf(given);
-    if (colour?.length >= 3) {
+    const stored = primvarOf(composer, path, "displayColor");
+    const colour = equalOf(stored);
+    if (colour && colour.length >= 3) {
       const linear = colour.slice(0, 3);
       const code = this.srgb(linear)
         .map((part) => part.toString(16).padStart(2, "0"))
         .join("");
       return this.one({ ...noShading, name: `#${code}`, colour: linear, opacity });
     }
-    return this.one({ ...noShading, opacity, ...(given && { name: "displayColor", primvar: "displayColor" }) });
+    return this.one({ ...noShading, opacity, ...(stored && { name: "displayColor", primvar: "displayColor" }) });
   }
 
+  /** @param {readonly number[]} linear */
   srgb(linear) {
     return linear.map((part) => this.voxrt.srgb(Number.isNaN(part) || part < 0 ? 0 : Math.min(part, 1)));
   }
 
-  // What faces of a shading show: null where they are left out; {uniform} or {look}, which has an entry of a surface
-  // (voxrt.js), and setUv(triangle, corner, out, at) or setColour of the same kind.
+  /**
+   * What faces of a shading show: null where they are left out.
+   * @param {Shading} shading
+   * @param {Composer} composer
+   * @param {string} path
+   * @param {FaceSurface} surface
+   * @param {number} faces
+   * @returns {Shows | null}
+   */
   show(shading, composer, path, surface, faces) {
     if (!shading.alpha && shading.opacity < shading.cutoff) {
       this.warn(
@@ -99,6 +135,14 @@ export class UsdMaterials {
     return look ? { look } : { uniform: this.uniform(shading, faces) };
   }
 
+  /**
+   * @param {Shading} shading
+   * @param {Composer} composer
+   * @param {string} path
+   * @param {FaceSurface} surface
+   * @param {number} faces
+   * @returns {CornerLook | null}
+   */
   textured(shading, composer, path, surface, faces) {
     const source = shading.image ?? shading.alpha;
     if (!source) return null;
@@ -135,6 +179,7 @@ export class UsdMaterials {
       );
     const plain = !shading.image && shading.colour ? shading.colour : [1, 1, 1];
     const moved = coordinates(source);
+    /** @param {number} value */
     const finite = (value) => (Number.isFinite(value) ? value : 0);
     return {
       entry: this.entry(shading, {
@@ -145,45 +190,57 @@ export class UsdMaterials {
       }),
       setUv: (triangle, corner, out, to) => {
         const at = place?.(triangle, corner);
-        const [u, v] = place ? [finite(stored.values[at]), finite(stored.values[at + 1])] : source.point;
-        moved(u, v, out, to);
+        if (stored && at !== undefined) moved(finite(stored.values[at]), finite(stored.values[at + 1]), out, to);
+        else if (source.point) moved(source.point[0], source.point[1], out, to);
       },
     };
   }
 
+  /**
+   * @param {Shading} shading
+   * @param {Composer} composer
+   * @param {string} path
+   * @param {FaceSurface} surface
+   * @returns {CornerLook | null}
+   */
   coloured(shading, composer, path, surface) {
-    const given = shading.primvar && primvarOf(composer, path, shading.primvar);
-    const place = given && given.size >= 3 ? placesOf(shading.primvar, given, surface, this.warn) : null;
-    if (!place) return null;
+    const name = shading.primvar;
+    const stored = name && primvarOf(composer, path, name);
+    const place = stored && stored.size >= 3 ? placesOf(name, stored, surface, this.warn) : null;
+    if (!stored || !place) return null;
     return {
-      entry: this.entry(shading, { name: shading.name ?? shading.primvar }),
+      entry: this.entry(shading, { name: shading.name ?? name }),
       setColour: (triangle, corner, out, to) => {
         const at = place(triangle, corner);
-        for (let part = 0; part < 3; part++) out[to + part] = Math.min(Math.max(given.values[at + part] || 0, 0), 1);
+        for (let part = 0; part < 3; part++) out[to + part] = Math.min(Math.max(stored.values[at + part] || 0, 0), 1);
       },
     };
   }
 
-  // The same object for the same look, and for no other one.
+  /** The same object for the same look, and for no other one. @param {Shading} shading @param {Appearance} entry */
   entry(shading, entry) {
     const kind = entry.texture ? "textured" : "coloured";
-    if (!this.entries.has(shading)) this.entries.set(shading, {});
-    return (this.entries.get(shading)[kind] ??= entry);
+    const known = this.#entries.get(shading) ?? {};
+    this.#entries.set(shading, known);
+    known[kind] ??= entry;
+    return known[kind];
   }
 
+  /** @param {Shading} shading @param {number} faces @returns {Described} */
   uniform({ name, colour }, faces) {
     if (name === null) this.warn("default-material", "faces without a material got the default one", faces);
     const srgb = name === null || !colour ? DEFAULT_COLOUR : this.srgb(colour);
     const key = name === null ? "" : `${name} ${srgb}`;
-    if (!this.order.has(key)) this.order.set(key, this.order.size);
-    return { key, name: name ?? "default", colour: srgb, authored: name !== null, order: this.order.get(key) };
+    const order = this.#order.get(key) ?? this.#order.size;
+    this.#order.set(key, order);
+    return { key, name: name ?? "default", colour: srgb, authored: name !== null, order };
   }
 }
 
-// The one value of a primvar whose values are all equal.
+/** The one value of a primvar whose values are all equal; null for none. @param {Primvar | null} primvar */
 function equalOf(primvar) {
   if (!primvar) return null;
   const { values, size } = primvar;
   for (let i = size; i + size <= values.length; i++) if (values[i] !== values[i % size]) return null;
-  return Array.from(values.subarray(0, size));
+  return Array.from(values.slice(0, size));
 }

@@ -1,6 +1,11 @@
 // USD files: three.js' loader parses them and puts them together; the files beside this one read of that what voxrt build
-// reads. What it does not honour is said in warnings.
+// reads. Warnings name what they do not honour.
 
+import { USDLoader } from "../three/addons/loaders/USDLoader.js";
+import { USDAParser } from "../three/addons/loaders/usd/USDAParser.js";
+import { USDCParser } from "../three/addons/loaders/usd/USDCParser.js";
+import { sceneOf } from "../voxrt/scene.js";
+import { Warnings } from "../voxrt/warnings.js";
 import { crateMethods } from "./crate.js";
 import { framed, frameMethods, sceneFrame } from "./frames.js";
 import { UsdImages } from "./images.js";
@@ -10,20 +15,22 @@ import { UsdMeshes } from "./meshes.js";
 import { ELSEWHERE, referenceMethods } from "./references.js";
 import { stageMethods } from "./stage.js";
 import { textMethods } from "./text.js";
-import { sceneOf } from "../voxrt/scene.js";
-import { USDLoader } from "../three/addons/loaders/USDLoader.js";
-import { USDAParser } from "../three/addons/loaders/usd/USDAParser.js";
-import { USDCParser } from "../three/addons/loaders/usd/USDCParser.js";
-import { USDComposer } from "../three/addons/loaders/usd/USDComposer.js";
+import { MEMBERS, patch } from "./three_private.js";
+
+/** @import { Reader } from "../files.js" */
+/** @import { DroppedFile, Folder } from "../folder.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Fields, Found, Spec } from "./stage.js" */
+/** @import { Composer, MethodsOf } from "./three_private.js" */
 
 const MOST_PRIMS = 200_000; // of all layers and copies together
 
-// Specs of a file that say what is not read: kind, message, test of fields and path.
+/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, message and test of specs that are not read */
 const OTHERS = [
   [
     "collider",
     "colliders are not used here; voxrt build uses them",
-    ({ apiSchemas }) => apiSchemas?.includes?.("PhysicsCollisionAPI"),
+    ({ apiSchemas = [] }) => apiSchemas.includes("PhysicsCollisionAPI"),
   ],
   [
     "collection",
@@ -32,77 +39,77 @@ const OTHERS = [
   ],
 ];
 
+/** @type {Reader} */
 export async function readUsd(main, folder, voxrt) {
-  const warnings = new Map();
-  const warn = (kind, message, count = 1) =>
-    warnings.set(message, { kind, message, count: (warnings.get(message)?.count ?? 0) + count });
-  const found = {
-    warn,
-    fields: null,
-    moment: null,
-    prims: 0,
-    open: new Set(),
-    charge,
-    layer: (file) => layerOf(folder.find(file)),
-  };
+  const warnings = new Warnings();
+  const found = foundBy(warnings.warn, folder);
   const images = new UsdImages(folder, voxrt);
-  const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warn), warn);
-  const restored = [patch(USDAParser, textMethods), patch(USDCParser, crateMethods)];
-  for (const methods of [stageMethods, referenceMethods, frameMethods, meshes.methods, instancerMethods, layerMethods])
-    restored.unshift(patch(USDComposer, methods, found));
+  const meshes = new UsdMeshes(new UsdMaterials(images, voxrt, warnings.warn), warnings.warn);
+  const composing = [stageMethods, referenceMethods, frameMethods].map((methods) => methods(found));
+  const restored = [
+    patch(MEMBERS.USDAParser, [textMethods]),
+    patch(MEMBERS.USDCParser, [crateMethods]),
+    patch(MEMBERS.USDComposer, [...composing, meshes.methods, instancerMethods(found), layerMethods(found)]),
+  ];
   let root;
   try {
     root = new USDLoader().parse(main.bytes.buffer, "");
   } finally {
     for (const restore of restored) restore();
   }
-  const frame = sceneFrame(found.fields, warn);
+  const frame = sceneFrame(found.fields, warnings.warn);
   await images.read();
   meshes.finish();
   root.scale.setScalar(1);
   root.rotation.set(0, 0, 0);
   const scene = sceneOf(root, voxrt, meshes.rules);
   for (const object of scene.objects) object.transform = framed(frame, object.transform);
-  scene.warnings = [...scene.warnings, ...warnings.values()].filter(({ count }) => count);
+  scene.warnings.push(...warnings.list());
   return scene;
 }
 
-// Replace methods of a class; returns what puts the old ones back.
-function patch({ prototype }, methodsOf, found) {
-  const kept = Object.fromEntries(Object.getOwnPropertyNames(prototype).map((name) => [name, prototype[name]]));
-  Object.assign(prototype, methodsOf(kept, found));
-  return () => Object.assign(prototype, kept);
+/** @param {Warn} warn @param {Folder} folder @returns {Found} */
+function foundBy(warn, folder) {
+  let prims = 0;
+  return {
+    warn,
+    fields: {},
+    moment: null,
+    open: new Set(),
+    charge: (place, count) => {
+      prims += count;
+      if (prims <= MOST_PRIMS) return;
+      const most = MOST_PRIMS.toLocaleString("en");
+      throw new Error(`${place}: more than ${most} prims and copies are too many here; voxrt build takes more`);
+    },
+    layer: (file) => layerOf(folder.find(file)),
+  };
 }
 
-function charge(place, count) {
-  this.prims += count;
-  if (this.prims > MOST_PRIMS)
-    throw new Error(
-      `${place}: more than ${MOST_PRIMS.toLocaleString("en")} prims and copies are too many here; voxrt build takes more`,
-    );
-}
-
-// A layer that was dropped together with the scene; null for none.
+/** The specs of a layer that was dropped together with the scene; null for none. @param {DroppedFile | undefined} file */
 function layerOf(file) {
   if (!file) return null;
   const isCrate = new TextDecoder("latin1").decode(file.bytes.subarray(0, 8)) === "PXR-USDC";
-  return (
-    isCrate
-      ? new USDCParser().parseData(file.bytes.slice().buffer)
-      : new USDAParser().parseData(new TextDecoder().decode(file.bytes))
-  ).specsByPath;
+  const parsed = isCrate
+    ? new USDCParser().parseData(file.bytes.slice().buffer)
+    : new USDAParser().parseData(new TextDecoder().decode(file.bytes));
+  return parsed.specsByPath;
 }
 
-// The outermost methods of a composer: they count, and see what it leaves out.
-const layerMethods = (kept, found) => ({
+/** @param {Spec} spec */
+const isAnimated = ({ fields }) => (fields?.timeSamples?.times?.length ?? 0) > 1;
+
+/** The outermost methods of a composer: they count, and see what it leaves out. @param {Found} found @returns {MethodsOf<Composer>} */
+const layerMethods = (found) => (kept) => ({
   compose(parsed, ...rest) {
     const { specsByPath } = parsed;
     const { fields } = specsByPath["/"] ?? { fields: {} };
     found.fields = fields;
-    found.moment = fields.startTimeCode !== undefined && fields.endTimeCode !== undefined ? fields.startTimeCode : null;
+    const { startTimeCode, endTimeCode } = fields;
+    found.moment = startTimeCode !== undefined && endTimeCode !== undefined ? startTimeCode : null;
     for (const [path, spec] of Object.entries(specsByPath))
       for (const [kind, message, is] of OTHERS) if (spec.fields && is(spec.fields, path)) found.warn(kind, message);
-    if (Object.values(specsByPath).some((spec) => spec.fields?.timeSamples?.times?.length > 1))
+    if (Object.values(specsByPath).some(isAnimated))
       found.warn("animation", "animated layers are shown at the stage's start");
     return kept.compose.call(this, parsed, ...rest);
   },

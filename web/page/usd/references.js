@@ -3,28 +3,55 @@
 
 import { targetsOf } from "./stage.js";
 
-const ARCS = ["references", "payload", "inheritPaths", "specializes"];
+/** @import { Fields, Found, List, Specs } from "./stage.js" */
+/** @import { Composer, MethodsOf } from "./three_private.js" */
+
+const ARCS = /** @type {const} */ (["references", "payload", "inheritPaths", "specializes"]);
 export const ELSEWHERE = [...ARCS, "subLayers"];
 
-// Methods for USDComposer. `kept`: its own ones. found.layer(file): the specs of a file; null for none.
-export const referenceMethods = (kept, found) => ({
+/** @typedef {{ file: string, prim: string, text: string }} Arc what a prim refers to; file or prim may be empty */
+/** @typedef {(file: string) => Specs | null} LayerOf the specs of a file; null for none */
+
+/** @param {Found} found @returns {MethodsOf<Composer>} */
+export const referenceMethods = (found) => (kept) => ({
   _buildIndexes() {
-    const layerOf = (file) => this.assets[file]?.specsByPath ?? found.layer(file);
-    const layer = new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge.bind(found));
+    /** @type {LayerOf} */
+    const layerOf = (file) => {
+      const asset = this.assets[file];
+      return (asset && "specsByPath" in asset ? asset.specsByPath : null) ?? found.layer(file);
+    };
+    const layer = new Layer(this.specsByPath, this.basePath, layerOf, new Map(), found.charge);
     layer.isRoot = true;
     layer.follow();
-    if (layer.below) layer.choose("");
+    if (layer.below.size) layer.choose("");
     kept._buildIndexes.call(this);
   },
 });
 
 class Layer {
-  // layers: those that were read, by file. charge(place, count) refuses what is too much.
+  /** @type {Map<string, string[]>} the paths of properties and children by path, once they are needed */
+  below = new Map();
+  /** @type {Map<string, boolean>} whether the references of a path are followed; false while they are */
+  #settled = new Map();
+  isRoot = false; // the layer that chooses variants: it may choose others than those that it refers to
+
+  /**
+   * @param {Specs} specs
+   * @param {string} folder
+   * @param {LayerOf} layerOf
+   * @param {Map<string, Layer | null>} layers those that were read, by file
+   * @param {Found["charge"]} charge
+   */
   constructor(specs, folder, layerOf, layers, charge) {
-    Object.assign(this, { specs, folder, layerOf, layers, charge });
-    this.below = null; // path -> those of its properties and children
-    this.settled = new Map(); // path -> whether its references are followed; false while they are
-    this.isRoot = false; // the layer that chooses variants: it may choose others than those that it refers to
+    this.specs = specs;
+    this.folder = folder;
+    this.layerOf = layerOf;
+    this.layers = layers;
+    this.charge = charge;
+  }
+
+  #list() {
+    if (!this.below.size) for (const path in this.specs) this.note(path);
   }
 
   follow() {
@@ -34,8 +61,7 @@ class Layer {
     );
     const varies = this.isRoot && Object.values(this.specs).some((spec) => spec.fields?.variantSetChildren);
     if (!refers.length && !fields.subLayers && !varies) return this;
-    this.below = new Map();
-    for (const path in this.specs) this.note(path);
+    this.#list();
     for (const path of refers) this.settle(path);
     for (const file of filesOf(fields.subLayers)) {
       const layer = this.layer(file);
@@ -54,31 +80,24 @@ class Layer {
     return this;
   }
 
-  // Another file, with its references followed; null for none.
+  /** Another file, with its references followed; null for none. @param {string} file @returns {Layer | null} */
   layer(file) {
     const path = this.resolved(file);
-    if (!this.layers.has(path)) {
-      this.layers.set(path, null);
-      const specs = this.layerOf(path);
-      const made =
-        specs &&
-        new Layer(
-          specs,
-          path.slice(0, Math.max(path.lastIndexOf("/"), 0)),
-          this.layerOf,
-          this.layers,
-          this.charge,
-        ).follow();
-      if (made && !made.below) {
-        made.below = new Map();
-        for (const one in specs) made.note(one);
-      }
-      this.layers.set(path, made);
-    }
-    return this.layers.get(path);
+    const known = this.layers.get(path);
+    if (known !== undefined) return known;
+    this.layers.set(path, null);
+    const specs = this.layerOf(path);
+    if (!specs) return null;
+    const folder = path.slice(0, Math.max(path.lastIndexOf("/"), 0));
+    const made = new Layer(specs, folder, this.layerOf, this.layers, this.charge).follow();
+    made.#list();
+    this.layers.set(path, made);
+    return made;
   }
 
+  /** @param {string} file */
   resolved(file) {
+    /** @type {string[]} */
     const parts = [];
     for (const part of `${this.folder}/${file}`.split("/")) {
       if (part === "..") parts.pop();
@@ -87,16 +106,18 @@ class Layer {
     return parts.join("/");
   }
 
+  /** @param {string} path */
   note(path) {
     const above = path.slice(0, Math.max(path.lastIndexOf("/"), path.lastIndexOf("."), 0));
-    if (!this.below.has(above)) this.below.set(above, []);
-    this.below.get(above).push(path);
+    this.below.set(above, this.below.get(above) ?? []);
+    this.below.get(above)?.push(path);
   }
 
+  /** @param {string} path */
   settle(path) {
-    if (this.settled.get(path) === false) throw new Error(`${path}: refers to itself; repair its references`);
-    if (this.settled.has(path)) return;
-    this.settled.set(path, false);
+    if (this.#settled.get(path) === false) throw new Error(`${path}: refers to itself; repair its references`);
+    if (this.#settled.has(path)) return;
+    this.#settled.set(path, false);
     const { fields } = this.specs[path];
     const arcs = arcsOf(fields, path);
     if (this.isRoot && arcs.length) this.takeVariants(path); // they are stronger
@@ -116,22 +137,23 @@ class Layer {
       this.copy(layer, target, path, target, path, layer === this);
     }
     for (const name of ARCS) if (fields[name]?.length === 0) delete fields[name];
-    this.settled.set(path, true);
+    this.#settled.set(path, true);
   }
 
-  // Choose the variants of all prims below a path.
+  /** Choose the variants of all prims below a path. @param {string} path */
   choose(path) {
     if (this.specs[path]) this.takeVariants(path);
     for (const part of this.below.get(path) ?? []) if (/^\/?[^/.{]+$/.test(part.slice(path.length))) this.choose(part);
   }
 
-  // The chosen variants of a prim say what it does not say itself. They may bring more sets of variants.
+  /** The chosen variants of a prim say what it does not say itself. They may bring more sets of variants. @param {string} path */
   takeVariants(path) {
     const { fields } = this.specs[path];
     const taken = new Set();
-    const chosen = (set) => (fields.variantSelection ?? {})[set];
-    for (let set; (set = fields.variantSetChildren?.find((one) => !taken.has(one))); taken.add(set)) {
-      const variant = `${path}/{${set}=${chosen(set)}}`;
+    const next = () => fields.variantSetChildren?.find((one) => !taken.has(one));
+    for (let set = next(); set !== undefined; set = next()) {
+      taken.add(set);
+      const variant = `${path}/{${set}=${fields.variantSelection?.[set]}}`;
       if (!this.specs[variant]) continue;
       this.settleAll(variant);
       this.copy(this, variant, path, variant, path, true);
@@ -139,19 +161,29 @@ class Layer {
     delete fields.variantSetChildren;
   }
 
+  /** @param {string} path */
   settleAll(path) {
     if (this.specs[path]?.fields) this.settle(path);
     for (const part of this.below.get(path) ?? []) if (!part.slice(path.length).startsWith(".")) this.settleAll(part);
   }
 
-  // What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
-  // What points elsewhere stays if `keeps`; else it points to what is not there.
+  /**
+   * What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
+   * What points elsewhere stays if `keeps`; else it points to what is not there.
+   * @param {Layer} layer
+   * @param {string} from
+   * @param {string} to
+   * @param {string} source
+   * @param {string} place
+   * @param {boolean} keeps
+   */
   copy(layer, from, to, source, place, keeps) {
     this.charge(to, 0.25);
     const theirs = layer.specs[from];
     const fields = { ...theirs.fields };
+    /** @param {string} path */
     const isInside = (path) => path === source || path.startsWith(`${source}/`) || path.startsWith(`${source}.`);
-    for (const name of ["targetPaths", "connectionPaths"]) {
+    for (const name of /** @type {const} */ (["targetPaths", "connectionPaths"])) {
       if (!fields[name]) continue;
       const targets = targetsOf(fields[name], from).filter((path) => keeps || isInside(path));
       fields[name] = targets.map((path) => (isInside(path) ? place + path.slice(source.length) : path));
@@ -162,8 +194,10 @@ class Layer {
     if (own) {
       for (const name of ARCS) delete fields[name];
       const specifier = own.fields.specifier === 1 ? fields.specifier : own.fields.specifier;
-      for (const name of ["primChildren", "variantSetChildren", "apiSchemas"])
-        if (fields[name] && own.fields[name]) own.fields[name] = [...new Set([...fields[name], ...own.fields[name]])];
+      for (const name of /** @type {const} */ (["primChildren", "variantSetChildren", "apiSchemas"])) {
+        const [theirs, ours] = [fields[name], own.fields[name]];
+        if (theirs && ours) own.fields[name] = [...new Set([...theirs, ...ours])];
+      }
       if (fields.variantSelection)
         own.fields.variantSelection = { ...fields.variantSelection, ...own.fields.variantSelection };
       Object.assign(own.fields, { ...fields, ...own.fields });
@@ -178,10 +212,10 @@ class Layer {
   }
 }
 
-// What a prim refers to: {file, prim, text}; either of the first two may be empty.
+/** What a prim refers to. @param {Fields | undefined} fields @param {string} path @returns {Arc[]} */
 function arcsOf(fields, path) {
   return ARCS.flatMap((name) =>
-    [(fields ?? {})[name] ?? []].flat().flatMap((one) => {
+    [fields?.[name] ?? []].flat().flatMap((one) => {
       if (typeof one !== "string") return [];
       if (one.startsWith("/")) return [{ file: "", prim: one, text: one }];
       return Array.from(one.matchAll(/@([^@]*)@(?:<([^>]*)>)?|<([^>]*)>/g), ([text, file = "", there, here]) => ({
@@ -193,6 +227,7 @@ function arcsOf(fields, path) {
   );
 }
 
+/** @param {List | undefined} list */
 const filesOf = (list) =>
   [list ?? []]
     .flat()
@@ -200,6 +235,6 @@ const filesOf = (list) =>
       String(one).includes("@") ? Array.from(String(one).matchAll(/@([^@]+)@/g), (match) => match[1]) : [String(one)],
     );
 
-// A field without one of its references; empty where none is left.
+/** A field without one of its references; empty where none is left. @param {string} one @param {string} text */
 const without = (one, text) =>
   typeof one !== "string" || one === text ? "" : one.replace(text, "").replace(/^[\s,[\]]*$/, "");

@@ -1,9 +1,44 @@
 // The colour and opacity of USD materials, as voxrt build reads them (voxelize/formats/usd/shading.py).
-//
-// A shading is {name, colour, opacity, cutoff, image, alpha, primvar}: colour is linear, null where the author gave none;
-// image and alpha are textures, primvar the name of what gives the colour; each may be null. name is null for no colour.
 
-import { fieldsOf, targetsOf, valueOf } from "./stage.js";
+import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
+
+/** @import { Wrap } from "../voxrt/voxrt.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Numbers, Value } from "./stage.js" */
+/** @import { Composer } from "./three_private.js" */
+
+/** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates the primvar, and how it is moved */
+
+/**
+ * A texture; `point` are the coordinates where none are connected.
+ * @typedef {object} Image
+ * @property {string} file
+ * @property {string} channel
+ * @property {boolean} raw
+ * @property {Wrap[]} wrap
+ * @property {number[]} factor
+ * @property {number[]} bias
+ * @property {number[] | null} point
+ */
+
+/** @typedef {Image & Coordinates} Texture */
+
+/**
+ * The colour and opacity of a material.
+ * @typedef {object} Shading
+ * @property {number} id equal shadings are one
+ * @property {string | null} name null for no colour
+ * @property {number[] | null} colour linear; null where the author gave none
+ * @property {number} opacity
+ * @property {number} cutoff
+ * @property {Texture | null} image
+ * @property {Texture | null} alpha
+ * @property {string | null} primvar that gives the colour
+ */
+
+/** @typedef {Omit<Shading, "id">} Unnumbered */
+/** @typedef {{ value?: number[] | null, image?: Texture, primvar?: string }} Input */
+/** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer a shader and its output, or a value */
 
 export const BLEND_CUTOFF = 0.5;
 const FALLBACK_DIFFUSE = [0.18, 0.18, 0.18]; // UsdPreviewSurface's own
@@ -17,8 +52,10 @@ const COLOUR_INPUTS = [
   "color",
 ];
 const CONTEXTS = ["", "mtlx:", "mdl:", "ri:", "glslfx:"];
+/** @type {Record<string, Wrap>} */
 const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clamp" };
 
+/** @type {Unnumbered} */
 export const noShading = {
   name: null,
   colour: null,
@@ -29,6 +66,7 @@ export const noShading = {
   primvar: null,
 };
 
+/** @param {Composer} composer @param {string} material @param {Warn} warn @returns {Unnumbered} */
 export function readShading(composer, material, warn) {
   const plain = { ...noShading, name: material.slice(material.lastIndexOf("/") + 1) };
   const shader = CONTEXTS.map((context) => producer(composer, material, `outputs:${context}surface`)).find(
@@ -38,9 +76,10 @@ export function readShading(composer, material, warn) {
     warn("material-colour", "materials without a supported surface shader got the default colour");
     return plain;
   }
+  /** @param {string[]} names */
   const read = (names) => inputOf(composer, shader, names, warn);
   const [threshold, opacity, colour] = [read(["opacityThreshold"]), read(["opacity"]), read(COLOUR_INPUTS)];
-  const isPreview = valueOf(composer, shader, "info:id") === "UsdPreviewSurface";
+  const isPreview = attributeOf(composer, shader, "info:id") === "UsdPreviewSurface";
   const bare = !colour || (!colour.value && !colour.image && !colour.primvar);
   if (!colour && !isPreview) warn("material-colour", "materials whose shader has no colour got the default colour");
   return {
@@ -54,9 +93,17 @@ export function readShading(composer, material, warn) {
   };
 }
 
+/** @param {Composer} composer @param {string} path */
 const isShader = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Shader";
 
-// What gives a property its value: {node, output}, a shader and its output; or {value}; null for nothing.
+/**
+ * What gives a property its value; null for nothing.
+ * @param {Composer} composer
+ * @param {string} prim
+ * @param {string} name
+ * @param {Set<string>} [seen]
+ * @returns {Producer | null}
+ */
 function producer(composer, prim, name, seen = new Set()) {
   const fields = fieldsOf(composer, prim, name);
   if (!fields || seen.has(`${prim}.${name}`)) return null;
@@ -69,52 +116,59 @@ function producer(composer, prim, name, seen = new Set()) {
     const found = producer(composer, node, property, seen);
     if (found) return found;
   }
-  const value = valueOf(composer, prim, name);
-  return value === null ? null : { value, type: fields.typeName };
+  const value = attributeOf(composer, prim, name);
+  return value === null ? null : { value };
 }
 
+/** @param {Composer} composer @param {string} node @param {string} name */
 const input = (composer, node, name) => producer(composer, node, `inputs:${name}`);
+/** @param {Composer} composer @param {string} node @param {string} name */
 const constant = (composer, node, name) => input(composer, node, name)?.value ?? null;
-const idOf = (composer, node) => valueOf(composer, node, "info:id");
+/** @param {Composer} composer @param {string} node */
+const idOf = (composer, node) => attributeOf(composer, node, "info:id")?.toString();
 
-// {value, image, primvar} of the first of some inputs that says anything.
+/** The first of some inputs that says anything. @param {Composer} composer @param {string} shader @param {string[]} names @param {Warn} warn @returns {Input | null} */
 function inputOf(composer, shader, names, warn) {
   for (const name of names) {
     const found = input(composer, shader, name);
-    if (found?.node) return networkOf(composer, found, warn);
-    const value = colourOf(found?.value);
+    if (found?.node !== undefined) return networkOf(composer, found, warn);
+    const value = colourOf(found?.value ?? null);
     if (value) return { value };
   }
   return null;
 }
 
+/** @param {Composer} composer @param {{ node: string, output: string }} producer @param {Warn} warn @returns {Input} */
 function networkOf(composer, { node, output }, warn) {
   const kind = idOf(composer, node);
   const value = colourOf(constant(composer, node, "fallback"));
-  if (kind === "UsdUVTexture") return { value, image: { ...imageSource(composer, node, warn), channel: output } };
+  if (kind === "UsdUVTexture") return { value, image: textureOf(composer, node, output, warn) };
   if (kind?.startsWith("UsdPrimvarReader_float3"))
     return { value, primvar: String(constant(composer, node, "varname") ?? "") };
   warn("shader", `shader nodes ${kind ?? "without an id"} are not supported; the default colour was used`);
   return {};
 }
 
-// {file, raw, wrap, primvar, turn, scale, offset, factor, bias, point}: point are the coordinates where none are connected.
-function imageSource(composer, node, warn) {
+/** @param {Composer} composer @param {string} node @param {string} channel @param {Warn} warn @returns {Texture} */
+function textureOf(composer, node, channel, warn) {
+  /** @param {string} name */
   const read = (name) => constant(composer, node, name);
   const wraps = ["wrapS", "wrapT"].map((name) => String(read(name) ?? "repeat"));
   if (wraps.includes("black"))
     warn("texture", "textures that are black beyond their edges were continued with their edges' colours");
   return {
     file: String(read("file") ?? "").replace(/^@+|@+$/g, ""),
+    channel,
     raw: read("sourceColorSpace") === "raw",
     wrap: wraps.map((wrap) => WRAPS[wrap] ?? "repeat"),
     ...coordinatesOf(composer, node, warn),
     factor: numbers(read("scale"), 4) ?? [1, 1, 1, 1],
     bias: numbers(read("bias"), 4) ?? [0, 0, 0, 0],
-    point: input(composer, node, "st")?.node ? null : (numbers(read("st"), 2) ?? [0, 0]),
+    point: input(composer, node, "st")?.node !== undefined ? null : (numbers(read("st"), 2) ?? [0, 0]),
   };
 }
 
+/** @param {Composer} composer @param {string} node @param {Warn} warn @returns {Coordinates} */
 function coordinatesOf(composer, node, warn) {
   const made = { primvar: "st", turn: 0, scale: [1, 1], offset: [0, 0] };
   let source = input(composer, node, "st")?.node;
@@ -132,15 +186,15 @@ function coordinatesOf(composer, node, warn) {
   return made;
 }
 
-// The first numbers of a value, in single precision; null where it has fewer.
+/** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param {number} count @returns {number[] | null} */
 function numbers(value, count) {
-  const found = [value ?? []]
-    .flat()
-    .flatMap((one) => (ArrayBuffer.isView(one) ? [...one] : [one]))
-    .slice(0, count);
-  return found.length === count && found.every((one) => typeof one === "number") ? found.map(Math.fround) : null;
+  const flat = /** @type {unknown[]} */ ([value ?? []].flat());
+  const found = flat.flatMap((one) => (ArrayBuffer.isView(one) ? Array.from(/** @type {Float64Array} */ (one)) : [one]));
+  const parts = found.slice(0, count).filter((one) => typeof one === "number");
+  return parts.length === count ? parts.map(Math.fround) : null;
 }
 
+/** @param {Value | null} value */
 function colourOf(value) {
   if (typeof value === "number") return [value, value, value].map(Math.fround);
   return numbers(value, 3);

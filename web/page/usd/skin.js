@@ -1,41 +1,68 @@
 // Meshes of USD that a skeleton or blend shapes deform, at the stage's first moment (voxelize/formats/usd/skin.py). Joints
 // blend linearly.
 
-import { fieldsOf, targetsOf, upwards, valueOf } from "./stage.js";
+import { attributeOf, fieldsOf, namesOf, numbersOf, targetsOf, upwards } from "./stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
-// The points of a mesh: {positions, frame}, where frame places them in the mesh's parent, or null for the mesh's own
-// frame. null for meshes at rest.
+/** @import { Matrix4 as Matrix } from "three" */
+/** @import { Numbers, Value } from "./stage.js" */
+/** @import { Composer } from "./three_private.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+
+/**
+ * The points of a mesh; `frame` places them in the mesh's parent, and is null for the mesh's own frame.
+ * @typedef {{ positions: Numbers, frame: Matrix | null }} Posed
+ */
+
+/**
+ * The joints that move points.
+ * @typedef {object} Influences
+ * @property {number} each per point
+ * @property {boolean} rigid whether all points move alike
+ * @property {Numbers} joints
+ * @property {Numbers} weights
+ * @property {Matrix} matrix from the points' frame
+ * @property {boolean} wrong whether their counts do not fit
+ */
+
+/** The points of a mesh that is deformed; null for meshes at rest. @param {Composer} composer @param {string} path @param {Warn} warn @returns {Posed | null} */
 export function posedPoints(composer, path, warn) {
-  const points = valueOf(composer, path, "points");
+  const points = numbersOf(composer, path, "points");
   const skeleton = targetAbove(composer, path, "skel:skeleton");
-  const isBelowRoot = [...upwards(path)].some((above) => composer.specsByPath[above]?.fields.typeName === "SkelRoot");
-  if (!points?.length || !isBelowRoot || composer.specsByPath[skeleton]?.fields.typeName !== "Skeleton") return null;
+  const isBelowRoot = [...upwards(path)].some((above) => kindOf(composer, above) === "SkelRoot");
+  if (!points?.length || !isBelowRoot || !skeleton || kindOf(composer, skeleton) !== "Skeleton") return null;
   const animation = targetAbove(composer, skeleton, "skel:animationSource");
   const blended = Float32Array.from(points);
-  const moved = blend(composer, path, animation, blended, warn);
+  const moved = animation !== null && blend(composer, path, animation, blended, warn);
   const influences = influencesOf(composer, path, points.length / 3);
   if (!influences) return moved ? { positions: blended, frame: null } : null;
   const joints = influences.wrong ? null : posedJoints(composer, skeleton, animation);
-  const own = valueAbove(composer, path, "skel:joints");
-  const order = joints && own ? Array.from(own, (name) => joints.get(name)) : joints && [...joints.values()];
-  if (!order || !influences.fits(order)) {
+  const own = /** @type {string[] | null} */ (valueAbove(composer, path, "skel:joints"));
+  const order = joints ? (own ? Array.from(own, (name) => joints.get(name)) : [...joints.values()]) : [];
+  const used = Array.from(influences.joints, (joint) => order[joint]);
+  const known = used.flatMap((matrix) => matrix ?? []);
+  if (!joints || known.length < used.length) {
     warn("skinning", "meshes whose skeleton has no pose are shown at rest");
     return moved ? { positions: blended, frame: null } : null;
   }
   if (valueAbove(composer, path, "primvars:skel:skinningMethod") === "dualQuaternion")
     warn("skinning", "dual quaternion skinning was replaced by linear blending");
-  return { positions: skinned(blended, order, influences), frame: between(composer, path, skeleton) };
+  return { positions: skinned(blended, known, influences), frame: between(composer, path, skeleton) };
 }
 
+/** @param {Composer} composer @param {string} path */
+const kindOf = (composer, path) => composer.specsByPath[path]?.fields.typeName;
+
+/** @param {Composer} composer @param {string} path @param {string} name */
 function valueAbove(composer, path, name) {
   for (const above of upwards(path)) {
-    const value = valueOf(composer, above, name);
+    const value = attributeOf(composer, above, name);
     if (value !== null) return value;
   }
   return null;
 }
 
+/** @param {Composer} composer @param {string} path @param {string} name */
 function targetAbove(composer, path, name) {
   for (const above of upwards(path)) {
     const [target] = targetsOf(fieldsOf(composer, above, name)?.targetPaths, above);
@@ -44,80 +71,81 @@ function targetAbove(composer, path, name) {
   return null;
 }
 
+/** @param {Composer} composer @param {string} path @param {number} count of points @returns {Influences | null} */
 function influencesOf(composer, path, count) {
-  const [joints, weights] = ["Indices", "Weights"].map((name) =>
-    valueAbove(composer, path, `primvars:skel:joint${name}`),
+  const [joints, weights] = ["Indices", "Weights"].map(
+    (name) => /** @type {Numbers | null} */ (valueAbove(composer, path, `primvars:skel:joint${name}`)),
   );
   if (!joints?.length || !weights?.length) return null;
-  const above = [...upwards(path)].find((at) => fieldsOf(composer, at, "primvars:skel:jointIndices"));
-  const { elementSize = 1, interpolation = "constant" } = fieldsOf(composer, above, "primvars:skel:jointIndices");
+  const fields = [...upwards(path)]
+    .map((above) => fieldsOf(composer, above, "primvars:skel:jointIndices"))
+    .find((found) => found !== null);
+  const { elementSize = 1, interpolation = "constant" } = fields ?? {};
   const rigid = interpolation === "constant";
-  const [matrix] = matrices(composer, valueAbove(composer, path, "primvars:skel:geomBindTransform"), 1) ?? [
-    new Matrix4(),
-  ];
-  return {
-    each: elementSize,
-    rigid,
-    joints,
-    weights,
-    matrix,
-    wrong: joints.length !== weights.length || joints.length !== elementSize * (rigid ? 1 : count),
-    fits: (order) => joints.every((joint) => order[joint]),
-  };
+  const bind = valueAbove(composer, path, "primvars:skel:geomBindTransform");
+  const [matrix] = matrices(composer, bind, 1) ?? [new Matrix4()];
+  const wrong = joints.length !== weights.length || joints.length !== elementSize * (rigid ? 1 : count);
+  return { each: elementSize, rigid, joints, weights, matrix, wrong };
 }
 
-// The skinning transform of each joint of a skeleton, by name; null where it has no pose.
+/**
+ * The skinning transform of each joint of a skeleton, by name; null where it has no pose.
+ * @param {Composer} composer
+ * @param {string} skeleton
+ * @param {string | null} animation
+ */
 function posedJoints(composer, skeleton, animation) {
-  const names = Array.from(valueOf(composer, skeleton, "joints") ?? []);
+  const names = namesOf(composer, skeleton, "joints");
   const [bind, rest] = ["bindTransforms", "restTransforms"].map((name) =>
-    matrices(composer, valueOf(composer, skeleton, name), names.length),
+    matrices(composer, attributeOf(composer, skeleton, name), names.length),
   );
   const local = animated(composer, animation);
   if (!bind || !names.length) return null;
-  const [placed, made] = [new Map(), new Map()];
+  /** @type {Map<string, Matrix>} */
+  const placed = new Map();
+  /** @type {Map<string, Matrix>} */
+  const made = new Map();
   for (const [i, name] of names.entries()) {
-    const matrix = local.get(name) ?? (rest && rest[i]);
+    const matrix = local.get(name) ?? rest?.[i];
     if (!matrix) return null;
-    const parent = [...upwards(`/${name}`)]
-      .slice(1)
-      .map((above) => placed.get(above.slice(1)))
-      .find(Boolean);
-    placed.set(name, parent ? new Matrix4().multiplyMatrices(parent, matrix) : matrix);
-    made.set(name, new Matrix4().multiplyMatrices(placed.get(name), bind[i].invert()));
+    const above = [...upwards(`/${name}`)].slice(1).map((path) => placed.get(path.slice(1)));
+    const parent = above.find((found) => found !== undefined);
+    const world = parent ? new Matrix4().multiplyMatrices(parent, matrix) : matrix;
+    placed.set(name, world);
+    made.set(name, new Matrix4().multiplyMatrices(world, bind[i].invert()));
   }
   return made;
 }
 
-// The transforms of joints below their parents that an animation gives, by name.
+/** The transforms of joints below their parents that an animation gives, by name. @param {Composer} composer @param {string | null} animation */
 function animated(composer, animation) {
+  /** @type {Map<string, Matrix>} */
   const made = new Map();
-  if (composer.specsByPath[animation]?.fields.typeName !== "SkelAnimation") return made;
-  const names = Array.from(valueOf(composer, animation, "joints") ?? []);
+  if (animation === null || kindOf(composer, animation) !== "SkelAnimation") return made;
+  const names = namesOf(composer, animation, "joints");
   const [places, turns, sizes] = ["translations", "rotations", "scales"].map(
-    (name) => valueOf(composer, animation, name) ?? [],
+    (name) => numbersOf(composer, animation, name) ?? [],
   );
   if (places.length !== 3 * names.length || turns.length !== 4 * names.length || sizes.length !== 3 * names.length)
     return made;
-  for (const [i, name] of names.entries())
-    made.set(
-      name,
-      new Matrix4().compose(
-        new Vector3().fromArray(places, 3 * i),
-        new Quaternion().fromArray(turns, 4 * i).normalize(),
-        new Vector3().fromArray(sizes, 3 * i),
-      ),
-    );
+  for (const [i, name] of names.entries()) {
+    const place = new Vector3().fromArray(places, 3 * i);
+    const turn = new Quaternion().fromArray(turns, 4 * i).normalize();
+    made.set(name, new Matrix4().compose(place, turn, new Vector3().fromArray(sizes, 3 * i)));
+  }
   return made;
 }
 
+/** @param {Composer} composer @param {Value | null} values @param {number} count */
 function matrices(composer, values, count) {
-  const flat = values && composer._flattenMatrixArray(Array.from(values), count);
+  const flat = values && composer._flattenMatrixArray(Array.from(/** @type {Numbers} */ (values)), count);
   return flat?.length === 16 * count
     ? Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i))
     : null;
 }
 
-function skinned(points, order, { each, rigid, joints, weights, matrix }) {
+/** Move points by a matrix for each influence. @param {Float32Array} points @param {Matrix[]} moves @param {Influences} influences */
+function skinned(points, moves, { each, rigid, weights, matrix }) {
   const made = new Float32Array(points.length);
   const [point, part] = [new Vector3(), new Vector3()];
   for (let i = 0; 3 * i < points.length; i++) {
@@ -126,7 +154,7 @@ function skinned(points, order, { each, rigid, joints, weights, matrix }) {
     for (let k = 0; k < each; k++) {
       const at = (rigid ? 0 : each * i) + k;
       if (!weights[at]) continue;
-      part.copy(point).applyMatrix4(order[joints[at]]);
+      part.copy(point).applyMatrix4(moves[at]);
       made[3 * i] += Math.fround(Math.fround(part.x) * weights[at]);
       made[3 * i + 1] += Math.fround(Math.fround(part.y) * weights[at]);
       made[3 * i + 2] += Math.fround(Math.fround(part.z) * weights[at]);
@@ -135,19 +163,24 @@ function skinned(points, order, { each, rigid, joints, weights, matrix }) {
   return made;
 }
 
-// Adds the blend shapes to points; returns whether an animation gives them weights.
+/**
+ * Add the blend shapes to points; returns whether an animation gives them weights.
+ * @param {Composer} composer
+ * @param {string} path
+ * @param {string} animation
+ * @param {Float32Array} points
+ * @param {Warn} warn
+ */
 function blend(composer, path, animation, points, warn) {
-  const weights = animation && valueOf(composer, animation, "blendShapeWeights");
+  const weights = numbersOf(composer, animation, "blendShapeWeights");
   const targets = targetsOf(fieldsOf(composer, path, "skel:blendShapeTargets")?.targetPaths, path);
   if (!weights?.length || !targets.length) return false;
-  const factors = new Map(
-    Array.from(valueOf(composer, animation, "blendShapes") ?? [], (name, i) => [name, weights[i]]),
-  );
-  const names = Array.from(valueOf(composer, path, "skel:blendShapes") ?? []);
+  const factors = new Map(namesOf(composer, animation, "blendShapes").map((name, i) => [name, weights[i]]));
+  const names = namesOf(composer, path, "skel:blendShapes");
   for (const [i, target] of targets.entries()) {
     const factor = factors.get(names[i]) ?? 0;
-    const offsets = valueOf(composer, target, "offsets") ?? [];
-    const places = valueOf(composer, target, "pointIndices");
+    const offsets = numbersOf(composer, target, "offsets") ?? [];
+    const places = numbersOf(composer, target, "pointIndices");
     if ([...(composer.attributesByPrimPath.get(target)?.keys() ?? [])].some((name) => name.startsWith("inbetweens:")))
       warn("skinning", "shapes in between of blend shapes are not used here; voxrt build uses them");
     if (!factor) continue;
@@ -160,11 +193,12 @@ function blend(composer, path, animation, points, warn) {
   return true;
 }
 
-// From the frame of a skeleton to that of a prim's parent.
+/** From the frame of a skeleton to that of a prim's parent. @param {Composer} composer @param {string} path @param {string} skeleton */
 function between(composer, path, skeleton) {
   const [from, to] = [[...upwards(skeleton)].reverse(), [...upwards(path)].slice(1).reverse()];
   let shared = 0;
   while (shared < to.length && from[shared] === to[shared]) shared++;
+  /** @param {string[]} paths */
   const frame = (paths) =>
     paths
       .slice(shared)
@@ -173,6 +207,7 @@ function between(composer, path, skeleton) {
   return frame(to).invert().multiply(frame(from));
 }
 
+/** @param {Composer} composer @param {string} path */
 function localFrame(composer, path) {
   const object = new Object3D();
   composer.applyTransform(object, composer.specsByPath[path].fields, composer._getAttributes(path));

@@ -1,92 +1,87 @@
 // Cubes, spheres, cylinders, cones, capsules and planes of USD as triangles: those of voxelize/primitive_meshes.py.
 
 const SEGMENTS = 128;
+/** @import { Value } from "./stage.js" */
+
+/** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex, three vertices per triangle */
+/** @typedef {[number, number]} Place of a profile: radius and height */
+
+/** @type {Record<string, number>} */
 const AXES = { X: 0, Y: 1, Z: 2 };
 
-// The dimensions of each solid and what they are where the file does not say, in the order of its function.
+/**
+ * Lengths, each of some solids, and the axis of those that are not alike along all.
+ * @typedef {object} Dimensions
+ * @property {number} size
+ * @property {number} radius
+ * @property {number} radiusBottom
+ * @property {number} radiusTop
+ * @property {number} height
+ * @property {number} width
+ * @property {number} length
+ * @property {string} axis
+ */
+
+/** @type {Record<string, number[]>} the axes of a plane */
+const ACROSS = { X: [2, 1], Y: [0, 2], Z: [0, 1] };
+const Z = { axis: "Z" };
+
+/** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} dimensions where the file has none */
 const SOLIDS = {
-  Cube: [[["size", 2]], cube],
-  Sphere: [[["radius", 1]], (radius) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), "Z")],
-  Cylinder: [
-    [
-      ["radius", 1],
-      ["height", 2],
-      ["axis", "Z"],
-    ],
-    (radius, height, axis) => cylinder(radius, radius, height, axis),
-  ],
-  Cylinder_1: [
-    [
-      ["radiusBottom", 1],
-      ["radiusTop", 1],
-      ["height", 2],
-      ["axis", "Z"],
-    ],
-    cylinder,
-  ],
-  Cone: [
-    [
-      ["radius", 1],
-      ["height", 2],
-      ["axis", "Z"],
-    ],
-    (radius, height, axis) =>
-      revolved(
-        [
-          [0, -height / 2],
-          [radius, -height / 2],
-          [0, height / 2],
-        ],
-        axis,
-      ),
-  ],
-  Capsule: [
-    [
-      ["radius", 0.5],
-      ["height", 1],
-      ["axis", "Z"],
-    ],
-    (radius, height, axis) => capsule(radius, radius, height, axis),
-  ],
-  Capsule_1: [
-    [
-      ["radiusBottom", 0.5],
-      ["radiusTop", 0.5],
-      ["height", 1],
-      ["axis", "Z"],
-    ],
-    capsule,
-  ],
-  Plane: [
-    [
-      ["width", 2],
-      ["length", 2],
-      ["axis", "Z"],
-    ],
-    plane,
-  ],
+  Cube: { usual: { size: 2 }, make: ({ size }) => cube(size) },
+  Sphere: {
+    usual: { radius: 1 },
+    make: ({ radius }) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), Z.axis),
+  },
+  Cylinder: {
+    usual: { radius: 1, height: 2, ...Z },
+    make: ({ radius, height, axis }) => cylinder(radius, radius, height, axis),
+  },
+  Cylinder_1: {
+    usual: { radiusBottom: 1, radiusTop: 1, height: 2, ...Z },
+    make: ({ radiusBottom, radiusTop, height, axis }) => cylinder(radiusBottom, radiusTop, height, axis),
+  },
+  Cone: { usual: { radius: 1, height: 2, ...Z }, make: ({ radius, height, axis }) => cone(radius, height, axis) },
+  Capsule: {
+    usual: { radius: 0.5, height: 1, ...Z },
+    make: ({ radius, height, axis }) => capsule(radius, radius, height, axis),
+  },
+  Capsule_1: {
+    usual: { radiusBottom: 0.5, radiusTop: 0.5, height: 1, ...Z },
+    make: ({ radiusBottom, radiusTop, height, axis }) => capsule(radiusBottom, radiusTop, height, axis),
+  },
+  Plane: { usual: { width: 2, length: 2, ...Z }, make: ({ width, length, axis }) => plane(width, length, axis) },
 };
 
+/** @param {string} kind */
 export const isSolid = (kind) => Object.hasOwn(SOLIDS, kind);
 
-// The solids that the loader does not know.
+/** The solids that the loader does not know. @param {string} kind */
 export const isNewSolid = (kind) => ["Cylinder_1", "Capsule_1", "Plane"].includes(kind);
 
-// The values of a solid's dimensions. read(name): the file's, or null.
+/**
+ * The values of a solid's dimensions.
+ * @param {string} kind
+ * @param {string} path
+ * @param {(name: string) => Value | null} read the file's value, or null
+ */
 export function dimensionsOf(kind, path, read) {
-  return SOLIDS[kind][0].map(([name, usual]) => {
-    const value = read(name) ?? usual;
-    if (name === "axis" && !(value in AXES))
+  const { usual } = SOLIDS[kind];
+  const values = Object.entries(usual).map(([name, plain]) => {
+    const value = read(name) ?? plain;
+    if (name === "axis" && !(String(value) in AXES))
       throw new Error(`${path}: axis '${value}' is not X, Y or Z; use one of them`);
     if (name !== "axis" && !(typeof value === "number" && value >= 0 && value < 1e70))
       throw new Error(`${path}: ${name} ${value} is not a length; use a positive number`);
-    return value;
+    return [name, value];
   });
+  return /** @type {Dimensions} */ (Object.fromEntries(values));
 }
 
-// {positions, triangles}: three numbers per vertex, three vertices per triangle.
-export const solidOf = (kind, dimensions) => SOLIDS[kind][1](...dimensions);
+/** @param {string} kind @param {Dimensions} dimensions */
+export const solidOf = (kind, dimensions) => SOLIDS[kind].make(dimensions);
 
+/** @param {number} size */
 function cube(size) {
   const positions = [-1, 1]
     .flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].flatMap((x) => [x, y, z])))
@@ -102,8 +97,9 @@ function cube(size) {
   return { positions, triangles: quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
 }
 
+/** @param {number} width @param {number} length @param {string} axis */
 function plane(width, length, axis) {
-  const [across, along] = { X: [2, 1], Y: [0, 2], Z: [0, 1] }[axis];
+  const [across, along] = ACROSS[axis];
   const positions = new Array(12).fill(0);
   [
     [-1, -1],
@@ -117,6 +113,7 @@ function plane(width, length, axis) {
   return { positions, triangles: axis === "Z" ? [0, 1, 2, 0, 2, 3] : [2, 1, 0, 3, 2, 0] };
 }
 
+/** @param {number} bottom @param {number} top @param {number} height @param {string} axis */
 function cylinder(bottom, top, height, axis) {
   return revolved(
     [
@@ -129,11 +126,17 @@ function cylinder(bottom, top, height, axis) {
   );
 }
 
+/** @param {number} radius @param {number} height @param {string} axis */
+function cone(radius, height, axis) {
+  return revolved([[0, -height / 2], [radius, -height / 2], [0, height / 2]], axis);
+}
+
+/** @param {number} bottom @param {number} top @param {number} height @param {string} axis */
 function capsule(bottom, top, height, axis) {
   return revolved([...arc(bottom, -Math.PI / 2, 0, -height / 2), ...arc(top, 0, Math.PI / 2, height / 2)], axis);
 }
 
-// Part of a circle as radius and height; a half turn has half of the segments.
+/** Part of a circle; a half turn has half of the segments. @param {number} radius @param {number} start @param {number} stop @param {number} centre @returns {Place[]} */
 function arc(radius, start, stop, centre) {
   const steps = Math.round((SEGMENTS * (stop - start)) / (2 * Math.PI));
   return Array.from({ length: steps + 1 }, (_, i) => {
@@ -145,12 +148,15 @@ function arc(radius, start, stop, centre) {
   });
 }
 
+/** @param {number} value */
 const rounded = (value) => Math.round(value * 1e15) / 1e15; // exact zeros and ones on the axes
 
-// A closed surface of revolution of a profile, radius and height from bottom to top; the ends have radius 0.
+/** A closed surface of revolution of a profile from bottom to top, whose ends have radius 0. @param {Place[]} profile @param {string} axis */
 function revolved(profile, axis) {
   const turn = (AXES[axis] + 1) % 3;
+  /** @type {number[]} */
   const positions = [];
+  /** @param {number} x @param {number} y @param {number} z */
   const put = (x, y, z) => {
     const at = positions.length;
     positions.push(0, 0, 0);
@@ -159,7 +165,7 @@ function revolved(profile, axis) {
     });
   };
   put(0, 0, profile[0][1]);
-  put(0, 0, profile.at(-1)[1]);
+  put(0, 0, profile[profile.length - 1][1]);
   const rings = profile.slice(1, -1);
   for (const [radius, height] of rings)
     for (let i = 0; i < SEGMENTS; i++) {

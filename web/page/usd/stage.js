@@ -1,16 +1,80 @@
 // What a stage of USD says of its prims: values at its first moment, inherited bindings and primvars, which prims it shows.
 // A prim is known by its path in a composer.
 
-// A prim and those above it, the nearest first.
+/** @import { Composer, MethodsOf } from "./three_private.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+
+/** @typedef {number[] | Float32Array | Float64Array | Int32Array} Numbers */
+/** @typedef {string | number | boolean | string[] | Numbers} Value of an attribute */
+/** @typedef {Record<string, Value | undefined>} Attributes by name */
+/** @typedef {string | string[]} List of paths or references; text has all of them as one */
+
+/**
+ * The fields of a spec that are used.
+ * @typedef {object} Fields
+ * @property {string} [typeName]
+ * @property {number} [specifier]
+ * @property {boolean} [active]
+ * @property {Value} [default]
+ * @property {{ times: Numbers, values: Value[] }} [timeSamples]
+ * @property {string} [interpolation]
+ * @property {number} [elementSize]
+ * @property {List} [targetPaths]
+ * @property {List} [connectionPaths]
+ * @property {string} [bindMaterialAs]
+ * @property {string[]} [primChildren]
+ * @property {string[]} [variantSetChildren]
+ * @property {Record<string, string>} [variantSelection]
+ * @property {string[]} [apiSchemas]
+ * @property {List} [references]
+ * @property {List} [payload]
+ * @property {List} [inheritPaths]
+ * @property {List} [specializes]
+ * @property {List} [subLayers]
+ * @property {string} [defaultPrim]
+ * @property {unknown} [inactiveIds]
+ * @property {number} [startTimeCode]
+ * @property {number} [endTimeCode]
+ * @property {string} [upAxis]
+ * @property {number} [metersPerUnit]
+ */
+
+/** @typedef {{ specType: number, fields: Fields }} Spec */
+/** @typedef {Record<string, Spec>} Specs by path */
+
+/**
+ * What is known of the stage that is read.
+ * @typedef {object} Found
+ * @property {Warn} warn
+ * @property {Fields} fields of its root
+ * @property {number | null} moment the time, null for the earliest
+ * @property {Set<string>} open instancers whose prototypes are built
+ * @property {(place: string, count: number) => void} charge refuses too many prims
+ * @property {(file: string) => Specs | null} layer the specs of a file that was dropped together with the scene
+ */
+
+/** @typedef {{ values: Numbers, size: number, interpolation: string }} Primvar `size`: numbers per value */
+
+/** A prim and those above it, the nearest first. @param {string} path */
 export function* upwards(path) {
   for (let at = path; at.length > 1; at = at.slice(0, Math.max(at.lastIndexOf("/"), 0))) yield at;
 }
 
+/** @param {Composer} composer @param {string} prim @param {string} name */
 export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.${name}`]?.fields ?? null;
 
-export const valueOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
+/** @param {Composer} composer @param {string} prim @param {string} name */
+export const attributeOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
-// What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]".
+/** An attribute that has numbers; null for none. @param {Composer} composer @param {string} prim @param {string} name */
+export const numbersOf = (composer, prim, name) =>
+  /** @type {Numbers | null} */ (attributeOf(composer, prim, name));
+
+/** An attribute that has names; empty for none. @param {Composer} composer @param {string} prim @param {string} name */
+export const namesOf = (composer, prim, name) =>
+  /** @type {string[]} */ (Array.from(/** @type {string[]} */ (attributeOf(composer, prim, name) ?? [])));
+
+/** What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]". @param {List | undefined} paths @param {string} prim */
 export function targetsOf(paths, prim) {
   const names = [paths ?? []]
     .flat()
@@ -21,8 +85,8 @@ export function targetsOf(paths, prim) {
   return names.map((name) => (name.startsWith("/") ? name : `${prim}/${name}`));
 }
 
-// Methods for USDComposer. `kept`: its own ones. `found.moment`: the time, null for the earliest.
-export const stageMethods = (kept, found) => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */
+export const stageMethods = (found) => (kept) => ({
   _buildIndexes() {
     kept._buildIndexes.call(this);
     for (const [parent, children] of this.childrenByPath) {
@@ -53,6 +117,7 @@ export const stageMethods = (kept, found) => ({
 
 const HELD = /^(u?int|bool|token|string|asset|uchar)/;
 
+/** @param {Numbers} times @param {Value[]} values @param {number | null} moment @param {string} type @returns {Value | undefined} */
 function sampleOf(times, values, moment, type) {
   const after = moment === null ? 0 : times.findIndex((time) => time >= moment);
   if (after < 0) return values.at(-1);
@@ -66,8 +131,13 @@ function sampleOf(times, values, moment, type) {
 
 const OVER = 1;
 
-// Whether a prim and those below it are shown, as far as the prim decides it. Prototypes, and what is below a prim that is
-// not defined, need not be defined themselves.
+/**
+ * Whether a prim and those below it are shown, as far as the prim decides it. Prototypes, and what is below a prim that is
+ * not defined, need not be defined themselves.
+ * @param {Composer} composer
+ * @param {string} path
+ * @param {Found} found
+ */
 export function isShown(composer, path, found, isPrototype = false) {
   const fields = composer.specsByPath[path]?.fields;
   if (!fields) return false;
@@ -79,11 +149,11 @@ export function isShown(composer, path, found, isPrototype = false) {
   )
     return false;
   if (!typeName) return true;
-  if (valueOf(composer, path, "visibility") === "invisible") {
+  if (attributeOf(composer, path, "visibility") === "invisible") {
     found.warn("invisible", "invisible prims and their descendants were left out");
     return false;
   }
-  const purpose = valueOf(composer, path, "purpose");
+  const purpose = attributeOf(composer, path, "purpose");
   if (purpose === null || purpose === "default" || purpose === "render") return true;
   found.warn("purpose", `prims of purpose ${purpose} and their descendants were left out`);
   return false;
@@ -91,7 +161,7 @@ export function isShown(composer, path, found, isPrototype = false) {
 
 const BINDINGS = ["material:binding:preview", "material:binding", "material:binding:full"];
 
-// The path of the material of a prim: of the nearest binding above it, unless one further up is stronger.
+/** The path of the material of a prim: of the nearest binding above it, unless one further up is stronger. @param {Composer} composer @param {string} prim */
 export function boundMaterial(composer, prim) {
   for (const name of BINDINGS) {
     let winner = null;
@@ -105,9 +175,10 @@ export function boundMaterial(composer, prim) {
   return null;
 }
 
+/** @param {Composer} composer @param {string} path */
 export const isMaterial = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Material";
 
-// A primvar: {values, size: numbers per value, interpolation}; null for none. Prims inherit those that are constant.
+/** A primvar; null for none. Prims inherit those that are constant. @param {Composer} composer @param {string} prim @param {string} name @returns {Primvar | null} */
 export function primvarOf(composer, prim, name) {
   for (const above of name ? upwards(prim) : []) {
     const found = arrayOf(composer, above, `primvars:${name}`, "constant");
@@ -116,14 +187,21 @@ export function primvarOf(composer, prim, name) {
   return null;
 }
 
-// The same of an attribute.
+/**
+ * The same of an attribute.
+ * @param {Composer} composer
+ * @param {string} prim
+ * @param {string} name
+ * @param {string} usual the interpolation where none is given
+ * @returns {Primvar | null}
+ */
 export function arrayOf(composer, prim, name, usual) {
-  const given = valueOf(composer, prim, name);
+  const given = attributeOf(composer, prim, name);
   if (given === null || typeof given === "string") return null;
   const { typeName = "", interpolation = usual } = fieldsOf(composer, prim, name);
   const [, size = 1] = Array.from(/(?<!\d)([234])[fdhi]?(?:\[\])?$/.exec(typeName) ?? [], Number);
   const all = ArrayBuffer.isView(given) ? given : Float64Array.from([given].flat());
-  const indices = valueOf(composer, prim, `${name}:indices`);
+  const indices = attributeOf(composer, prim, `${name}:indices`);
   if (!indices?.length) return all.length >= size ? { values: all, size, interpolation } : null;
   const values = new Float64Array(size * indices.length);
   for (let i = 0; i < indices.length; i++)
@@ -134,6 +212,7 @@ export function arrayOf(composer, prim, name, usual) {
 const SINGLE = /^(float|quatf)|\df(\[\])?$/;
 
 // Files of text have more digits than the values that they stand for.
+/** @param {Value | undefined} value @param {string} typeName @returns {Value | undefined} */
 function singles(value, typeName) {
   if (!SINGLE.test(typeName)) return value;
   if (typeof value === "number") return Math.fround(value);

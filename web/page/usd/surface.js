@@ -2,19 +2,43 @@
 
 import { cutConcave, ears } from "../polygons.js";
 import { dimensionsOf, solidOf } from "./solids.js";
-import { valueOf } from "./stage.js";
+import { attributeOf, numbersOf } from "./stage.js";
 import { ShapeUtils, Vector2 } from "../three/three.core.js";
 
 const FARTHEST = 1e70;
 const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 
-// {positions, triangles, faces, faceCount, corners, cornerCount}: three numbers per vertex; three vertices, a face and three
-// corners per triangle, where corners count those of all faces; cornerCount is 0 for solids. null for no faces. `posed`: points instead of the mesh's own.
+/** @import { Numbers, Primvar } from "./stage.js" */
+/** @import { Composer } from "./three_private.js" */
+/** @import { Warn } from "../voxrt/warnings.js" */
+
+/**
+ * Corners count those of all faces.
+ * @typedef {object} FaceSurface
+ * @property {Numbers} positions three numbers per vertex
+ * @property {number[]} triangles three vertices per triangle
+ * @property {number[]} faces the face of each triangle
+ * @property {number} faceCount
+ * @property {number[]} corners three corners per triangle
+ * @property {number} cornerCount 0 for solids
+ */
+
+/** @typedef {(triangle: number, corner: number) => number} PlaceOf the first number of a corner, 0 … 2, of a triangle */
+
+/**
+ * The surface of a prim; null for no faces.
+ * @param {Composer} composer
+ * @param {string} path
+ * @param {string} kind
+ * @param {Warn} warn
+ * @param {Numbers} [posed] points instead of the mesh's own
+ * @returns {FaceSurface | null}
+ */
 export function surfaceOf(composer, path, kind, warn, posed) {
   if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
   const { positions, triangles } = solidOf(
     kind,
-    dimensionsOf(kind, path, (name) => valueOf(composer, path, name)),
+    dimensionsOf(kind, path, (name) => attributeOf(composer, path, name)),
   );
   return {
     positions,
@@ -26,8 +50,9 @@ export function surfaceOf(composer, path, kind, warn, posed) {
   };
 }
 
+/** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] @returns {FaceSurface | null} */
 function meshSurface(composer, path, warn, posed) {
-  const positions = posed ?? valueOf(composer, path, "points") ?? [];
+  const positions = posed ?? numbersOf(composer, path, "points") ?? [];
   const [counts, corners, holes] = ["faceVertexCounts", "faceVertexIndices", "holeIndices"].map((name) =>
     integers(composer, path, name),
   );
@@ -36,15 +61,20 @@ function meshSurface(composer, path, warn, posed) {
     return null;
   }
   check(path, positions, counts, corners);
-  if (valueOf(composer, path, "subdivisionScheme") !== "none")
+  if (attributeOf(composer, path, "subdivisionScheme") !== "none")
     warn("subdivision", "subdivision surfaces were replaced by their control cage");
   const hole = new Set(holes);
-  const turned = valueOf(composer, path, "orientation") === "leftHanded";
-  const [triangles, faces, chosen] = [[], [], []];
+  const turned = attributeOf(composer, path, "orientation") === "leftHanded";
+  /** @type {number[]} */
+  const triangles = [];
+  /** @type {number[]} */
+  const faces = [];
+  /** @type {number[]} */
+  const chosen = [];
   let start = 0;
   let thin = 0;
   for (let face = 0; face < counts.length; start += counts[face++]) {
-    thin += counts[face] < 3;
+    if (counts[face] < 3) thin++;
     if (counts[face] < 3 || hole.has(face)) continue;
     for (const cut of trianglesOf(path, positions, corners, start, counts[face])) {
       if (turned) cut.reverse();
@@ -59,34 +89,37 @@ function meshSurface(composer, path, warn, posed) {
   return { positions, triangles, faces, faceCount: counts.length, corners: chosen, cornerCount: corners.length };
 }
 
+/** @param {Composer} composer @param {string} path @param {string} name @returns {Numbers} */
 function integers(composer, path, name) {
-  const values = valueOf(composer, path, name) ?? [];
+  const values = numbersOf(composer, path, name) ?? [];
   if (typeof values === "string" || !Array.from(values).every(Number.isInteger))
     throw new Error(`${path}: ${name} holds values that are not integers; export it again`);
   return values;
 }
 
+/** @param {string} path @param {Numbers} positions @param {Numbers} counts @param {Numbers} corners */
 function check(path, positions, counts, corners) {
+  /** @param {string} problem */
   const refuse = (problem) => {
     throw new Error(`${path}: ${problem}; export the mesh again`);
   };
-  let asked = 0;
+  let wanted = 0;
   let negative = false;
   for (const count of counts) {
-    asked += count;
+    wanted += count;
     negative ||= count < 0;
   }
-  if (negative || asked !== corners.length)
-    refuse(`faceVertexCounts ask for ${asked} corners and faceVertexIndices has ${corners.length}`);
+  if (negative || wanted !== corners.length)
+    refuse(`faceVertexCounts ask for ${wanted} corners and faceVertexIndices has ${corners.length}`);
   if (positions.length % 3) refuse("points holds values that are not points");
   const count = positions.length / 3;
-  const wrong = corners.find((corner) => !(corner >= 0 && corner < count));
+  const wrong = Array.from(corners).find((corner) => !(corner >= 0 && corner < count));
   if (wrong !== undefined) refuse(`faceVertexIndices has ${wrong} and points has ${count}`);
-  if (!positions.every((part) => Math.abs(part) < FARTHEST))
+  if (!Array.from(positions).every((part) => Math.abs(part) < FARTHEST))
     refuse("points has a coordinate that is not a finite number");
 }
 
-// A fan from the first corner where a polygon is convex.
+/** A fan from the first corner where a polygon is convex. @param {string} path @param {Numbers} positions @param {Numbers} corners @param {number} start @param {number} count */
 function trianglesOf(path, positions, corners, start, count) {
   if (count === 3) return [[0, 1, 2]];
   const points = Array.from({ length: count }, (_, i) =>
@@ -105,15 +138,24 @@ function trianglesOf(path, positions, corners, start, count) {
   return Array.from({ length: count - 2 }, (_, i) => [0, i + 1, i + 2]);
 }
 
-// Where values of a primvar lie: a function of a triangle and its corner, 0 … 2, that gives the first number's place; null,
-// with a warning, where there are not as many as the interpolation wants.
+/**
+ * Where values of a primvar lie; null, with a warning, where there are not as many as the interpolation wants.
+ * @param {string} name
+ * @param {Primvar} primvar
+ * @param {FaceSurface} surface
+ * @param {Warn} warn
+ * @returns {PlaceOf | null}
+ */
 export function placesOf(name, { values, size, interpolation }, surface, warn) {
   const count = Math.floor(values.length / size);
   if (count === 1 || interpolation === "constant") return () => 0;
-  const [wanted, rowOf] = {
+  /** @type {Record<string, [number, PlaceOf]>} how many values are wanted, and which is that of a corner */
+  const kinds = {
     uniform: [surface.faceCount, (triangle) => surface.faces[triangle]],
     faceVarying: [surface.cornerCount, (triangle, corner) => surface.corners[3 * triangle + corner]],
-  }[interpolation] ?? [surface.positions.length / 3, (triangle, corner) => surface.triangles[3 * triangle + corner]];
+    vertex: [surface.positions.length / 3, (triangle, corner) => surface.triangles[3 * triangle + corner]],
+  };
+  const [wanted, rowOf] = kinds[interpolation] ?? kinds.vertex;
   if (count !== wanted || (surface.cornerCount === 0 && interpolation !== "uniform")) {
     warn("primvar", `primvars '${name}' with a wrong number of values were ignored`);
     return null;

@@ -4,97 +4,136 @@ const SPECIFIER = Symbol("specifier"); // 0 for def, 1 for over, 2 for class
 const SET = /^variantSet\s+"([^"]+)"/;
 const VARIANT = 10; // a type of specs
 
-// Methods for USDAParser. `kept`: its own ones.
-export const textMethods = (kept) => ({
-  _preprocess(text) {
-    return kept._preprocess.call(this, text).split("\n").flatMap(statements).join("\n");
-  },
-  parseText(text) {
-    this.parsed = asDefinitions(kept.parseText.call(this, text));
-    return this.parsed;
-  },
-  parseData(text) {
-    const made = kept.parseData.call(this, text);
-    const [{ fields }, header] = [made.specsByPath["/"], this.parsed["#usda 1.0"] ?? {}];
-    for (const name of ["startTimeCode", "endTimeCode"])
-      if (header[name] !== undefined) fields[name] = Number(header[name]);
-    if (header.subLayers) fields.subLayers = [header.subLayers];
-    return made;
-  },
-  _extractPrimData(data, path, fields, specs, types) {
-    if (!data || typeof data !== "object") return;
-    const notes = data[Object.getOwnPropertySymbols(data).find((symbol) => symbol !== SPECIFIER)] ?? {};
-    const plain = withoutPrefixes(data);
-    for (const symbol of Object.getOwnPropertySymbols(data))
-      if (symbol !== SPECIFIER) plain[symbol] = withoutPrefixes(data[symbol]);
-    const has = (pattern) => Object.keys(data).find((key) => pattern.test(key));
-    for (const [name, pattern] of [
-      ["prepend references", /^(add |append )?references$/],
-      ["payload", /^(prepend |add |append )payload$/],
-    ])
-      if (has(pattern)) plain[name] ??= data[has(pattern)];
-    fields.specifier = data[SPECIFIER] ?? 0;
-    if (data.active === "false") fields.active = false;
-    if (has(/^(\w+ )?inherits$/)) fields.inheritPaths = [data[has(/^(\w+ )?inherits$/)]];
-    if (has(/^(\w+ )?specializes$/)) fields.specializes = [data[has(/^(\w+ )?specializes$/)]];
-    const schemas = Object.keys(data)
-      .filter((key) => /^(?!delete )(\w+ )?apiSchemas$/.test(key))
-      .flatMap((key) => String(data[key]).match(/[\w:]+/g) ?? []);
-    if (schemas.length) fields.apiSchemas = schemas;
-    kept._extractPrimData.call(this, plain, path, fields, specs, types);
-    const sets = Object.keys(data)
-      .filter((key) => SET.test(key))
-      .map((key) => [key, SET.exec(key).at(1)]);
-    if (sets.length) fields.variantSetChildren = sets.map(([, set]) => set);
-    for (const [key, set] of sets)
-      for (const [name, variant] of Object.entries(data[key]))
-        this.variantSpec(variant, `${path}/{${set}=${name.replace(/"/g, "")}}`, specs, types);
-    for (const [key, note] of Object.entries(withoutPrefixes(notes))) {
-      const spec = specs[`${path}.${key.replace(/^uniform\s+/, "").split(/\s+/)[1]}`];
-      if (!spec) continue;
-      if (note.interpolation) spec.fields.interpolation = note.interpolation.replace(/"/g, "");
-      if (note.elementSize) spec.fields.elementSize = Number(note.elementSize);
-    }
-  },
-  // A variant, or a prim in one.
-  variantSpec(data, path, specs, types, typeName = "") {
-    if (!data || typeof data !== "object") return;
-    const fields = { typeName };
-    specs[path] = { specType: typeName || !path.endsWith("}") ? types.Prim : VARIANT, fields };
-    this._extractPrimData(data, path, fields, specs, types);
-    for (const key of Object.keys(data)) {
-      const [, kind, name] = /^def\s+(?:(\w+)\s+)?"([^"]+)"$/.exec(key) ?? [];
-      if (!name) continue;
-      (fields.primChildren ??= []).push(name);
-      this.variantSpec(data[key], `${path}/${name}`, specs, types, kind);
-    }
-  },
-});
+/** @import { Fields, Specs } from "./stage.js" */
+/** @import { Data, MethodsOf, SpecTypes, TextParser } from "./three_private.js" */
 
-// The parser knows prims that begin with "def" alone.
+/** @param {unknown} value @returns {value is Data} */
+const isData = (value) => typeof value === "object" && value !== null;
+
+/** The symbols of values that have notes in parentheses. @param {Data} data */
+const noteSymbols = (data) => Object.getOwnPropertySymbols(data).filter((symbol) => symbol !== SPECIFIER);
+
+/** @type {MethodsOf<TextParser>} */
+export const textMethods = (kept) => {
+  /** @type {Data} the text that was parsed last */
+  let parsed = {};
+  return {
+    _preprocess(text) {
+      return kept._preprocess.call(this, text).split("\n").flatMap(statements).join("\n");
+    },
+    parseText(text) {
+      parsed = asDefinitions(kept.parseText.call(this, text));
+      return parsed;
+    },
+    parseData(text) {
+      const made = kept.parseData.call(this, text);
+      const { fields } = made.specsByPath["/"];
+      const header = parsed["#usda 1.0"];
+      if (!isData(header)) return made;
+      const { startTimeCode, endTimeCode, subLayers } = header;
+      if (startTimeCode !== undefined) fields.startTimeCode = Number(startTimeCode);
+      if (endTimeCode !== undefined) fields.endTimeCode = Number(endTimeCode);
+      if (subLayers) fields.subLayers = [/** @type {string} */ (subLayers)];
+      return made;
+    },
+    _extractPrimData(data, path, fields, specs, types) {
+      if (!isData(data)) return;
+      readLists(data, fields);
+      kept._extractPrimData.call(this, plainData(data), path, fields, specs, types);
+      const sets = Object.keys(data).flatMap((key) => /** @type {const} */ (SET.exec(key) ? [[key, setName(key)]] : []));
+      if (sets.length) fields.variantSetChildren = sets.map(([, set]) => set);
+      for (const [key, set] of sets)
+        for (const [name, variant] of Object.entries(data[key]))
+          addVariant(this, variant, `${path}/{${set}=${name.replace(/"/g, "")}}`, specs, types);
+      readNotes(data, path, specs);
+    },
+  };
+};
+
+/** @param {string} key */
+const setName = (key) => SET.exec(key)?.[1] ?? "";
+
+/** What the parser takes of a prim. @param {Data} data */
+function plainData(data) {
+  const plain = withoutPrefixes(data);
+  for (const symbol of noteSymbols(data)) plain[symbol] = withoutPrefixes(/** @type {Data} */ (data[symbol]));
+  const references = keyOf(data, /^(add |append )?references$/);
+  if (references) plain["prepend references"] ??= data[references];
+  const payload = keyOf(data, /^(prepend |add |append )payload$/);
+  if (payload) plain.payload ??= data[payload];
+  return plain;
+}
+
+/** @param {Data} data @param {RegExp} pattern */
+const keyOf = (data, pattern) => Object.keys(data).find((key) => pattern.test(key));
+
+/** Read what the parser leaves out of a prim. @param {Data} data @param {Fields} fields */
+function readLists(data, fields) {
+  fields.specifier = Number(data[SPECIFIER] ?? 0);
+  if (data.active === "false") fields.active = false;
+  const inherits = keyOf(data, /^(\w+ )?inherits$/);
+  if (inherits) fields.inheritPaths = [/** @type {string} */ (data[inherits])];
+  const specializes = keyOf(data, /^(\w+ )?specializes$/);
+  if (specializes) fields.specializes = [/** @type {string} */ (data[specializes])];
+  const keys = Object.keys(data).filter((key) => /^(?!delete )(\w+ )?apiSchemas$/.test(key));
+  const schemas = keys.flatMap((key) => String(data[key]).match(/[\w:]+/g) ?? []);
+  if (schemas.length) fields.apiSchemas = schemas;
+}
+
+/** Read the notes of attributes, in parentheses behind them. @param {Data} data @param {string} path @param {Specs} specs */
+function readNotes(data, path, specs) {
+  const [symbol] = noteSymbols(data);
+  const notes = symbol ? withoutPrefixes(/** @type {Data} */ (data[symbol])) : {};
+  for (const [key, note] of Object.entries(notes)) {
+    const spec = specs[`${path}.${key.replace(/^uniform\s+/, "").split(/\s+/)[1]}`];
+    if (!spec || !isData(note)) continue;
+    if (note.interpolation) spec.fields.interpolation = String(note.interpolation).replace(/"/g, "");
+    if (note.elementSize) spec.fields.elementSize = Number(note.elementSize);
+  }
+}
+
+/** Add the specs of a variant, or of a prim in one. @param {TextParser} parser @param {Data | string} data @param {string} path @param {Specs} specs @param {SpecTypes} types */
+function addVariant(parser, data, path, specs, types, typeName = "") {
+  if (!isData(data)) return;
+  /** @type {Fields} */
+  const fields = { typeName };
+  specs[path] = { specType: typeName || !path.endsWith("}") ? types.Prim : VARIANT, fields };
+  parser._extractPrimData(data, path, fields, specs, types);
+  for (const key of Object.keys(data)) {
+    const [, kind, name] = /^def\s+(?:(\w+)\s+)?"([^"]+)"$/.exec(key) ?? [];
+    if (!name) continue;
+    fields.primChildren = [...(fields.primChildren ?? []), name];
+    addVariant(parser, data[key], `${path}/${name}`, specs, types, kind);
+  }
+}
+
+/** The parser knows prims that begin with "def" alone. @param {Data} data */
 function asDefinitions(data) {
+  /** @type {Data} */
   const made = {};
   for (const symbol of Object.getOwnPropertySymbols(data)) made[symbol] = data[symbol];
   for (const [key, value] of Object.entries(data)) {
     const [, word] = /^(def|over|class)\b/.exec(key) ?? [];
-    const part =
-      value && typeof value === "object" && (word || SET.test(key) || /^"/.test(key)) ? asDefinitions(value) : value;
-    if (word && part === value) continue;
-    if (word) part[SPECIFIER] = ["def", "over", "class"].indexOf(word);
-    made[word ? key.replace(word, "def") : key] = part;
+    if (!word) {
+      made[key] = isData(value) && (SET.test(key) || key.startsWith('"')) ? asDefinitions(value) : value;
+    } else if (isData(value)) {
+      const part = asDefinitions(value);
+      part[SPECIFIER] = String(["def", "over", "class"].indexOf(word));
+      made[key.replace(word, "def")] = part;
+    }
   }
   return made;
 }
 
-// "custom rel a" is "rel a", "prepend token b.connect" is "token b.connect".
+/** "custom rel a" is "rel a", "prepend token b.connect" is "token b.connect". @param {Data} data @returns {Data} */
 function withoutPrefixes(data) {
-  const given = Object.entries(data).filter(([, value]) => value !== "" && value !== "None");
+  const entries = Object.entries(data).filter(([, value]) => value !== "" && value !== "None");
   return Object.fromEntries(
-    given.map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]),
+    entries.map(([key, value]) => [key.replace(/^(?:(?:custom|varying|prepend|append|add)\s+)+(?=\S+\s)/, ""), value]),
   );
 }
 
-// The parser wants one statement a line, as USD itself writes them.
+/** The parser wants one statement per line, as USD itself writes them. @param {string} line @returns {string[]} */
 function statements(line) {
   const body = /^((?:def|over|class)\b[^{]*)\{\s*(\S.*)$/.exec(line);
   if (body) {
