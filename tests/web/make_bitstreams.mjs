@@ -18,17 +18,8 @@ for (const { words, depth, materials, flat, name } of jobs) {
   voxrt.setMemory(memory.words, depth);
   hardware.setMemory(memory.words, depth);
   const progress = [];
-  const fit = fitBeam(
-    voxrt,
-    hardware,
-    board,
-    { materials: materials.map(({ colour }) => colour), flat },
-    (done, total) => progress.push(done / total),
-  );
-  const bits = bitstreamOf(voxrt, await readFile(`${site}/boards/${name}.bit`), board, memory, {
-    flat,
-    scale: fit.scale,
-  });
+  const fit = fitBeam(voxrt, hardware, board, { materials: materials.map(({ colour }) => colour), flat }, (done, total) => progress.push(done / total));
+  const bits = bitstreamOf(voxrt, await readFile(`${site}/boards/${name}.bit`), board, memory, { flat, scale: fit.scale });
   results.push({ ...fit, bits: createHash("sha256").update(bits).digest("hex"), progress });
 }
 console.log(JSON.stringify(results));

@@ -20,15 +20,7 @@ for (const { words, zeros, depth, camera, size, look, limit } of jobs) {
     hardware.setMemory(zeros ? new Uint32Array(zeros) : Uint32Array.from(words), depth);
     const { colour, material, face, clocks, wordsRead } = hardware.render(camera, size, look);
     voxrt.setMemory(Uint32Array.from(words), depth);
-    results.push({
-      colour: sha(colour),
-      material: sha(material),
-      face: sha(face),
-      clocks,
-      wordsRead,
-      pixels,
-      level: voxrt.levelThatFits(limit),
-    });
+    results.push({ colour: sha(colour), material: sha(material), face: sha(face), clocks, wordsRead, pixels, level: voxrt.levelThatFits(limit) });
   } catch (error) {
     results.push({ problem: error.message, limit: hardware.wordLimit });
   }

@@ -185,9 +185,7 @@ export class UsdMeshes {
           out[to + part] = Number.isFinite(normals.values[at + part]) ? normals.values[at + part] : 0;
       };
     };
-    return (
-      setterOf(primvarOf(composer, path, "normals")) ?? setterOf(arrayOf(composer, path, "normals", "vertex"))
-    );
+    return setterOf(primvarOf(composer, path, "normals")) ?? setterOf(arrayOf(composer, path, "normals", "vertex"));
   }
 
   /** @type {Partial<Rules>} */

@@ -189,7 +189,9 @@ function coordinatesOf(composer, node, warn) {
 /** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param {number} count @returns {number[] | null} */
 function numbers(value, count) {
   const flat = /** @type {unknown[]} */ ([value ?? []].flat());
-  const found = flat.flatMap((one) => (ArrayBuffer.isView(one) ? Array.from(/** @type {Float64Array} */ (one)) : [one]));
+  const found = flat.flatMap((one) =>
+    ArrayBuffer.isView(one) ? Array.from(/** @type {Float64Array} */ (one)) : [one],
+  );
   const parts = found.slice(0, count).filter((one) => typeof one === "number");
   return parts.length === count ? parts.map(Math.fround) : null;
 }

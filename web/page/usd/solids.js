@@ -29,10 +29,7 @@ const Z = { axis: "Z" };
 /** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} dimensions where the file has none */
 const SOLIDS = {
   Cube: { usual: { size: 2 }, make: ({ size }) => cube(size) },
-  Sphere: {
-    usual: { radius: 1 },
-    make: ({ radius }) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), Z.axis),
-  },
+  Sphere: { usual: { radius: 1 }, make: ({ radius }) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), Z.axis) },
   Cylinder: {
     usual: { radius: 1, height: 2, ...Z },
     make: ({ radius, height, axis }) => cylinder(radius, radius, height, axis),
@@ -128,7 +125,14 @@ function cylinder(bottom, top, height, axis) {
 
 /** @param {number} radius @param {number} height @param {string} axis */
 function cone(radius, height, axis) {
-  return revolved([[0, -height / 2], [radius, -height / 2], [0, height / 2]], axis);
+  return revolved(
+    [
+      [0, -height / 2],
+      [radius, -height / 2],
+      [0, height / 2],
+    ],
+    axis,
+  );
 }
 
 /** @param {number} bottom @param {number} top @param {number} height @param {string} axis */

@@ -67,8 +67,7 @@ export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.
 export const attributeOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
 /** An attribute that has numbers; null for none. @param {Composer} composer @param {string} prim @param {string} name */
-export const numbersOf = (composer, prim, name) =>
-  /** @type {Numbers | null} */ (attributeOf(composer, prim, name));
+export const numbersOf = (composer, prim, name) => /** @type {Numbers | null} */ (attributeOf(composer, prim, name));
 
 /** An attribute that has names; empty for none. @param {Composer} composer @param {string} prim @param {string} name */
 export const namesOf = (composer, prim, name) =>

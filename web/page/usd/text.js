@@ -40,7 +40,9 @@ export const textMethods = (kept) => {
       if (!isData(data)) return;
       readLists(data, fields);
       kept._extractPrimData.call(this, plainData(data), path, fields, specs, types);
-      const sets = Object.keys(data).flatMap((key) => /** @type {const} */ (SET.exec(key) ? [[key, setName(key)]] : []));
+      const sets = Object.keys(data).flatMap(
+        (key) => /** @type {const} */ (SET.exec(key) ? [[key, setName(key)]] : []),
+      );
       if (sets.length) fields.variantSetChildren = sets.map(([, set]) => set);
       for (const [key, set] of sets)
         for (const [name, variant] of Object.entries(data[key]))
