@@ -19,8 +19,7 @@ const SIZES = [
 ];
 
 export class Advanced {
-  /** @param {App} app */
-  constructor(app) {
+  /** @param {App} app */ constructor(app) {
     this.app = app;
     /** @param {string} label @param {Limits} limits @param {OnNumber} onInput */
     const slider = (label, limits, onInput) => makeSlider($("camera"), label, limits, onInput, true);
@@ -52,8 +51,7 @@ export class Advanced {
     $("advanced").addEventListener("toggle", () => this.readRegisters());
   }
 
-  /** @param {Hello} hello */
-  hello({ device }) {
+  /** @param {Hello} hello */ hello({ device }) {
     const sizes = SIZES.filter(
       (size) => size.every((part, i) => part <= device.size[i]) && size[0] % device.width_step === 0,
     );
@@ -64,8 +62,7 @@ export class Advanced {
     this.app.fixSize(null);
   }
 
-  /** @param {State} state */
-  show({ view, scene }) {
+  /** @param {State} state */ show({ view, scene }) {
     const side = 2 ** scene.depth;
     for (const slider of this.position) slider.range(-2 * side, 3 * side);
     pressed($("nonstop"), view.nonstop);

@@ -25,12 +25,10 @@ import { Views } from "./views.js";
 const CONTROLS = "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button";
 
 export class App {
-  /** @type {number | null} the scene to which the view belongs */
-  #scene = null;
+  /** @type {number | null} the scene to which the view belongs */ #scene = null;
   #hadControl = false;
   #hasRequested = false; // control, since nobody has it
-  /** @type {Partial<View>} fields of the view that the state of the server does not have yet */
-  #unconfirmed = {};
+  /** @type {Partial<View>} fields of the view that the state of the server does not have yet */ #unconfirmed = {};
 
   constructor() {
     this.connection = new Connection();
@@ -79,8 +77,7 @@ export class App {
     return 2 ** this.state().scene.depth;
   }
 
-  /** @returns {Box} what is solid */
-  bounds() {
+  /** @returns {Box} what is solid */ bounds() {
     return this.state().scene.bounds ?? [[0, 0, 0], Array(3).fill(this.side())];
   }
 
@@ -88,18 +85,15 @@ export class App {
     return Math.min(8 * this.side() + 512, this.device().position_limit / 16 - 1);
   }
 
-  /** @param {Move} how */
-  change(how) {
+  /** @param {Move} how */ change(how) {
     if (this.hasControl()) this.viewpoint.change(how);
   }
 
-  /** @param {Move} how */
-  glide(how) {
+  /** @param {Move} how */ glide(how) {
     if (this.hasControl()) this.viewpoint.glide(how);
   }
 
-  /** @param {Partial<View>} fields */
-  set(fields) {
+  /** @param {Partial<View>} fields */ set(fields) {
     if (!this.hasControl()) return;
     Object.assign(this.#unconfirmed, fields);
     Object.assign(this.state().view, fields); // the next change starts from it
@@ -110,8 +104,7 @@ export class App {
     return this.connection.sent.size > 0 || this.frames.changed;
   }
 
-  /** @param {Size | null} size null for that of the stage */
-  fixSize(size) {
+  /** @param {Size | null} size null for that of the stage */ fixSize(size) {
     this.frames.resolution.fixed = size;
   }
 
@@ -155,8 +148,7 @@ export class App {
     if ($("rendering").textContent !== text) $("rendering").textContent = text;
   }
 
-  /** @param {Hello} hello */
-  #greet(hello) {
+  /** @param {Hello} hello */ #greet(hello) {
     $("connection").dataset.state = "connected";
     $("connection").textContent = hello.device.name;
     hideAway();
@@ -165,8 +157,7 @@ export class App {
     for (const panel of [this.scenes, this.light, this.advanced]) panel.hello(hello);
   }
 
-  /** @param {Away} away */
-  #leave(away) {
+  /** @param {Away} away */ #leave(away) {
     $("connection").dataset.state = "disconnected";
     $("connection").textContent = "not connected";
     $("control").textContent = "";
@@ -175,8 +166,7 @@ export class App {
     showAway(away, away.retry / 1000);
   }
 
-  /** @param {State} state */
-  #show(state) {
+  /** @param {State} state */ #show(state) {
     const mine = this.hasControl();
     const { connection } = this;
     const { scene, view, trouble, controller } = state;
@@ -202,7 +192,8 @@ export class App {
     if (trouble) notice("error", "There are no frames", trouble);
   }
 
-  /** Forget the fields that the server has, and keep the others in its view. @param {View} view @param {boolean} mine */
+  /** Forget the fields that the server has, and keep the others in its view. @param {View} view @param {boolean}
+   * mine */
   #confirm(view, mine) {
     const missing = Object.entries(this.#unconfirmed).filter(
       ([name, value]) =>
@@ -212,8 +203,7 @@ export class App {
     Object.assign(view, this.#unconfirmed);
   }
 
-  /** @param {State} state @param {boolean} mine */
-  #showControl({ controller, waiting, viewers }, mine) {
+  /** @param {State} state @param {boolean} mine */ #showControl({ controller, waiting, viewers }, mine) {
     $("control").dataset.state = mine ? "mine" : "";
     const others = viewers > 1 ? `you have control · ${viewers} viewers` : "";
     const owner = controller === null ? "nobody has control" : `viewer ${controller} has control`;
@@ -226,8 +216,7 @@ export class App {
     $("release").hidden = !mine || waiting.length === 0;
   }
 
-  /** @param {Frame & { pixels: Uint8Array }} frame */
-  #showFrame(frame) {
+  /** @param {Frame & { pixels: Uint8Array }} frame */ #showFrame(frame) {
     const samples = this.frames.receive(frame);
     this.picture.show(frame, samples, this.frames.resolution.fixed !== null);
     this.figures.add(frame, samples);

@@ -13,29 +13,23 @@ export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
 /** @typedef {readonly number[]} Size columns and rows of a frame */
 /** @typedef {[Vector, Vector]} Box its lowest and its highest corner */
 
-/**
- * The camera for people. The eye is in voxels. Yaw and pitch are in radians, both 0 for a look along -z. The field of view
- * is in degrees across the height of the largest 4:3 part of the frame, so that a page of any shape shows as much. The
- * distance is that from the eye to the target, around which the camera orbits, in voxels. Flips mirror the picture.
- * @typedef {{ eye: Vector, yaw: number, pitch: number, fov: number, distance: number, flipX: boolean, flipY: boolean }} Pose
- */
+/** The camera for people. The eye is in voxels. Yaw and pitch are in radians, both 0 for a look along -z. The field
+ * of view is in degrees across the height of the largest 4:3 part of the frame, so that a page of any shape shows
+ * as much. The distance is that from the eye to the target, around which the camera orbits, in voxels. Flips mirror
+ * the picture. @typedef {{ eye: Vector, yaw: number, pitch: number, fov: number, distance: number, flipX: boolean,
+ * flipY: boolean }} Pose */
 
-/**
- * The camera registers: the position is in 1/16 voxel.
- * @typedef {{ position: Vector, look: Vector, right: Vector, up: Vector }} Registers
- */
+/** The camera registers: the position is in 1/16 voxel. @typedef {{ position: Vector, look: Vector, right: Vector,
+ * up: Vector }} Registers */
 
-/** @param {Pick<Pose, "yaw" | "pitch">} angles */
-export function axes({ yaw, pitch }) {
+/** @param {Pick<Pose, "yaw" | "pitch">} angles */ export function axes({ yaw, pitch }) {
   const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
   return { look: [cp * sy, sp, -cp * cy], right: [cy, 0, sy], up: [-sp * sy, cp, sp * cy] };
 }
 
-/** @param {Pose} view */
-export const target = (view) => add(view.eye, axes(view).look, view.distance);
+/** @param {Pose} view */ export const target = (view) => add(view.eye, axes(view).look, view.distance);
 
-/** @param {Size} size */
-export const measure = ([width, height]) => Math.min(0.75 * width, height);
+/** @param {Size} size */ export const measure = ([width, height]) => Math.min(0.75 * width, height);
 
 /** @param {number} fov @param {Size} size */
 export const focal = (fov, size) => measure(size) / (2 * Math.tan((fov * Math.PI) / 360));
@@ -43,8 +37,7 @@ export const focal = (fov, size) => measure(size) / (2 * Math.tan((fov * Math.PI
 /** @param {number} ahead @param {Size} size */
 export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead) * 360) / Math.PI;
 
-/** @param {Pose} view @param {Size} size @returns {Registers} */
-export function toRegisters(view, size) {
+/** @param {Pose} view @param {Size} size @returns {Registers} */ export function toRegisters(view, size) {
   const { look, right, up } = axes(view);
   const halves = size.map((side) => Math.floor(side / 2));
   const ahead = scale(look, focal(view.fov, size));
@@ -66,14 +59,9 @@ export function toRegisters(view, size) {
   };
 }
 
-/**
- * The pose of registers that were made for frames of `size`. The target is the point of the central ray that is nearest to
- * `centre`, the middle of the scene. For frames of another size, all that the registers show stays in the picture.
- * @param {Registers} registers
- * @param {Size} size
- * @param {Vector} centre
- * @returns {Pose}
- */
+/** The pose of registers that were made for frames of `size`. The target is the point of the central ray that is
+ * nearest to `centre`, the middle of the scene. For frames of another size, all that the registers show stays in
+ * the picture. @param {Registers} registers @param {Size} size @param {Vector} centre @returns {Pose} */
 export function fromRegisters({ position, look, right, up }, size, centre, shownSize = size) {
   const eye = position.map((value) => value / 16);
   const ahead = scale(look, 1 / (length(look) || 1));
@@ -96,20 +84,14 @@ export function fromRegisters({ position, look, right, up }, size, centre, shown
   };
 }
 
-/**
- * The direction of the ray through a pixel, as the hardware computes it.
- * @param {Omit<Registers, "position">} registers
- * @param {Size} size
- * @param {number} column
- * @param {number} row
- */
+/** The direction of the ray through a pixel, as the hardware computes it. @param {Omit<Registers, "position">}
+ * registers @param {Size} size @param {number} column @param {number} row */
 export const pixelDirection = ({ look, right, up }, [width, height], column, row) =>
   look.map(
     (value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row),
   );
 
-/** @param {Pose} view @param {Vector} direction @returns {Pose} */
-export function lookAlong(view, direction) {
+/** @param {Pose} view @param {Vector} direction @returns {Pose} */ export function lookAlong(view, direction) {
   const size = length(direction);
   if (size < 1e-9) return view;
   const [x, y, z] = scale(direction, 1 / size);

@@ -14,23 +14,11 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 /** @typedef {Refusal & { retry: number }} Away */
 /** @typedef {Progress & { type: string, bytes: number }} Report */
 
-/**
- * What answers hold, each some of it.
- * @typedef {object} Answer
- * @property {number} request
- * @property {number} upload
- * @property {string} scene
- * @property {{ point: Vector } | null} hit
- * @property {Record<string, number>} registers
- * @property {Record<string, number>} counters
- */
+/** What answers hold, each some of it. @typedef {{ request: number, upload: number, scene: string, hit: { point:
+ * Vector } | null, registers: Record<string, number>, counters: Record<string, number> }} Answer */
 
-/**
- * @typedef {object} Pending a request that waits for its answer
- * @property {(answer: Answer) => void} resolve
- * @property {(error: Error) => void} reject
- * @property {((report: Report) => void) | null} [progress]
- */
+/** @typedef {{ resolve: (answer: Answer) => void, reject: (error: Error) => void, progress?: ((report: Report) =>
+ * void) | null }} Pending a request that waits for its answer */
 
 /** @typedef {{ type: "hello" } & Hello} HelloMessage */
 /** @typedef {{ type: "state" } & State} StateMessage */
@@ -38,24 +26,17 @@ const RETRY = { first: 500, longest: 5000 }; // milliseconds
 /** @typedef {{ type: "refused", request: number, problem: string }} RefusedMessage */
 /** @typedef {{ type: "done" | "ready" } & Answer} AnswerMessage */
 
-/**
- * @extends {Events<{
- *   hello: Hello, state: State, frame: Frame & { pixels: Uint8Array }, disconnected: Away, refused: RefusedMessage
- * }>}
- */
+/** @extends {Events<{ hello: Hello, state: State, frame: Frame & { pixels: Uint8Array }, disconnected: Away,
+ * refused: RefusedMessage }>} */
 export class Connection extends Events {
-  /** @type {Hello | null} */
-  hello = null;
-  /** @type {State | null} */
-  state = null;
-  /** @type {Map<number, Pending>} by the number of the request */
-  pending = new Map();
+  /** @type {Hello | null} */ hello = null;
+  /** @type {State | null} */ state = null;
+  /** @type {Map<number, Pending>} by the number of the request */ pending = new Map();
   /** @type {Map<number, number>} when view changes were sent whose frame has not arrived, by request */
   sent = new Map();
   #number = 0;
   #retry = RETRY.first;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  #timer;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
 
   constructor() {
     super();
@@ -98,8 +79,7 @@ export class Connection extends Events {
     return this.hello !== null;
   }
 
-  /** @param {CloseEvent} event */
-  async #handleClose({ code }) {
+  /** @param {CloseEvent} event */ async #handleClose({ code }) {
     const wasConnected = this.connected;
     this.hello = null;
     this.sent.clear();
@@ -159,8 +139,7 @@ export class Connection extends Events {
     }
   }
 
-  /** @param {ArrayBuffer} data */
-  #receiveFrame(data) {
+  /** @param {ArrayBuffer} data */ #receiveFrame(data) {
     const frame = readFrame(data);
     if (!frame) return;
     if (frame.viewer === this.hello?.viewer) {
@@ -173,10 +152,8 @@ export class Connection extends Events {
     this.emit("frame", frame);
   }
 
-  /**
-   * Change the view; a frame with this request follows. Returns the request's number.
-   * @param {Partial<View> & { camera: Registers, size: Size }} fields
-   */
+  /** Change the view; a frame with this request follows. Returns the request's number. @param {Partial<View> & {
+   * camera: Registers, size: Size }} fields */
   changeView(fields) {
     if (!this.connected) return 0;
     const number = this.#send("view", fields);
@@ -184,21 +161,15 @@ export class Connection extends Events {
     return number;
   }
 
-  /**
-   * Send a request; resolves with its answer, rejects with the reason of a refusal.
-   * @param {string} type
-   * @param {object} [fields]
-   * @param {Pending["progress"]} [progress]
-   * @returns {Promise<Answer>}
-   */
+  /** Send a request; resolves with its answer, rejects with the reason of a refusal. @param {string} type @param
+   * {object} [fields] @param {Pending["progress"]} [progress] @returns {Promise<Answer>} */
   request(type, fields = {}, progress = null) {
     if (!this.connected) return Promise.reject(new Error("there is no connection to the server"));
     const number = this.#send(type, fields);
     return new Promise((resolve, reject) => this.pending.set(number, { resolve, reject, progress }));
   }
 
-  /** @param {string} type @param {object} fields */
-  #send(type, fields) {
+  /** @param {string} type @param {object} fields */ #send(type, fields) {
     this.#number += 1;
     this.socket.send(JSON.stringify({ type, request: this.#number, ...fields }));
     return this.#number;

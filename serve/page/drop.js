@@ -2,15 +2,13 @@
 
 import { $ } from "./elements.js";
 
-/** @param {(files: File[]) => void} open */
-export function acceptFiles(open) {
+/** @param {(files: File[]) => void} open */ export function acceptFiles(open) {
   $("files").onchange = () => {
     open([...($("files").files ?? [])]);
     $("files").value = "";
   };
   let depth = 0; // elements that the pointer has entered and not left
-  /** @param {number} now */
-  const enter = (now) => {
+  /** @param {number} now */ const enter = (now) => {
     depth = Math.max(0, now);
     $("drop").hidden = depth === 0;
   };
@@ -31,14 +29,12 @@ export function acceptFiles(open) {
 async function filesOf(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null);
   if (!entries.some((entry) => entry?.isDirectory)) return [...transfer.files];
-  /** @type {File[]} */
-  const found = [];
+  /** @type {File[]} */ const found = [];
   for (const entry of entries) await collect(entry, found);
   return found;
 }
 
-/** @param {FileSystemEntry} entry @param {File[]} found */
-async function collect(entry, found) {
+/** @param {FileSystemEntry} entry @param {File[]} found */ async function collect(entry, found) {
   if (entry.isFile) {
     const { file } = /** @type {FileSystemFileEntry} */ (entry);
     found.push(await new Promise((resolve, reject) => file.call(entry, resolve, reject)));

@@ -1,34 +1,21 @@
 // Elements of the page: found by their id, made, and switched.
 
-/**
- * The elements that are more than an HTMLElement.
- * @typedef {{
- *   picture: HTMLCanvasElement, "hardware-picture": HTMLCanvasElement, octants: SVGSVGElement,
- *   files: HTMLInputElement, depth: HTMLInputElement, budget: HTMLInputElement, "budget-words": HTMLInputElement,
- *   "sun-x": HTMLInputElement, "sun-y": HTMLInputElement, "sun-z": HTMLInputElement, sky: HTMLInputElement,
- *   samples: HTMLInputElement, frames: HTMLInputElement, bounces: HTMLInputElement, background: HTMLInputElement,
- *   size: HTMLSelectElement, take: HTMLButtonElement, bake: HTMLButtonElement, keys: HTMLDialogElement,
- *   advanced: HTMLDetailsElement, "token-form": HTMLFormElement, "save-view": HTMLFormElement,
- *   "hardware-progress": HTMLProgressElement, "bitstream-progress": HTMLProgressElement,
- * }} Elements
- */
+/** The elements that are more than an HTMLElement. @typedef {{ picture: HTMLCanvasElement, "hardware-picture":
+ * HTMLCanvasElement, octants: SVGSVGElement, files: HTMLInputElement, depth: HTMLInputElement, budget:
+ * HTMLInputElement, "budget-words": HTMLInputElement, "sun-x": HTMLInputElement, "sun-y": HTMLInputElement,
+ * "sun-z": HTMLInputElement, sky: HTMLInputElement, samples: HTMLInputElement, frames: HTMLInputElement, bounces:
+ * HTMLInputElement, background: HTMLInputElement, size: HTMLSelectElement, take: HTMLButtonElement, bake:
+ * HTMLButtonElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement, "token-form": HTMLFormElement,
+ * "save-view": HTMLFormElement, "hardware-progress": HTMLProgressElement, "bitstream-progress":
+ * HTMLProgressElement, }} Elements */
 
-/**
- * The element of the page with an id.
- * @template {string} I
- * @param {I} id
- */
+/** The element of the page with an id. @template {string} I @param {I} id */
 export const $ = (id) => {
   const found = /** @type {unknown} */ (document.getElementById(id));
   return /** @type {I extends keyof Elements ? Elements[I] : HTMLElement} */ (found);
 };
 
-/**
- * An element below another one.
- * @template {keyof HTMLElementTagNameMap} T
- * @param {Element} parent
- * @param {T} tag
- */
+/** An element below another one. @template {keyof HTMLElementTagNameMap} T @param {Element} parent @param {T} tag */
 export const part = (parent, tag) => /** @type {HTMLElementTagNameMap[T]} */ (parent.querySelector(tag));
 
 /** All elements that match a selector. @param {string} selector @param {ParentNode} [parent] */
@@ -38,17 +25,11 @@ export const all = (selector, parent = document) =>
 /** @param {Element} button @param {boolean} on */
 export const pressed = (button, on) => button.setAttribute("aria-pressed", String(on));
 
-/** @param {Element} button */
-export const isPressed = (button) => button.getAttribute("aria-pressed") === "true";
+/** @param {Element} button */ export const isPressed = (button) => button.getAttribute("aria-pressed") === "true";
 
-/**
- * Make an element. Properties whose name has a dash are attributes.
- * @template {keyof HTMLElementTagNameMap} T
- * @param {T} tag
- * @param {Record<string, unknown>} [properties]
- * @param {(Node | string)[]} children
- * @returns {HTMLElementTagNameMap[T]}
- */
+/** Make an element. Properties whose name has a dash are attributes. @template {keyof HTMLElementTagNameMap} T
+ * @param {T} tag @param {Record<string, unknown>} [properties] @param {(Node | string)[]} children @returns
+ * {HTMLElementTagNameMap[T]} */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -66,11 +47,8 @@ export function makeButton(parent, label, onclick, title = "") {
   return made;
 }
 
-/**
- * Show the terms and values of a list, each pair in a box of its own.
- * @param {HTMLElement} list
- * @param {Record<string, string>} facts
- */
+/** Show the terms and values of a list, each pair in a box of its own. @param {HTMLElement} list @param
+ * {Record<string, string>} facts */
 export function showFacts(list, facts) {
   const boxes = Object.entries(facts).map(([term, value]) =>
     element("div", {}, element("dt", {}, term), element("dd", {}, value)),
@@ -90,26 +68,19 @@ function makeInput(label, type, limits, onInput) {
   return input;
 }
 
-/**
- * A slider with its name; `numbered` adds a field for the number.
- * @param {HTMLElement} parent
- * @param {string} label
- * @param {Limits} limits
- * @param {OnNumber} onInput
- */
+/** A slider with its name; `numbered` adds a field for the number. @param {HTMLElement} parent @param {string} label
+ * @param {Limits} limits @param {OnNumber} onInput */
 export function makeSlider(parent, label, limits, onInput, numbered = false) {
   const inputs = (numbered ? ["range", "number"] : ["range"]).map((type) => makeInput(label, type, limits, onInput));
   parent.append(
     element("div", { className: numbered ? "field numbered" : "field" }, element("span", {}, label), ...inputs),
   );
   return {
-    /** @param {number | string} value */
-    set(value) {
+    /** @param {number | string} value */ set(value) {
       for (const input of inputs)
         if (input !== document.activeElement || input.type === "range") input.value = String(value);
     },
-    /** @param {number} low @param {number} high */
-    range(low, high) {
+    /** @param {number} low @param {number} high */ range(low, high) {
       Object.assign(inputs[0], { min: low, max: high });
     },
   };
@@ -120,8 +91,7 @@ export function makeSlider(parent, label, limits, onInput, numbered = false) {
 /** A toolbar takes one stop of the tab key; arrows, Home and End go from button to button. @param {HTMLElement} bar */
 export function makeToolbar(bar) {
   const buttons = () => [...bar.querySelectorAll("button")].filter((button) => !button.hidden && !button.disabled);
-  /** @param {EventTarget | null} chosen */
-  const choose = (chosen) => {
+  /** @param {EventTarget | null} chosen */ const choose = (chosen) => {
     for (const button of bar.querySelectorAll("button")) button.tabIndex = button === chosen ? 0 : -1;
   };
   const refresh = () => choose(buttons().find((button) => button.tabIndex === 0) ?? buttons()[0]);

@@ -7,22 +7,17 @@ import { element } from "./elements.js";
 const WINDOW = 2000; // milliseconds over which frames are counted
 
 export class Figures {
-  /** @type {Frame | null} */
-  newest = null;
-  /** @type {number[]} when frames have arrived */
-  #times = [];
+  /** @type {Frame | null} */ newest = null;
+  /** @type {number[]} when frames have arrived */ #times = [];
   #missed = 0;
   #samples = 1;
-  /** @type {number | null} */
-  #latency = null;
+  /** @type {number | null} */ #latency = null;
 
-  /** @param {HTMLElement} list */
-  constructor(list) {
+  /** @param {HTMLElement} list */ constructor(list) {
     this.list = list;
   }
 
-  /** @param {Frame} frame @param {number} samples columns and rows per pixel */
-  add(frame, samples) {
+  /** @param {Frame} frame @param {number} samples columns and rows per pixel */ add(frame, samples) {
     const now = performance.now();
     if (this.newest && frame.sequence > this.newest.sequence + 1)
       this.#missed += frame.sequence - this.newest.sequence - 1;

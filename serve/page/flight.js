@@ -8,32 +8,23 @@ const DEAD_ZONE = 0.15; // of the sticks of a gamepad
 
 /** @type {Ways} */
 const MOVES = { KeyD: [0, 1], KeyA: [0, -1], KeyE: [1, 1], KeyQ: [1, -1], KeyW: [2, 1], KeyS: [2, -1] };
-/** @type {Ways} */
-const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
-/** @type {Record<string, number>} */
-const DOLLIES = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
+/** @type {Ways} */ const TURNS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1] };
+/** @type {Record<string, number>} */ const DOLLIES = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
 const TYPES_TEXT = "select, dialog, input:is([type=text], [type=number], [type=password])";
 const USES_ARROWS = `${TYPES_TEXT}, input, [role=toolbar]`;
 
 /** @import { Commands } from "./tools.js" */
 
-/**
- * What keys do: `fly` takes sides of the world, `rotate` radians.
- * @typedef {object} Actions
- * @property {(right: number, up: number, forward: number) => void} fly
- * @property {(right: number, up: number) => void} rotate
- * @property {(factor: number) => void} dolly
- * @property {Commands} commands
- */
+/** What keys do: `fly` takes sides of the world, `rotate` radians. @typedef {{ fly: (right: number, up: number,
+ * forward: number) => void, rotate: (right: number, up: number) => void, dolly: (factor: number) => void, commands:
+ * Commands }} Actions */
 
 export class Flight {
-  /** @type {Set<string>} codes of keys */
-  #held = new Set();
+  /** @type {Set<string>} codes of keys */ #held = new Set();
   #modifiers = { shiftKey: false, altKey: false };
   #last = performance.now();
 
-  /** @param {HTMLElement} pad @param {Actions} actions */
-  constructor(pad, actions) {
+  /** @param {HTMLElement} pad @param {Actions} actions */ constructor(pad, actions) {
     this.actions = actions;
     addEventListener("keydown", (event) => this.press(event));
     addEventListener("keyup", (event) => {
@@ -53,8 +44,7 @@ export class Flight {
     return this.#held.size > 0;
   }
 
-  /** @param {KeyboardEvent} event */
-  press(event) {
+  /** @param {KeyboardEvent} event */ press(event) {
     this.#modifiers = event;
     const { code } = event;
     const focused = event.target instanceof Element ? event.target : null;
@@ -87,8 +77,7 @@ export class Flight {
       if (!gamepad) continue;
       /** @param {number} axis */
       const stick = (axis) => (Math.abs(gamepad.axes[axis] ?? 0) > DEAD_ZONE ? gamepad.axes[axis] : 0);
-      /** @param {number} button */
-      const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
+      /** @param {number} button */ const trigger = (button) => gamepad.buttons[button]?.value ?? 0;
       going[0] += stick(0);
       going[2] -= stick(1);
       going[1] += trigger(7) - trigger(6);

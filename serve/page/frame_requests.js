@@ -14,29 +14,21 @@ const ANNOUNCED = 1; // seconds: longer frames are announced
 
 /** @typedef {{ size: Size, samples: number }} Wanted a frame; `samples`: columns and rows per pixel of the picture */
 
-/**
- * What renders: a connection to a server, or workers of the page.
- * @typedef {object} Renderer
- * @property {{ viewer: number, device: Device } | null} hello
- * @property {Map<number, number>} sent when frames were requested that have not arrived, by request
- * @property {(fields: Partial<View> & { camera: Registers, size: Size }) => number} changeView
- */
+/** What renders: a connection to a server, or workers of the page. `sent`: when frames were requested that have not
+ * arrived, by request. @typedef {{ hello: { viewer: number, device: Device } | null, sent: Map<number, number>,
+ * changeView: (fields: Partial<View> & { camera: Registers, size: Size }) => number }} Renderer */
 
 export class FrameRequests {
   resolution = new Resolution();
   changed = false;
-  /** @type {Partial<View>} all but camera and size, that the renderer does not have yet */
-  #fields = {};
+  /** @type {Partial<View>} all but camera and size, that the renderer does not have yet */ #fields = {};
   #changedAt = 0;
-  /** @type {Wanted} the newest request */
-  #shown = { size: [1, 1], samples: 1 };
-  /** @type {Map<number, number>} columns and rows per pixel, by request */
-  #samples = new Map();
+  /** @type {Wanted} the newest request */ #shown = { size: [1, 1], samples: 1 };
+  /** @type {Map<number, number>} columns and rows per pixel, by request */ #samples = new Map();
   #shape = "";
   #frameAt = 0;
 
-  /** @param {Renderer} renderer @param {HTMLElement} stage */
-  constructor(renderer, stage) {
+  /** @param {Renderer} renderer @param {HTMLElement} stage */ constructor(renderer, stage) {
     this.renderer = renderer;
     this.stage = stage;
   }
@@ -59,8 +51,7 @@ export class FrameRequests {
     return since === undefined || seconds < ANNOUNCED ? null : { since, seconds };
   }
 
-  /** @param {Partial<View>} fields */
-  change(fields = {}) {
+  /** @param {Partial<View>} fields */ change(fields = {}) {
     Object.assign(this.#fields, fields);
     this.changed = true;
     this.#changedAt = performance.now();
@@ -78,11 +69,8 @@ export class FrameRequests {
       this.send(view, this.resolution.moving(this.stage, this.device));
   }
 
-  /**
-   * Called once per frame of the screen. Returns whether the finest frame of the newest view is shown.
-   * @param {Pose} view
-   * @param {boolean} busy while keys or the mouse are held
-   */
+  /** Called once per frame of the screen. Returns whether the finest frame of the newest view is shown. @param
+   * {Pose} view @param {boolean} busy while keys or the mouse are held */
   step(view, busy) {
     const waiting = this.renderer.sent.size;
     const seconds = this.resolution.seconds(this.#shown.size);
@@ -102,8 +90,7 @@ export class FrameRequests {
     return false;
   }
 
-  /** @param {Pose} view @param {Wanted} wanted */
-  send(view, { size, samples }) {
+  /** @param {Pose} view @param {Wanted} wanted */ send(view, { size, samples }) {
     const columns = size.map((side) => side * samples);
     const number = this.renderer.changeView({ camera: toRegisters(view, columns), size: columns, ...this.#fields });
     this.#samples.set(number, samples);

@@ -8,27 +8,18 @@ const TAP = { seconds: 0.4, pixels: 12 };
 
 /** @typedef {{ x: number, y: number }} Place of the page, in pixels */
 
-/**
- * What gestures do; right and down are pixels of the page.
- * @typedef {object} Actions
- * @property {(right: number, down: number) => void} turn
- * @property {(right: number, down: number) => void} pan
- * @property {(factor: number) => void} dolly
- * @property {(x: number, y: number) => void} focus
- */
+/** What gestures do; right and down are pixels of the page. @typedef {{ turn: (right: number, down: number) => void,
+ * pan: (right: number, down: number) => void, dolly: (factor: number) => void, focus: (x: number, y: number) =>
+ * void }} Actions */
 
 export class Gestures {
-  /** @type {Map<number, Place & { pans: boolean }>} by id */
-  pointers = new Map();
+  /** @type {Map<number, Place & { pans: boolean }>} by id */ pointers = new Map();
   /** @type {Place & { spread: number }} where the pointers were when the camera moved last */
   #done = { x: 0, y: 0, spread: 0 };
-  /** @type {Place | null} where the only pointer was pressed */
-  #began = null;
-  /** @type {(Place & { time: number }) | null} the last one */
-  #tap = null;
+  /** @type {Place | null} where the only pointer was pressed */ #began = null;
+  /** @type {(Place & { time: number }) | null} the last one */ #tap = null;
 
-  /** @param {HTMLCanvasElement} canvas @param {Actions} actions */
-  constructor(canvas, actions) {
+  /** @param {HTMLCanvasElement} canvas @param {Actions} actions */ constructor(canvas, actions) {
     this.canvas = canvas;
     this.actions = actions;
     canvas.addEventListener("pointerdown", (event) => this.begin(event));
@@ -51,8 +42,7 @@ export class Gestures {
     return this.pointers.size > 0;
   }
 
-  /** @param {PointerEvent} event */
-  begin(event) {
+  /** @param {PointerEvent} event */ begin(event) {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
     const pans = event.button !== 0 || event.shiftKey || event.ctrlKey || event.metaKey;
@@ -62,8 +52,7 @@ export class Gestures {
     this.#began = this.pointers.size === 1 && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
   }
 
-  /** @param {PointerEvent} event */
-  move(event) {
+  /** @param {PointerEvent} event */ move(event) {
     const pointer = this.pointers.get(event.pointerId);
     if (pointer) Object.assign(pointer, { x: event.clientX, y: event.clientY });
   }
@@ -88,14 +77,12 @@ export class Gestures {
     if (done.spread && this.#done.spread !== done.spread) this.actions.dolly(done.spread / (this.#done.spread || 1));
   }
 
-  /** @param {PointerEvent} event */
-  finish(event) {
+  /** @param {PointerEvent} event */ finish(event) {
     if (!this.pointers.has(event.pointerId)) return;
     this.step();
     this.pointers.delete(event.pointerId);
     this.#done = this.place();
-    /** @param {Place | null} place */
-    const near = (place) =>
+    /** @param {Place | null} place */ const near = (place) =>
       place !== null && Math.hypot(event.clientX - place.x, event.clientY - place.y) <= TAP.pixels;
     if (event.type !== "pointerup" || !near(this.#began)) return;
     const now = performance.now();

@@ -9,11 +9,9 @@ const SECONDS = 0.35;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
 export class Glide {
-  /** @type {{ from: Pose, end: Pose, began: number, direct: boolean } | null} */
-  #way = null;
+  /** @type {{ from: Pose, end: Pose, began: number, direct: boolean } | null} */ #way = null;
 
-  /** @param {Pose} from @param {Pose} end */
-  start(from, end, direct = false) {
+  /** @param {Pose} from @param {Pose} end */ start(from, end, direct = false) {
     this.#way = { from, end, began: performance.now(), direct: direct || calm.matches };
   }
 
@@ -31,8 +29,7 @@ export class Glide {
       return end;
     }
     const eased = part * part * (3 - 2 * part);
-    /** @param {number} a @param {number} b */
-    const mix = (a, b) => a + (b - a) * eased;
+    /** @param {number} a @param {number} b */ const mix = (a, b) => a + (b - a) * eased;
     const turn = ((((end.yaw - from.yaw) % (2 * Math.PI)) + 3 * Math.PI) % (2 * Math.PI)) - Math.PI; // the shorter way
     const between = {
       ...end,

@@ -7,16 +7,9 @@ import { add, clamp, length, scale, subtract } from "./vectors.js";
 /** @import { Device } from "./protocol.js" */
 /** @import { Vector } from "./vectors.js" */
 
-/**
- * How hits are coloured; `light`: the place of the lamp in 1/16 voxel.
- * @typedef {object} Look
- * @property {string} shading faces, report or flat
- * @property {string[]} features some of: light, mirrors
- * @property {Vector} light
- * @property {number} ambient
- * @property {number} bounces
- * @property {number[]} background sRGB
- */
+/** How hits are coloured; `light`: the place of the lamp in 1/16 voxel. `shading`: faces, report or flat;
+ * `features`: some of: light, mirrors; `background`: sRGB. @typedef {{ shading: string, features: string[], light:
+ * Vector, ambient: number, bounces: number, background: number[] }} Look */
 
 /** @typedef {{ view: Look, scene: { depth: number } }} LitState */
 /** @typedef {Page & { device(): Device, state(): LitState, set(fields: Partial<Look>): void }} LitPage */
@@ -31,8 +24,7 @@ const FAR = 1.5; // from the middle of the scene to the lamp, in diagonals of th
 const DEGREE = Math.PI / 180;
 
 export class Light {
-  /** @param {LitPage} app */
-  constructor(app) {
+  /** @param {LitPage} app */ constructor(app) {
     this.app = app;
     this.direction = makeSlider($("light"), "Direction", { min: -180, max: 180, step: 1 }, (value) =>
       this.move({ direction: value }),
@@ -73,8 +65,7 @@ export class Light {
     return { direction: Math.atan2(x, z) / DEGREE, height: Math.atan2(y, Math.hypot(x, z)) / DEGREE };
   }
 
-  /** @param {{ direction?: number, height?: number }} changed */
-  move(changed) {
+  /** @param {{ direction?: number, height?: number }} changed */ move(changed) {
     const { direction, height } = { ...this.angles(), ...changed };
     const { centre, far } = this.middle();
     const level = Math.cos(height * DEGREE);
@@ -106,8 +97,7 @@ export class Light {
     }
   }
 
-  /** @param {LitState} state */
-  show({ view, scene }) {
+  /** @param {LitState} state */ show({ view, scene }) {
     for (const made of all("button", $("shading"))) pressed(made, made.dataset.shading === view.shading);
     for (const made of all("button", $("features"))) pressed(made, view.features.includes(made.dataset.feature ?? ""));
     const lit = view.features.includes("light");

@@ -6,13 +6,9 @@ import { $, part } from "./elements.js";
 
 const box = () => $("notice");
 
-/**
- * `progress`: the part that is done, null for no bar. `cancel`: what a button does, null for none.
- * @param {"error" | "progress"} kind
- * @param {string} title
- * @param {string} [text]
- * @param {{ progress?: number | null, cancel?: (() => void) | null }} [options]
- */
+/** `progress`: the part that is done, null for no bar. `cancel`: what a button does, null for none. @param {"error"
+ * | "progress"} kind @param {string} title @param {string} [text] @param {{ progress?: number | null, cancel?: (()
+ * => void) | null }} [options] */
 export function notice(kind, title, text = "", { progress = null, cancel = null } = {}) {
   box().hidden = false;
   box().dataset.kind = kind;

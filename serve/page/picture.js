@@ -15,28 +15,21 @@ const encoded = Uint8Array.from({ length: STEPS + 1 }, (_, step) => {
 });
 
 export class Picture {
-  /** @type {ImageData | null} */
-  #image = null;
+  /** @type {ImageData | null} */ #image = null;
 
-  /** @param {HTMLCanvasElement} canvas */
-  constructor(canvas) {
+  /** @param {HTMLCanvasElement} canvas */ constructor(canvas) {
     this.canvas = canvas;
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
   }
 
-  /** @param {number} columns @param {number} rows */
-  resize(columns, rows) {
+  /** @param {number} columns @param {number} rows */ resize(columns, rows) {
     if (this.canvas.width === columns && this.canvas.height === rows) return;
     Object.assign(this.canvas, { width: columns, height: rows });
     this.#image = null;
   }
 
-  /**
-   * Show a frame, RGB.
-   * @param {{ width: number, height: number, pixels: Uint8Array }} frame
-   * @param {number} samples columns and rows of the frame per pixel
-   * @param {boolean} sharp whether large pixels keep their edges
-   */
+  /** Show a frame, RGB. @param {{ width: number, height: number, pixels: Uint8Array }} frame @param {number} samples
+   * columns and rows of the frame per pixel @param {boolean} sharp whether large pixels keep their edges */
   show({ width, height, pixels }, samples, sharp) {
     const [columns, rows] = [width / samples, height / samples];
     this.resize(columns, rows);
@@ -61,23 +54,15 @@ export class Picture {
     ];
   }
 
-  /** @param {string} name */
-  save(name) {
+  /** @param {string} name */ save(name) {
     this.canvas.toBlob((blob) => {
       if (blob) save(blob, `${name.replace(/[^\w.-]+/g, "_")}.png`);
     }, "image/png");
   }
 }
 
-/**
- * The mean of each 2 x 2 pixels, sRGB, as RGBA.
- * @param {ArrayLike<number>} pixels
- * @param {number} step bytes per pixel
- * @param {number} width
- * @param {number} columns
- * @param {number} rows
- * @param {Uint8ClampedArray} result
- */
+/** The mean of each 2 x 2 pixels, sRGB, as RGBA. @param {ArrayLike<number>} pixels @param {number} step bytes per
+ * pixel @param {number} width @param {number} columns @param {number} rows @param {Uint8ClampedArray} result */
 export function average(pixels, step, width, columns, rows, result) {
   const below = step * width;
   for (let row = 0, to = 0; row < rows; row++) {

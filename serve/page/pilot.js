@@ -11,29 +11,17 @@ import { scale } from "./vectors.js";
 /** @import { Commands } from "./tools.js" */
 /** @import { Move } from "./viewpoint.js" */
 
-/**
- * What controls of the camera ask of a page; places are in voxels.
- * @typedef {object} Page
- * @property {() => Pose | null} view
- * @property {() => Size} size of the picture
- * @property {() => number} side of the world
- * @property {() => Box} bounds of what is solid
- * @property {() => number} limit of the eye's coordinates
- * @property {(how: Move) => void} change
- * @property {(how: Move) => void} glide
- */
+/** What controls of the camera ask of a page; places are in voxels. `size`: of the picture; `side`: of the world;
+ * `bounds`: of what is solid; `limit`: of the eye's coordinates. @typedef {{ view: () => Pose | null, size: () =>
+ * Size, side: () => number, bounds: () => Box, limit: () => number, change: (how: Move) => void, glide: (how: Move)
+ * => void }} Page */
 
 const flies = () => isPressed($("fly"));
-/** @param {Pose} view */
-const mirrored = ({ flipX, flipY }) => [flipX ? -1 : 1, flipY ? -1 : 1];
+/** @param {Pose} view */ const mirrored = ({ flipX, flipY }) => [flipX ? -1 : 1, flipY ? -1 : 1];
 
-/**
- * `focus` is for a double click at a place of the page. Returns what has a step() for each frame of the screen.
- * @param {Page} app
- * @param {HTMLCanvasElement} canvas
- * @param {Commands} commands
- * @param {(x: number, y: number) => void} focus
- */
+/** `focus` is for a double click at a place of the page. Returns what has a step() for each frame of the screen.
+ * @param {Page} app @param {HTMLCanvasElement} canvas @param {Commands} commands @param {(x: number, y: number) =>
+ * void} focus */
 export function makePilot(app, canvas, commands, focus) {
   const across = () => measure([canvas.clientWidth, canvas.clientHeight]);
   const gestures = new Gestures(canvas, {
@@ -73,8 +61,7 @@ export function makePilot(app, canvas, commands, focus) {
   return { gestures, flight };
 }
 
-/** @param {boolean} on */
-function setFlying(on) {
+/** @param {boolean} on */ function setFlying(on) {
   pressed($("fly"), on);
   pressed($("orbit"), !on);
   $("pad").hidden = !on || !matchMedia("(pointer: coarse)").matches;

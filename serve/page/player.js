@@ -11,11 +11,9 @@ export class Player {
   #frames = 1;
   #period = 1000 * PERIOD; // milliseconds
   #next = 0; // when the next frame is due
-  /** @type {number | null} */
-  #scene = null;
+  /** @type {number | null} */ #scene = null;
 
-  /** @param {App} app */
-  constructor(app) {
+  /** @param {App} app */ constructor(app) {
     this.app = app;
     $("play").onclick = () => this.play(!isPressed($("play")));
     $("frames").oninput = () => {
@@ -28,15 +26,13 @@ export class Player {
     return this.#frames > 1 && isPressed($("play"));
   }
 
-  /** @param {boolean} on */
-  play(on) {
+  /** @param {boolean} on */ play(on) {
     pressed($("play"), on);
     $("play").textContent = on ? "Pause" : "Play";
     this.#next = performance.now();
   }
 
-  /** @param {State} state */
-  show({ scene, view }) {
+  /** @param {State} state */ show({ scene, view }) {
     const frames = scene.frames ?? 1;
     this.#frames = frames;
     if (this.#scene !== scene.number) this.play(frames > 1);
@@ -47,16 +43,13 @@ export class Player {
     this.mark(view.frame);
   }
 
-  /** @param {number} frame */
-  mark(frame) {
+  /** @param {number} frame */ mark(frame) {
     $("frames").valueAsNumber = frame;
     $("frame-number").textContent = `${frame + 1} / ${this.#frames}`;
   }
 
-  /**
-   * Called once per frame of the screen: ask for the frame of the animation that is due, unless the last one still is on
-   * its way. A device that is slower than the animation shows every frame, more slowly.
-   */
+  /** Called once per frame of the screen: ask for the frame of the animation that is due, unless the last one still
+   * is on its way. A device that is slower than the animation shows every frame, more slowly. */
   step() {
     const now = performance.now();
     if (!this.playing || now < this.#next || this.app.waits()) return;

@@ -8,69 +8,31 @@ const HEADER = 56;
 
 /** @typedef {{ name: string, size: Size, width_step: number, position_limit: number, features: string[] }} Device */
 
-/**
- * @typedef {object} Hello
- * @property {number} protocol
- * @property {number} viewer
- * @property {Device} device
- * @property {string[]} scenes
- * @property {string[]} suffixes
- * @property {{ chunk: number, upload: number }} limits
- */
+/** @typedef {{ protocol: number, viewer: number, device: Device, scenes: string[], suffixes: string[], limits: {
+ * chunk: number, upload: number } }} Hello */
 
-/**
- * @typedef {object} Scene
- * @property {number} number
- * @property {string} name
- * @property {number} depth
- * @property {number} words
- * @property {Box | null} bounds
- * @property {Registers} camera
- * @property {Size} size
- * @property {number} [frames]
- * @property {number | null} [period]
- */
+/** @typedef {{ number: number, name: string, depth: number, words: number, bounds: Box | null, camera: Registers,
+ * size: Size, frames?: number, period?: number | null }} Scene */
 
 /** @typedef {Look & { camera: Registers, size: Size, nonstop: boolean, frame: number }} View */
 
-/**
- * @typedef {object} State
- * @property {number} viewers
- * @property {number | null} controller
- * @property {number[]} waiting
- * @property {Scene} scene
- * @property {View} view
- * @property {string | null} trouble
- */
+/** @typedef {{ viewers: number, controller: number | null, waiting: number[], scene: Scene, view: View, trouble:
+ * string | null }} State */
 
-/**
- * A frame of the screen. `requested`: when this page asked for it; absent for frames of other viewers.
- * @typedef {object} Frame
- * @property {number} width
- * @property {number} height
- * @property {number} sequence
- * @property {number} viewer
- * @property {number} request
- * @property {number} rays
- * @property {number} seconds
- * @property {number | null} cycles
- * @property {number | null} words
- * @property {number} [requested]
- */
+/** A frame of the screen. `requested`: when this page asked for it; absent for frames of other viewers. @typedef {{
+ * width: number, height: number, sequence: number, viewer: number, request: number, rays: number, seconds: number,
+ * cycles: number | null, words: number | null, requested?: number }} Frame */
 
 /** @typedef {{ stage: string, done: number, total: number }} Progress of a scene that is loaded */
 
-/** @param {bigint} count */
-const counter = (count) => (count === 0xffffffffffffffffn ? null : Number(count));
+/** @param {bigint} count */ const counter = (count) => (count === 0xffffffffffffffffn ? null : Number(count));
 
 /** Read a frame with its pixels, RGB; null where the message is none. @param {ArrayBuffer} data */
 export function readFrame(data) {
   const view = new DataView(data);
   if (data.byteLength < HEADER || String.fromCharCode(...new Uint8Array(data, 0, 4)) !== "VXFR") return null;
-  /** @param {number} at */
-  const u32 = (at) => view.getUint32(at, true);
-  /** @type {Frame} */
-  const frame = {
+  /** @param {number} at */ const u32 = (at) => view.getUint32(at, true);
+  /** @type {Frame} */ const frame = {
     width: view.getUint16(6, true),
     height: view.getUint16(8, true),
     sequence: u32(12),

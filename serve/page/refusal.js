@@ -3,20 +3,15 @@
 /** @typedef {"token" | "origin" | "version" | "full" | "gone" | "lost"} Reason */
 /** @typedef {{ reason: Reason, text?: string }} Refusal */
 
-/** @type {Map<number, Reason>} */
-const REASONS = new Map([
+/** @type {Map<number, Reason>} */ const REASONS = new Map([
   [401, "token"],
   [403, "origin"],
   [404, "version"],
   [503, "full"],
 ]);
 
-/**
- * The reason is "gone" when no server answers, and "lost" where there is no other.
- * @param {string} path
- * @param {Record<string, string>} query
- * @returns {Promise<Refusal>}
- */
+/** The reason is "gone" when no server answers, and "lost" where there is no other. @param {string} path @param
+ * {Record<string, string>} query @returns {Promise<Refusal>} */
 export async function askForReason(path, query) {
   const fields = new URLSearchParams(query);
   fields.set("origin", location.origin);

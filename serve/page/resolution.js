@@ -14,10 +14,8 @@ const PIXELS = 1 << 22; // of a frame
 const RATIO = 2; // of the screen's pixels to those of the page, at most
 
 export class Resolution {
-  /** @type {number | null} seconds per pixel */
-  cost = null;
-  /** @type {Size | null} a size that was chosen in place of the stage's */
-  fixed = null;
+  /** @type {number | null} seconds per pixel */ cost = null;
+  /** @type {Size | null} a size that was chosen in place of the stage's */ fixed = null;
 
   /** Learn from a frame; what the network takes counts too. @param {Size} size @param {number} seconds */
   measure([width, height], seconds) {
@@ -25,17 +23,12 @@ export class Resolution {
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
-  /** @param {Size} size */
-  seconds([width, height]) {
+  /** @param {Size} size */ seconds([width, height]) {
     return this.cost === null ? 0 : this.cost * width * height;
   }
 
-  /**
-   * The frame of the stage at rest; with 2 samples a frame has twice the columns and rows.
-   * @param {HTMLElement} stage
-   * @param {Device} device
-   * @returns {Wanted}
-   */
+  /** The frame of the stage at rest; with 2 samples a frame has twice the columns and rows. @param {HTMLElement}
+   * stage @param {Device} device @returns {Wanted} */
   finest(stage, device) {
     const ratio = Math.min(devicePixelRatio, RATIO);
     const wanted = this.fixed ?? [stage.clientWidth * ratio, stage.clientHeight * ratio];
@@ -59,13 +52,8 @@ export class Resolution {
     return { size: fitting(size, Math.ceil(part * 2) / 2, device), samples: 1 };
   }
 
-  /**
-   * The frame after one of `shown` columns and rows when the camera has come to rest.
-   * @param {HTMLElement} stage
-   * @param {Device} device
-   * @param {Size} shown
-   * @returns {Wanted}
-   */
+  /** The frame after one of `shown` columns and rows when the camera has come to rest. @param {HTMLElement} stage
+   * @param {Device} device @param {Size} shown @returns {Wanted} */
   next(stage, device, shown) {
     const { size, samples } = this.finest(stage, device);
     if (samples > 1) return { size, samples };
@@ -79,7 +67,8 @@ export class Resolution {
   }
 }
 
-/** A size of the same shape, divided by `part`, that the device can render. @param {Size} size @param {number} part @param {Device} device */
+/** A size of the same shape, divided by `part`, that the device can render. @param {Size} size @param {number} part
+ * @param {Device} device */
 function fitting([width, height], part, device) {
   const [widest, highest] = device.size;
   const factor = Math.min(1 / part, widest / width, highest / height, Math.sqrt(PIXELS / (width * height)));

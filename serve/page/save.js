@@ -1,7 +1,6 @@
 // Files that the browser saves.
 
-/** @param {Blob} blob @param {string} name */
-export function save(blob, name) {
+/** @param {Blob} blob @param {string} name */ export function save(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;

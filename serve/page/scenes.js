@@ -5,8 +5,7 @@ import { $, all, makeButton, makeToolbar, pressed } from "./elements.js";
 import { dismiss, notice } from "./notices.js";
 import { uploadFiles } from "./upload.js";
 
-/** @type {Record<string, string>} */
-const STAGES = {
+/** @type {Record<string, string>} */ const STAGES = {
   send: "Sending",
   read: "Reading",
   write: "Writing to the device",
@@ -26,16 +25,14 @@ const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene f
 /** @typedef {(stage: string, done: number, total: number) => void} OnProgress */
 
 export class Scenes {
-  /** @param {App} app */
-  constructor(app) {
+  /** @param {App} app */ constructor(app) {
     this.app = app;
     for (const bar of all("[data-scenes]")) makeToolbar(bar);
     for (const button of all("[data-open]")) button.onclick = () => $("files").click();
     acceptFiles((files) => this.open(files));
   }
 
-  /** @param {Hello} hello */
-  hello({ scenes, suffixes }) {
+  /** @param {Hello} hello */ hello({ scenes, suffixes }) {
     for (const text of all("[data-formats]")) text.textContent = `Opens ${suffixes.join(" ")}`;
     $("files").accept = [...suffixes, ...ALSO].join(",");
     $("examples").hidden = scenes.length === 0;
@@ -45,31 +42,25 @@ export class Scenes {
     }
   }
 
-  /** @param {State} state */
-  show({ scene }) {
+  /** @param {State} state */ show({ scene }) {
     for (const made of all("[data-scene]")) pressed(made, made.dataset.scene === scene.name);
     $("empty").hidden = scene.number !== 0;
     $("stage").classList.toggle("empty", scene.number === 0);
   }
 
-  /** @param {string} name */
-  #request(name) {
+  /** @param {string} name */ #request(name) {
     this.load(name, (report) =>
       this.app.connection.request("show", { scene: name }, ({ stage, done, total }) => report(stage, done, total)),
     );
   }
 
-  /** @param {File[]} files */
-  open(files) {
+  /** @param {File[]} files */ open(files) {
     if (files.length)
       this.load(files[0].name, (report, signal) => uploadFiles(this.app.connection, files, report, signal));
   }
 
-  /**
-   * Run what loads another scene.
-   * @param {string} name
-   * @param {(report: OnProgress, signal: AbortSignal) => Promise<unknown>} run
-   */
+  /** Run what loads another scene. @param {string} name @param {(report: OnProgress, signal: AbortSignal) =>
+   * Promise<unknown>} run */
   async load(name, run) {
     if (!this.app.hasControl())
       return notice("error", "You do not have control", "Take control before you change the scene.");

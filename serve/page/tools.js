@@ -11,8 +11,7 @@ export function makeTools() {
   $("close").onclick = dismiss;
   makeToolbar($("tools"));
 
-  /** @param {boolean} on */
-  const setFigures = (on) => {
+  /** @param {boolean} on */ const setFigures = (on) => {
     pressed($("statistics"), on);
     $("figures").hidden = !on;
   };

@@ -8,8 +8,7 @@ const WINDOW = 8; // chunks that the server has not acknowledged
 /** @import { Connection, Report } from "./connection.js" */
 /** @import { OnProgress } from "./scenes.js" */
 
-/** @param {number} upload @param {number} offset @param {Uint8Array} bytes */
-function chunk(upload, offset, bytes) {
+/** @param {number} upload @param {number} offset @param {Uint8Array} bytes */ function chunk(upload, offset, bytes) {
   const message = new Uint8Array(16 + bytes.length);
   const view = new DataView(message.buffer);
   message.set([0x56, 0x58, 0x43, 0x48]); // VXCH
@@ -20,13 +19,9 @@ function chunk(upload, offset, bytes) {
   return message;
 }
 
-/**
- * Resolves with the scene, rejects with the reason of the server, or when `signal` aborts. The caller then tells the server.
- * @param {Connection} connection
- * @param {File[]} files
- * @param {OnProgress} report
- * @param {AbortSignal} signal
- */
+/** Resolves with the scene, rejects with the reason of the server, or when `signal` aborts. The caller then tells
+ * the server. @param {Connection} connection @param {File[]} files @param {OnProgress} report @param {AbortSignal}
+ * signal */
 export async function uploadFiles(connection, files, report, signal) {
   const parts = await Promise.all(files.map(async (file) => new Uint8Array(await file.arrayBuffer())));
   const total = parts.reduce((sum, part) => sum + part.length, 0);
@@ -46,8 +41,7 @@ export async function uploadFiles(connection, files, report, signal) {
 
   let received = 0;
   let wake = () => {};
-  /** @param {Report} message */
-  const progress = (message) => {
+  /** @param {Report} message */ const progress = (message) => {
     if (message.type === "received") {
       received = message.bytes;
       report("send", received, total);

@@ -11,25 +11,21 @@ import { showBusy } from "./tools.js";
 /** @typedef {(now: Pose) => Pose} Move */
 
 export class Viewpoint {
-  /** @type {Pose | null} */
-  pose = null;
+  /** @type {Pose | null} */ pose = null;
   #glide = new Glide();
 
-  /** @param {FrameRequests} frames */
-  constructor(frames) {
+  /** @param {FrameRequests} frames */ constructor(frames) {
     this.frames = frames;
   }
 
-  /** @param {Move} how */
-  change(how) {
+  /** @param {Move} how */ change(how) {
     if (!this.pose) return;
     this.#glide.stop();
     this.pose = how(this.pose);
     this.frames.change();
   }
 
-  /** @param {Move} how */
-  glide(how) {
+  /** @param {Move} how */ glide(how) {
     if (!this.pose) return;
     this.#glide.start(this.pose, how(this.pose), this.frames.resolution.seconds(this.frames.size) > 1);
   }
@@ -41,10 +37,8 @@ export class Viewpoint {
     this.pose = pose;
   }
 
-  /**
-   * Called once per frame of the screen. Returns whether the view has changed.
-   * @param {{ gestures: Gestures, flight: Flight }} pilot
-   */
+  /** Called once per frame of the screen. Returns whether the view has changed. @param {{ gestures: Gestures,
+   * flight: Flight }} pilot */
   step({ gestures, flight }) {
     gestures.step();
     flight.step();

@@ -9,8 +9,7 @@ import { frame } from "./navigation.js";
 /** @import { Commands } from "./tools.js" */
 /** @import { Vector } from "./vectors.js" */
 
-/** @type {[string, Vector][]} */
-const PRESETS = [
+/** @type {[string, Vector][]} */ const PRESETS = [
   ["Corner", [-0.62, -0.55, -1]],
   ["Front", [0, 0, -1]],
   ["Back", [0, 0, 1]],
@@ -22,8 +21,7 @@ const PRESETS = [
 const SAVED = "voxrt.views";
 
 export class Views {
-  /** @param {Page} app */
-  constructor(app) {
+  /** @param {Page} app */ constructor(app) {
     this.app = app;
     PRESETS.forEach(([name], i) => makeButton($("presets"), name, () => this.choose(i), `Key ${i + 1}`));
     makeToolbar($("presets"));
@@ -39,16 +37,14 @@ export class Views {
     return Object.fromEntries(PRESETS.map((_, i) => [`Digit${i + 1}`, () => this.choose(i)]));
   }
 
-  /** @param {number} i */
-  choose(i) {
+  /** @param {number} i */ choose(i) {
     this.app.glide((view) => {
       const turned = lookAlong({ ...view, yaw: 0, fov: FIELD_OF_VIEW.usual }, PRESETS[i][1]);
       return frame(turned, this.app.bounds(), this.app.size(), this.app.limit());
     });
   }
 
-  /** @returns {Record<string, Pose>} */
-  saved() {
+  /** @returns {Record<string, Pose>} */ saved() {
     try {
       return JSON.parse(localStorage.getItem(SAVED) ?? "{}");
     } catch {
@@ -56,8 +52,7 @@ export class Views {
     }
   }
 
-  /** @param {HTMLInputElement} input */
-  save(input) {
+  /** @param {HTMLInputElement} input */ save(input) {
     const views = this.saved();
     const name = input.value.trim() || `View ${Object.keys(views).length + 1}`;
     localStorage.setItem(SAVED, JSON.stringify({ ...views, [name]: this.app.view() }));
@@ -75,8 +70,7 @@ export class Views {
     }
   }
 
-  /** @param {string} name */
-  delete(name) {
+  /** @param {string} name */ delete(name) {
     const { [name]: _deleted, ...rest } = this.saved();
     localStorage.setItem(SAVED, JSON.stringify(rest));
     this.show();

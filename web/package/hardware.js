@@ -11,17 +11,15 @@ import { colourTable, FACES } from "./voxrt.js";
 /** @import { Arrays, Source } from "./instance.js" */
 /** @import { Camera, Look, Size } from "./voxrt.js" */
 
-/** @typedef {{ colour: Uint8Array, material: Uint8Array, face: Uint8Array, clocks: number, wordsRead: number }} Rendered */
+/** @typedef {{ colour: Uint8Array, material: Uint8Array, face: Uint8Array, clocks: number, wordsRead: number }}
+ * Rendered */
 
 /** The verilated ray tracer. */
 export class Hardware extends Instance {
   #depth = 1;
 
-  /**
-   * Compile and reset.
-   * @param {Source} source voxrt_hardware.wasm
-   * @param {(pixels: number) => void} [onProgress] called now and then within a frame, with the pixels that are ready
-   */
+  /** Compile and reset. @param {Source} source voxrt_hardware.wasm @param {(pixels: number) => void} [onProgress]
+   * called now and then within a frame, with the pixels that are ready */
   static async start(source, onProgress = () => {}) {
     return Hardware.load(source, { page: { progress: onProgress } });
   }
@@ -31,24 +29,17 @@ export class Hardware extends Instance {
     return this.wasm.vx_word_limit();
   }
 
-  /** @param {ArrayLike<number>} words @param {number} depth */
-  setMemory(words, depth) {
+  /** @param {ArrayLike<number>} words @param {number} depth */ setMemory(words, depth) {
     if (words.length > this.wordLimit)
       throw new VoxrtError(`the hardware's memory holds ${this.wordLimit} words, not ${words.length}`);
     this.#depth = depth;
     this.guard(() => this.with([[Uint32Array, words]], (at) => this.checked(this.wasm.vx_load(at, words.length))));
   }
 
-  /**
-   * Render a frame as its pixels leave the circuit. Returns copies.
-   * @param {Camera} camera
-   * @param {Size} size
-   * @param {Pick<Look, "materials" | "flat" | "faces">} look
-   * @returns {Rendered}
-   */
+  /** Render a frame as its pixels leave the circuit. Returns copies. @param {Camera} camera @param {Size} size
+   * @param {Pick<Look, "materials" | "flat" | "faces">} look @returns {Rendered} */
   render({ position, look, right, up }, [width, height], { materials, flat = false, faces = FACES }) {
-    /** @type {Arrays} */
-    const arrays = [
+    /** @type {Arrays} */ const arrays = [
       [Int32Array, [...position, ...look, ...right, ...up]],
       [Uint8Array, colourTable(materials)],
       [Uint8Array, faces ?? []],

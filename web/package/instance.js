@@ -16,38 +16,27 @@ export const textBytes = (text) => encoder.encode(`${text}\0`);
 /** @typedef {{ memory: WebAssembly.Memory, _initialize: Call } & { [name: `vx_${string}`]: Call }} Exports */
 /** @typedef {BufferSource | Response | WebAssembly.Module} Source of a module: its bytes, or itself */
 
-/**
- * The array of a kind, of numbers in the memory of a module.
- * @template T
- * @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBuffer, at: number, length: number): T }} Kind
- */
+/** The array of a kind, of numbers in the memory of a module. @template T @typedef {{ BYTES_PER_ELEMENT: number, new
+ * (buffer: ArrayBuffer, at: number, length: number): T }} Kind */
 
 /** @typedef {{ readonly length: number, set(values: ArrayLike<number>): void }} NumberArray */
 /** @typedef {[Kind<NumberArray>, ArrayLike<number>][]} Arrays kinds of arrays and their numbers */
 
-/** What Voxrt and Hardware have in common. Buffers of a module move when its memory grows: views are made anew each time. */
+/** What Voxrt and Hardware have in common. Buffers of a module move when its memory grows: views are made anew each
+ * time. */
 export class Instance {
-  /** @type {Exports} */
-  wasm;
+  /** @type {Exports} */ wasm;
 
-  /** @param {Exports} wasm */
-  constructor(wasm) {
+  /** @param {Exports} wasm */ constructor(wasm) {
     this.wasm = wasm;
   }
 
-  /**
-   * Compile and instantiate.
-   * @template {Instance} T
-   * @this {new (wasm: Exports) => T}
-   * @param {Source} source
-   * @param {WebAssembly.Imports} [imports] what the module needs beside the system
-   * @returns {Promise<T>}
-   */
+  /** Compile and instantiate. @template {Instance} T @this {new (wasm: Exports) => T} @param {Source} source @param
+   * {WebAssembly.Imports} [imports] what the module needs beside the system @returns {Promise<T>} */
   static async load(source, imports = {}) {
     const bytes = source instanceof Response ? await source.arrayBuffer() : source;
     const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
-    /** @type {Exports | undefined} */
-    let wasm;
+    /** @type {Exports | undefined} */ let wasm;
     const memory = () => /** @type {Exports} */ (wasm).memory.buffer;
     const { exports } = await WebAssembly.instantiate(module, { ...imports, wasi_snapshot_preview1: system(memory) });
     wasm = /** @type {Exports} */ (/** @type {unknown} */ (exports));
@@ -60,34 +49,22 @@ export class Instance {
     return this.wasm.memory.buffer.byteLength;
   }
 
-  /**
-   * @template T
-   * @param {Kind<T>} type
-   * @param {number} at
-   * @param {number} length
-   * @returns {T}
-   */
+  /** @template T @param {Kind<T>} type @param {number} at @param {number} length @returns {T} */
   view(type, at, length) {
     return new type(this.wasm.memory.buffer, at, length);
   }
 
-  /** @param {Kind<NumberArray>} type @param {ArrayLike<number>} values */
-  copy(type, values) {
+  /** @param {Kind<NumberArray>} type @param {ArrayLike<number>} values */ copy(type, values) {
     const at = this.wasm.vx_alloc(values.length * type.BYTES_PER_ELEMENT);
     if (!at) throw new VoxrtError(EXHAUSTED);
     this.view(type, at, values.length).set(values);
     return at;
   }
 
-  /**
-   * Call with the addresses of copies of some numbers.
-   * @template T
-   * @param {Arrays} arrays
-   * @param {(...at: number[]) => T} work
-   */
+  /** Call with the addresses of copies of some numbers. @template T @param {Arrays} arrays @param {(...at: number[])
+   * => T} work */
   with(arrays, work) {
-    /** @type {number[]} */
-    const copies = [];
+    /** @type {number[]} */ const copies = [];
     try {
       for (const [type, values] of arrays) copies.push(this.copy(type, values));
       return work(...copies);
@@ -96,24 +73,18 @@ export class Instance {
     }
   }
 
-  /** @param {number} at */
-  string(at) {
+  /** @param {number} at */ string(at) {
     const bytes = new Uint8Array(this.wasm.memory.buffer, at);
     return decoder.decode(bytes.subarray(0, bytes.indexOf(0)).slice());
   }
 
-  /** @param {number} result */
-  checked(result) {
+  /** @param {number} result */ checked(result) {
     if (result < 0) throw new VoxrtError(this.string(this.wasm.vx_error()));
     return result;
   }
 
-  /**
-   * Replace what the machine throws instead of the library: out of memory, out of stack.
-   * @template T
-   * @param {() => T} work
-   * @returns {T}
-   */
+  /** Replace what the machine throws instead of the library: out of memory, out of stack. @template T @param {() =>
+   * T} work @returns {T} */
   guard(work) {
     try {
       return work();
@@ -124,10 +95,8 @@ export class Instance {
   }
 }
 
-/**
- * What the C library needs of the system: a clock, and nowhere to write. There are no files and no environment.
- * @param {() => ArrayBuffer} memory
- */
+/** What the C library needs of the system: a clock, and nowhere to write. There are no files and no environment.
+ * @param {() => ArrayBuffer} memory */
 function system(memory) {
   const [done, noFile] = [0, 8]; // of WASI
   const none = () => noFile;

@@ -2,12 +2,8 @@
 
 const ALPHA = 0xff000000;
 
-/**
- * RGB as opaque RGBA. Four pixels are three words of one and four of the other: WebAssembly and every browser are
- * little-endian. Rows of tiles start at a multiple of four bytes.
- * @param {Uint8Array} rgb
- * @param {Uint32Array} rgba
- */
+/** RGB as opaque RGBA. Four pixels are three words of one and four of the other: WebAssembly and every browser are
+ * little-endian. Rows of tiles start at a multiple of four bytes. @param {Uint8Array} rgb @param {Uint32Array} rgba */
 export function opaque(rgb, rgba) {
   const fours = rgba.length >> 2;
   const words = new Uint32Array(rgb.buffer, rgb.byteOffset, 3 * fours);

@@ -23,32 +23,19 @@ export { colours } from "./three_looks.js";
 /** @import { Voxrt } from "./voxrt.js" */
 /** @import { Warn } from "./warnings.js" */
 
-/**
- * A material of the scene; those of equal keys are one, and `order` sorts them. `colour` (sRGB) replaces that of the
- * material of three.js.
- * @typedef {object} Described
- * @property {unknown} key
- * @property {string} name
- * @property {number} [order]
- * @property {Triple} [colour]
- * @property {boolean} [mirror]
- * @property {boolean} [authored]
- */
+/** A material of the scene; those of equal keys are one, and `order` sorts them. `colour` (sRGB) replaces that of
+ * the material of three.js. @typedef {{ key: unknown, name: string, order?: number, colour?: Triple, mirror?:
+ * boolean, authored?: boolean }} Described */
 
-/**
- * How a file differs from a scene graph.
- * @typedef {object} Rules
- * @property {(mesh: ThreeMesh) => Object3D} groupOf what makes meshes one object
- * @property {(mesh: ThreeMesh, group: Object3D) => string} nameOf
- * @property {(material: ThreeMaterial) => Described | null | undefined} materialOf null for the default material
- * @property {(material: ThreeMaterial, geometry: BufferGeometry, warn: Warn) => Look | null} appearanceOf null where the
- *   colour of the material is uniform
- * @property {(material: ThreeMaterial) => boolean} isLeftOut whether a material is fully transparent
- * @property {(mesh: ThreeMesh) => Attribute | null} normalsOf the author's normals, for baked light
- */
+/** How a file differs from a scene graph. `groupOf`: what makes meshes one object; `materialOf`: null for the
+ * default material; `appearanceOf`: null where the colour of the material is uniform; `isLeftOut`: whether a
+ * material is fully transparent; `normalsOf`: the author's normals, for baked light. @typedef {{ groupOf: (mesh:
+ * ThreeMesh) => Object3D, nameOf: (mesh: ThreeMesh, group: Object3D) => string, materialOf: (material:
+ * ThreeMaterial) => Described | null | undefined, appearanceOf: (material: ThreeMaterial, geometry: BufferGeometry,
+ * warn: Warn) => Look | null, isLeftOut: (material: ThreeMaterial) => boolean, normalsOf: (mesh: ThreeMesh) =>
+ * Attribute | null }} Rules */
 
-/** @type {Rules} */
-const PLAIN = {
+/** @type {Rules} */ const PLAIN = {
   normalsOf: (mesh) => (isDeformed(mesh) ? null : (mesh.geometry.getAttribute("normal") ?? null)),
   appearanceOf: appearanceOfThree,
   isLeftOut: () => false,
@@ -59,22 +46,15 @@ const PLAIN = {
 
 const DEFAULT = { name: "default", colour: [200, 200, 200], authored: false };
 
-/**
- * The visible meshes below an object of three.js, at this moment.
- * @param {Object3D} root
- * @param {Voxrt} voxrt
- * @param {Partial<Rules>} [rules]
- * @returns {Scene & { warnings: Warning[] }}
- */
+/** The visible meshes below an object of three.js, at this moment. @param {Object3D} root @param {Voxrt} voxrt
+ * @param {Partial<Rules>} [rules] @returns {Scene & { warnings: Warning[] }} */
 export function sceneOf(root, voxrt, rules = {}) {
   const all = { ...PLAIN, ...rules };
   const warnings = new Warnings();
   root.updateMatrixWorld?.(true);
   const table = new Materials(all, voxrt);
-  /** @type {Joined[]} */
-  const meshes = [];
-  /** @type {SceneObject[]} */
-  const objects = [];
+  /** @type {Joined[]} */ const meshes = [];
+  /** @type {SceneObject[]} */ const objects = [];
   /** @type {Map<string, number>} the mesh, by what parts that do not deform show; -1 for no triangles */
   const known = new Map();
   for (const [group, parts] of groupsBelow(root, all, warnings.warn)) {
@@ -102,17 +82,14 @@ export function sceneOf(root, voxrt, rules = {}) {
 
 /** The materials in use, by their keys. */
 class Materials {
-  /** @type {Map<unknown, Described & { order: number, colour: Triple }>} */
-  #known = new Map();
+  /** @type {Map<unknown, Described & { order: number, colour: Triple }>} */ #known = new Map();
 
-  /** @param {Rules} rules @param {Voxrt} voxrt */
-  constructor(rules, voxrt) {
+  /** @param {Rules} rules @param {Voxrt} voxrt */ constructor(rules, voxrt) {
     this.rules = rules;
     this.voxrt = voxrt;
   }
 
-  /** @param {ThreeMaterial} material */
-  keyOf(material) {
+  /** @param {ThreeMaterial} material */ keyOf(material) {
     const found = this.rules.materialOf(material) ?? { ...DEFAULT, key: DEFAULT, order: Infinity };
     const { key, order = this.#known.size } = found;
     if (!this.#known.has(key))
@@ -150,8 +127,7 @@ class Materials {
 
 /** The visible meshes, by what makes them one object. @param {Object3D} root @param {Rules} rules @param {Warn} warn */
 function groupsBelow(root, { groupOf }, warn) {
-  /** @type {Map<Object3D, ThreeMesh[]>} */
-  const groups = new Map();
+  /** @type {Map<Object3D, ThreeMesh[]>} */ const groups = new Map();
   visit(root, (object) => {
     const kind = "isPoints" in object ? "points" : "isLine" in object ? "lines" : null;
     if (kind) warn("no-area", `${kind} were left out: they have no area to voxelize`);
@@ -164,15 +140,13 @@ function groupsBelow(root, { groupOf }, warn) {
   return groups;
 }
 
-/** @param {Object3D} object @param {(object: Object3D) => void} see */
-function visit(object, see) {
+/** @param {Object3D} object @param {(object: Object3D) => void} see */ function visit(object, see) {
   if (!object.visible) return;
   see(object);
   for (const child of object.children) visit(child, see);
 }
 
-/** @param {ThreeMesh[]} parts */
-const lookOf = (parts) =>
+/** @param {ThreeMesh[]} parts */ const lookOf = (parts) =>
   parts.map(({ geometry, material }) => [geometry.id, [material].flat().map((one) => one?.id)].join()).join(";");
 
 /** The matrices of an object, several where it has instances. @param {ThreeMesh} mesh @returns {ArrayLike<number>[]} */
@@ -186,8 +160,7 @@ function placesOf(mesh) {
 /** A matrix of three.js (columns) as 3 rows of 4. @param {ArrayLike<number>} m */
 const rows = (m) => [m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]];
 
-/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
-const product = (a, b) =>
+/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */ const product = (a, b) =>
   Array.from({ length: 16 }, (_, at) => {
     const [column, row] = [at >> 2, at & 3];
     return [0, 1, 2, 3].reduce((sum, i) => sum + a[row + 4 * i] * b[4 * column + i], 0);

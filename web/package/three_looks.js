@@ -1,6 +1,7 @@
 // What materials of three.js look like: their colours, textures, and the colours of vertices.
 
-/** @import { BufferAttribute, BufferGeometry, InterleavedBufferAttribute, Material, MeshBasicMaterial, Texture } from "three" */
+/** @import { BufferAttribute, BufferGeometry, InterleavedBufferAttribute, Material, MeshBasicMaterial } from "three" */
+/** @import { Texture } from "three" */
 /** @import { Appearance, Image, Wrap } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 /** @import { Warn } from "./warnings.js" */
@@ -8,25 +9,19 @@
 /** @typedef {BufferAttribute | InterleavedBufferAttribute} Attribute */
 /** @typedef {(vertex: number, out: { [index: number]: number }) => void} Setter sets numbers of a vertex */
 
-/**
- * What triangles show. The entry is the same object for the same look.
- * @typedef {object} Look
- * @property {Appearance} entry
- * @property {Setter | null} [uvOf] sets two numbers
- * @property {Setter | null} [colourOf] sets four numbers: linear colour and alpha
- * @property {(vertex: number) => boolean} [covers] whether a vertex has a colour; a triangle of which none has is plain
- */
+/** What triangles show. The entry is the same object for the same look. `uvOf`: sets two numbers; `colourOf`: sets
+ * four numbers: linear colour and alpha; `covers`: whether a vertex has a colour; a triangle of which none has is
+ * plain. @typedef {{ entry: Appearance, uvOf?: Setter | null, colourOf?: Setter | null, covers?: (vertex: number)
+ * => boolean }} Look */
 
-/** @type {Map<number, Wrap>} */
-const WRAPS = new Map([
+/** @type {Map<number, Wrap>} */ const WRAPS = new Map([
   [1000, "repeat"],
   [1001, "clamp"],
   [1002, "mirror"],
 ]);
 const NEAREST = 1003;
 
-/** @param {Material} material */
-const rgbOf = (material) => {
+/** @param {Material} material */ const rgbOf = (material) => {
   const { r, g, b } = /** @type {MeshBasicMaterial} */ (material).color ?? { r: 1, g: 1, b: 1 };
   return [r, g, b];
 };
@@ -34,16 +29,10 @@ const rgbOf = (material) => {
 /** The sRGB of a material's own colour. @param {Material} material @param {Voxrt} voxrt */
 export const colourOf = (material, voxrt) => rgbOf(material).map((channel) => voxrt.srgb(channel));
 
-/** @type {WeakMap<Material, { textured?: Appearance, coloured?: Appearance }>} */
-const looks = new WeakMap();
+/** @type {WeakMap<Material, { textured?: Appearance, coloured?: Appearance }>} */ const looks = new WeakMap();
 
-/**
- * The look of a material, apart from alpha; null where its colour is uniform.
- * @param {Material} material
- * @param {BufferGeometry} geometry
- * @param {Warn} warn
- * @returns {Look | null}
- */
+/** The look of a material, apart from alpha; null where its colour is uniform. @param {Material} material @param
+ * {BufferGeometry} geometry @param {Warn} warn @returns {Look | null} */
 export function appearanceOfThree(material, geometry, warn) {
   const colour = material?.vertexColors ? geometry.getAttribute("color") : null;
   const uv = geometry.getAttribute("uv");
@@ -68,12 +57,12 @@ export function appearanceOfThree(material, geometry, warn) {
 /** @param {Texture} texture */
 const wrapsOf = ({ wrapS, wrapT }) => [wrapS, wrapT].map((wrap) => WRAPS.get(wrap) ?? "repeat");
 
-/** Sets u and v, which the texture's offset, repeat and rotation move. @param {Attribute} uv @param {Texture} texture */
+/** Sets u and v, which the texture's offset, repeat and rotation move. @param {Attribute} uv @param {Texture}
+ * texture */
 function coordinatesOf(uv, texture) {
   texture.updateMatrix();
   const [a, b, , c, d, , e, f] = texture.matrix.elements;
-  /** @type {Setter} */
-  return (vertex, out) => {
+  /** @type {Setter} */ return (vertex, out) => {
     const [u, v] = [uv.getX(vertex), uv.getY(vertex)];
     out[0] = a * u + c * v + e;
     out[1] = b * u + d * v + f;
@@ -90,10 +79,10 @@ export const colours = (attribute) => (vertex, out) => {
 
 /** @typedef {{ data?: Uint8Array, width: number, height: number }} Source the image of a texture */
 
-/** @type {WeakMap<Source, Image | null>} */
-const read = new WeakMap();
+/** @type {WeakMap<Source, Image | null>} */ const read = new WeakMap();
 
-/** The pixels of a texture, row 0 at v = 0; null where they cannot be read. @param {Texture} texture @param {Warn} warn */
+/** The pixels of a texture, row 0 at v = 0; null where they cannot be read. @param {Texture} texture @param {Warn}
+ * warn */
 function pixelsOf(texture, warn) {
   const image = /** @type {Source | null} */ (texture.image);
   if (image && !read.has(image)) read.set(image, pixelsOfImage(image));
@@ -102,8 +91,7 @@ function pixelsOf(texture, warn) {
   return found && texture.flipY ? turned(found) : (found ?? null);
 }
 
-/** @param {Source} image @returns {Image | null} */
-function pixelsOfImage(image) {
+/** @param {Source} image @returns {Image | null} */ function pixelsOfImage(image) {
   const { data, width, height } = image;
   if (data?.length === 4 * width * height && data.BYTES_PER_ELEMENT === 1) return { width, height, pixels: data };
   if (typeof OffscreenCanvas === "undefined" || !(image instanceof ImageBitmap)) return null;
@@ -113,8 +101,7 @@ function pixelsOfImage(image) {
   return { width, height, pixels: context.getImageData(0, 0, width, height).data };
 }
 
-/** @type {WeakMap<Image, Image>} */
-const upside = new WeakMap();
+/** @type {WeakMap<Image, Image>} */ const upside = new WeakMap();
 
 /** The image with its rows in the opposite order. @param {Image} image */
 function turned(image) {

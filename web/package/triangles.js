@@ -8,31 +8,19 @@
 
 /** @typedef {Omit<Mesh, "materials"> & { keys: unknown[] }} Joined `keys`: of the material of each triangle */
 
-/**
- * A triangle with an appearance, and where its corners stand among those of its mesh.
- * @typedef {{ triangle: number, look: Look, corners: ArrayLike<number>, at: number }} Painted
- */
+/** A triangle with an appearance, and where its corners stand among those of its mesh. @typedef {{ triangle: number,
+ * look: Look, corners: ArrayLike<number>, at: number }} Painted */
 
 export const PAINTED = Symbol("painted"); // in place of the material of a triangle with an appearance
 
-/**
- * Several meshes of one place as one.
- * @param {ThreeMesh[]} parts
- * @param {Rules} rules
- * @param {(material: Material) => unknown} keyOf
- * @param {Warn} warn
- * @returns {Joined}
- */
+/** Several meshes of one place as one. @param {ThreeMesh[]} parts @param {Rules} rules @param {(material: Material)
+ * => unknown} keyOf @param {Warn} warn @returns {Joined} */
 export function joined(parts, rules, keyOf, warn) {
   const positions = [];
-  /** @type {number[]} */
-  const triangles = [];
-  /** @type {unknown[]} */
-  const keys = [];
-  /** @type {Painted[]} */
-  const painted = [];
-  /** @type {[number, Attribute][]} the first vertex and the normals of a mesh */
-  const normals = [];
+  /** @type {number[]} */ const triangles = [];
+  /** @type {unknown[]} */ const keys = [];
+  /** @type {Painted[]} */ const painted = [];
+  /** @type {[number, Attribute][]} the first vertex and the normals of a mesh */ const normals = [];
   let first = 0;
   for (const mesh of parts) {
     const { geometry } = mesh;
@@ -46,8 +34,7 @@ export function joined(parts, rules, keyOf, warn) {
         warn("transparent", "fully transparent faces were left out", (end - start) / 3);
         continue;
       }
-      /** @type {unknown} */
-      let plain;
+      /** @type {unknown} */ let plain;
       for (let i = start; i < end; i += 3) {
         if (look && (!look.covers || [0, 1, 2].some((corner) => look.covers?.(corners[i + corner])))) {
           painted.push({ triangle: keys.length, look, corners, at: i });
@@ -84,13 +71,8 @@ export function joined(parts, rules, keyOf, warn) {
 const cornersOf = ({ index }, count) =>
   index ? index.array.subarray(0, index.count) : Uint32Array.from({ length: count }, (_, i) => i);
 
-/**
- * The runs of corners of one material: start, end, material.
- * @param {ThreeMesh} mesh
- * @param {number} corners
- * @param {Warn} warn
- * @returns {[number, number, Material][]}
- */
+/** The runs of corners of one material: start, end, material. @param {ThreeMesh} mesh @param {number} corners @param
+ * {Warn} warn @returns {[number, number, Material][]} */
 function runsOf({ geometry, material }, corners, warn) {
   const whole = corners - (corners % 3);
   if (whole < corners)
@@ -104,7 +86,8 @@ function runsOf({ geometry, material }, corners, warn) {
   ]);
 }
 
-/** The normals of all vertices, zeros where a mesh has none. @param {[number, Attribute][]} normals @param {number} count */
+/** The normals of all vertices, zeros where a mesh has none. @param {[number, Attribute][]} normals @param {number}
+ * count */
 function joinedNormals(normals, count) {
   const single = normals.every(([, { array }]) => array instanceof Float32Array);
   const all = single ? new Float32Array(3 * count) : new Float64Array(3 * count);
@@ -117,8 +100,7 @@ function joinedNormals(normals, count) {
   return all;
 }
 
-/** @param {Painted[]} painted @param {number} count @returns {Surface} */
-function surfaceOf(painted, count) {
+/** @param {Painted[]} painted @param {number} count @returns {Surface} */ function surfaceOf(painted, count) {
   const entries = [...new Set(painted.map(({ look }) => look.entry))];
   const numbers = new Map(entries.map((entry, i) => [entry, i]));
   const rows = new Int32Array(count).fill(-1);
@@ -138,8 +120,7 @@ function surfaceOf(painted, count) {
 export const isDeformed = (mesh) =>
   "isSkinnedMesh" in mesh || (mesh.morphTargetInfluences?.some((weight) => weight !== 0) ?? false);
 
-/** @param {ThreeMesh} mesh @returns {ArrayLike<number>} */
-function positionsOf(mesh) {
+/** @param {ThreeMesh} mesh @returns {ArrayLike<number>} */ function positionsOf(mesh) {
   const attribute = mesh.geometry.getAttribute("position");
   const deformed = isDeformed(mesh);
   if (!deformed && !("isInterleavedBufferAttribute" in attribute) && !attribute.normalized && attribute.itemSize === 3)

@@ -9,12 +9,7 @@ import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, WRAPS } from "./scene_forma
 const MIRROR = 1 << 24;
 const AUTHORED = 1 << 25;
 
-/**
- * @param {Voxrt} voxrt
- * @param {Scene} scene
- * @param {Options} options
- * @returns {Built}
- */
+/** @param {Voxrt} voxrt @param {Scene} scene @param {Options} options @returns {Built} */
 export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COLOURS, bake = null, budget = null }) {
   if (!Number.isInteger(depth) || depth < 1 || depth > DEPTH_LIMIT)
     throw new VoxrtError(`depth must be 1 … 16, not ${depth}`);
@@ -38,12 +33,8 @@ export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COL
   });
 }
 
-/**
- * Hand a scene to the module; returns how many triangles are fully transparent.
- * @param {Voxrt} voxrt
- * @param {Scene} scene
- * @param {boolean} hasNormals
- */
+/** Hand a scene to the module; returns how many triangles are fully transparent. @param {Voxrt} voxrt @param {Scene}
+ * scene @param {boolean} hasNormals */
 function describe(voxrt, { materials, meshes, objects }, hasNormals) {
   const { wasm } = voxrt;
   wasm.vx_scene_begin();
@@ -53,10 +44,8 @@ function describe(voxrt, { materials, meshes, objects }, hasNormals) {
       voxrt.checked(wasm.vx_material(text, (red << 16) | (green << 8) | blue, mirror, authored)),
     );
   }
-  /** @type {Map<Appearance, number>} */
-  const appearances = new Map();
-  /** @type {Map<Image, number>} */
-  const images = new Map();
+  /** @type {Map<Appearance, number>} */ const appearances = new Map();
+  /** @type {Map<Image, number>} */ const images = new Map();
   for (const { positions, triangles, materials: ids, normals, surface } of meshes) {
     voxrt.with(
       [

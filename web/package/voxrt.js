@@ -19,45 +19,22 @@ export { VoxrtError };
 /** @import { Arrays } from "./instance.js" */
 /** @import { Built, Options, Scene, Triple } from "./scene_format.js" */
 
-/**
- * The camera registers: direction(column, row) = look + right (column - W/2) + up (H/2 - row).
- * @typedef {object} Camera
- * @property {Triple} position in 1/16 voxel
- * @property {Triple} look whole numbers below 2^15, as those of right and up
- * @property {Triple} right
- * @property {Triple} up
- */
+/** The camera registers: direction(column, row) = look + right (column - W/2) + up (H/2 - row). `position`: in 1/16
+ * voxel; `look`: whole numbers below 2^15, as those of right and up. @typedef {{ position: Triple, look: Triple,
+ * right: Triple, up: Triple }} Camera */
 
 /** @typedef {readonly number[]} Size columns and rows */
 
-/**
- * How hits are coloured.
- * @typedef {object} Look
- * @property {readonly ArrayLike<number>[]} materials sRGB by id; entry 0 is the background
- * @property {readonly number[]} [mirrors] ids
- * @property {number} [bounces]
- * @property {boolean} [flat]
- * @property {ArrayLike<number> | null} [faces] 1/255, of the faces that look along -x, +x, -y, +y, -z, +z; null: by the angle
- * @property {{ position: Triple, ambient: number } | null} [light] position in 1/16 voxel, ambient 0 … 255
- */
+/** How hits are coloured. `materials`: sRGB by id; entry 0 is the background; `mirrors`: ids; `faces`: 1/255, of the
+ * faces that look along -x, +x, -y, +y, -z, +z; null: by the angle; `light`: position in 1/16 voxel, ambient 0 …
+ * 255. @typedef {{ materials: readonly ArrayLike<number>[], mirrors?: readonly number[], bounces?: number, flat?:
+ * boolean, faces?: ArrayLike<number> | null, light?: { position: Triple, ambient: number } | null }} Look */
 
-/**
- * @typedef {object} Rows
- * @property {number} top the first row of pixels
- * @property {Uint8Array} colour RGB, row by row
- * @property {Uint8Array} material
- * @property {Uint8Array} face the axis of the face hit; 3 for none
- * @property {number} wordsRead
- */
+/** `top`: the first row of pixels; `colour`: RGB, row by row; `face`: the axis of the face hit; 3 for none. @typedef
+ * {{ top: number, colour: Uint8Array, material: Uint8Array, face: Uint8Array, wordsRead: number }} Rows */
 
-/**
- * @typedef {object} Reading
- * @property {number} address
- * @property {number} word
- * @property {number} level the word's octant has 2^level voxels per side
- * @property {number[]} corner
- * @property {number} axis of the plane that the ray crossed last; 3 for none
- */
+/** `level`: the word's octant has 2^level voxels per side; `axis`: of the plane that the ray crossed last; 3 for
+ * none. @typedef {{ address: number, word: number, level: number, corner: number[], axis: number }} Reading */
 
 /** @typedef {{ readings: Reading[], material: number, face: number, cell: number[] | null }} Followed */
 
@@ -74,25 +51,16 @@ export function colourTable(materials) {
 }
 
 export class Voxrt extends Instance {
-  /**
-   * Voxelize a scene and build its octree.
-   * @param {Scene} scene
-   * @param {Options} [options]
-   * @returns {Built}
-   */
+  /** Voxelize a scene and build its octree. @param {Scene} scene @param {Options} [options] @returns {Built} */
   voxelize(scene, options = {}) {
     return voxelize(this, scene, options);
   }
 
-  /**
-   * The words of voxels given one by one. Where a place repeats, the first counts.
-   * @param {ArrayLike<number>} places three whole numbers from 0 up to 2^depth each
-   * @param {ArrayLike<number>} materials 1 … 255
-   * @param {number} depth
-   */
+  /** The words of voxels given one by one. Where a place repeats, the first counts. @param {ArrayLike<number>}
+   * places three whole numbers from 0 up to 2^depth each @param {ArrayLike<number>} materials 1 … 255 @param
+   * {number} depth */
   fromPoints(places, materials, depth) {
-    /** @type {Arrays} */
-    const arrays = [
+    /** @type {Arrays} */ const arrays = [
       [Int32Array, places],
       [Uint8Array, materials],
     ];
@@ -118,7 +86,8 @@ export class Voxrt extends Instance {
     );
   }
 
-  /** The least number of levels by which the memory must be coarser to have at most so many words. @param {number} words */
+  /** The least number of levels by which the memory must be coarser to have at most so many words. @param {number}
+   * words */
   levelThatFits(words) {
     return this.guard(() => this.checked(this.wasm.vx_level_that_fits(words)));
   }
@@ -127,8 +96,7 @@ export class Voxrt extends Instance {
   shade({ materials, mirrors = [], bounces = 0, flat = false, faces = FACES, light = null }) {
     const flags = new Uint8Array(256);
     for (const id of mirrors) flags[id] = 1;
-    /** @type {Arrays} */
-    const arrays = [
+    /** @type {Arrays} */ const arrays = [
       [Uint8Array, colourTable(materials)],
       [Uint8Array, flags],
       [Uint8Array, faces ?? []],
@@ -142,18 +110,13 @@ export class Voxrt extends Instance {
     );
   }
 
-  /**
-   * Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. Returns copies.
-   * @param {Camera} camera
-   * @param {Size} size
-   * @returns {Rows}
-   */
+  /** Render a frame, or its rows of tiles `first` up to and without `end`; a tile is 16 pixels high. Returns copies.
+   * @param {Camera} camera @param {Size} size @returns {Rows} */
   render(camera, [width, height], first = 0, end = this.tileRows(height)) {
     return this.guard(() => {
       const wordsRead = this.#trace(camera, width, height, first, end);
       const [top, bottom] = [TILE * first, Math.min(TILE * end, height)];
-      /** @param {number} at @param {number} bytes */
-      const part = (at, bytes) =>
+      /** @param {number} at @param {number} bytes */ const part = (at, bytes) =>
         this.view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
       return {
         top,
@@ -165,14 +128,9 @@ export class Voxrt extends Instance {
     });
   }
 
-  /**
-   * The same for a canvas: RGBA as ImageData takes it.
-   * @param {Camera} camera
-   * @param {Size} size
-   * @param {number} [first]
-   * @param {number} [end]
-   * @param {ArrayBuffer | null} [buffer] for the pixels, which is used if it has the right size
-   */
+  /** The same for a canvas: RGBA as ImageData takes it. @param {Camera} camera @param {Size} size @param {number}
+   * [first] @param {number} [end] @param {ArrayBuffer | null} [buffer] for the pixels, which is used if it has the
+   * right size */
   renderImage(camera, [width, height], first = 0, end = this.tileRows(height), buffer = null) {
     return this.guard(() => {
       this.#trace(camera, width, height, first, end);
@@ -196,15 +154,10 @@ export class Voxrt extends Instance {
     return this.wasm.vx_tile_rows(height);
   }
 
-  /**
-   * Follow one ray: each word that it reads, and what it hits.
-   * @param {ArrayLike<number>} origin in 1/16 voxel
-   * @param {ArrayLike<number>} direction below 2^20
-   * @returns {Followed}
-   */
+  /** Follow one ray: each word that it reads, and what it hits. @param {ArrayLike<number>} origin in 1/16 voxel
+   * @param {ArrayLike<number>} direction below 2^20 @returns {Followed} */
   follow(origin, direction) {
-    /** @type {Arrays} */
-    const arrays = [
+    /** @type {Arrays} */ const arrays = [
       [Int32Array, origin],
       [Int32Array, direction],
     ];
@@ -225,7 +178,8 @@ export class Voxrt extends Instance {
     return this.guard(() => [...this.view(Float64Array, this.wasm.vx_voxel_counts(), 256)]);
   }
 
-  /** Cubes that hold all that is solid, no finer than 1/64 of the world: x, y, z of the lowest corner and the side, each. */
+  /** Cubes that hold all that is solid, no finer than 1/64 of the world: x, y, z of the lowest corner and the side,
+   * each. */
   outline() {
     return this.guard(() => {
       const count = this.checked(this.wasm.vx_outline());

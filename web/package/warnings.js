@@ -5,11 +5,9 @@
 /** @typedef {(kind: string, message: string, count?: number) => void} Warn */
 
 export class Warnings {
-  /** @type {Map<string, Warning>} */
-  #known = new Map();
+  /** @type {Map<string, Warning>} */ #known = new Map();
 
-  /** @type {Warn} */
-  warn = (kind, message, count = 1) => {
+  /** @type {Warn} */ warn = (kind, message, count = 1) => {
     this.#known.set(message, { kind, message, count: (this.#known.get(message)?.count ?? 0) + count });
   };
 

@@ -28,25 +28,17 @@ const CORNER = [-0.62, -0.55, -1];
 const MADE_FOR = [640, 480]; // the cameras of manifests
 const SLOW = 250; // milliseconds until a build is announced
 
-/**
- * What `make site` has put together.
- * @typedef {object} Site
- * @property {Record<string, number>} boards the words that each holds
- * @property {string[]} designs the boards that have bitstreams
- * @property {Record<string, { title: string, files: string[] }>} examples
- */
+/** What `make site` has put together. `boards`: the words that each holds; `designs`: the boards that have
+ * bitstreams. @typedef {{ boards: Record<string, number>, designs: string[], examples: Record<string, { title:
+ * string, files: string[] }> }} Site */
 
 export class App {
-  /** @type {Shown | null} */
-  #memory = null;
+  /** @type {Shown | null} */ #memory = null;
   #poseDepth = 7; // levels of the memory to which the pose belongs
-  /** @type {Source | null} */
-  source = null;
-  /** @type {Look} */
-  #look = FIRST_LOOK;
+  /** @type {Source | null} */ source = null;
+  /** @type {Look} */ #look = FIRST_LOOK;
 
-  /** @param {WebAssembly.Module} module voxrt.wasm @param {Site} site */
-  constructor(module, site) {
+  /** @param {WebAssembly.Module} module voxrt.wasm @param {Site} site */ constructor(module, site) {
     this.picture = new BandPicture($("picture"));
     this.figures = new Figures($("figures"));
     this.painter = new Painter(module);
@@ -105,8 +97,7 @@ export class App {
     return 2 ** this.#shown().depth;
   }
 
-  /** @returns {Box} */
-  bounds() {
+  /** @returns {Box} */ bounds() {
     return this.#shown().bounds;
   }
 
@@ -123,20 +114,17 @@ export class App {
     return { ...this.#shading(), mirrors: [], light: null, bounces: 0 };
   }
 
-  /** @param {Move} how */
-  change(how) {
+  /** @param {Move} how */ change(how) {
     this.inspector.clear();
     this.viewpoint.change(how);
   }
 
-  /** @param {Move} how */
-  glide(how) {
+  /** @param {Move} how */ glide(how) {
     this.inspector.clear();
     this.viewpoint.glide(how);
   }
 
-  /** @param {Partial<Look>} fields */
-  set(fields) {
+  /** @param {Partial<Look>} fields */ set(fields) {
     this.#look = { ...this.#look, ...fields };
     this.painter.shade(this.#shading());
     this.#showLook();
@@ -183,12 +171,10 @@ export class App {
     }
   }
 
-  /** @param {Memory} built @param {boolean} first */
-  async #show(built, first) {
+  /** @param {Memory} built @param {boolean} first */ async #show(built, first) {
     const old = this.#memory;
     const side = 2 ** built.depth;
-    /** @type {Shown} */
-    const memory = {
+    /** @type {Shown} */ const memory = {
       ...built,
       voxels: [],
       bounds: [

@@ -7,45 +7,28 @@ const [HEAD, DATA] = [12, 2304]; // bytes of a command before its data, and of i
 /** @import { Hardware } from "./voxrt/hardware.js" */
 /** @import { Look, Size, Voxrt } from "./voxrt/voxrt.js" */
 
-/**
- * Part of a memory in a block RAM: `at` is its command in the bitstream; rows from `row` on; bits from `bit` on, `bits` of
- * them; `places` of words in a group.
- * @typedef {{ at: number, row: number, rows: number, bit: number, bits: number, places: number[] }} BlockRam
- */
+/** Part of a memory in a block RAM: `at` is its command in the bitstream; rows from `row` on; bits from `bit` on,
+ * `bits` of them; `places` of words in a group. @typedef {{ at: number, row: number, rows: number, bit: number,
+ * bits: number, places: number[] }} BlockRam */
 
-/**
- * @typedef {object} Board
- * @property {string} name
- * @property {string} hardware
- * @property {string} loader
- * @property {number} capacity words
- * @property {number} depth levels
- * @property {number} clock
- * @property {number} bufferLines
- * @property {number} blockBits
- * @property {Size} screen
- * @property {{ cameras: number, at: number, step: number, list: number[], places: number[], bits: number[] }} orbit
- * @property {{ words: number, depth: number, root: number, materials: number, lists: Record<string, number[][]> }} boot
- * @property {BlockRam[]} octree
- * @property {BlockRam[]} table
- */
+/** `capacity`: words; `depth`: levels. @typedef {{ name: string, hardware: string, loader: string, capacity: number,
+ * depth: number, clock: number, bufferLines: number, blockBits: number, screen: Size, orbit: { cameras: number, at:
+ * number, step: number, list: number[], places: number[], bits: number[] }, boot: { words: number, depth: number,
+ * root: number, materials: number, lists: Record<string, number[][]> }, octree: BlockRam[], table: BlockRam[] }}
+ * Board */
 
 /** @typedef {Pick<Memory, "words" | "depth" | "materials">} Content */
 
-/** The cameras of an orbit, for pictures of a size: 12 registers each. @param {Voxrt} voxrt @param {number} count @param {Size} size */
+/** The cameras of an orbit, for pictures of a size: 12 registers each. @param {Voxrt} voxrt @param {number} count
+ * @param {Size} size */
 export function orbitOf(voxrt, count, [width, height]) {
   voxrt.guard(() => voxrt.checked(voxrt.wasm.vx_orbit(count, width, height)));
   return voxrt.view(Int32Array, voxrt.wasm.vx_registers(), 12 * count).slice();
 }
 
-/**
- * The largest pictures of voxrt's memory that a board traces in time.
- * @param {Voxrt} voxrt
- * @param {Hardware} hardware the board's ray tracer, with the same memory
- * @param {Board} board
- * @param {Look} look
- * @param {(done: number, total: number) => void} [onProgress] called with the pictures that are done, of how many
- */
+/** The largest pictures of voxrt's memory that a board traces in time. @param {Voxrt} voxrt @param {Hardware}
+ * hardware the board's ray tracer, with the same memory @param {Board} board @param {Look} look @param {(done:
+ * number, total: number) => void} [onProgress] called with the pictures that are done, of how many */
 export function fitBeam(voxrt, hardware, board, look, onProgress = () => {}) {
   const { wasm } = voxrt;
   voxrt.guard(() => voxrt.checked(wasm.vx_beam(board.orbit.cameras, board.clock, board.bufferLines)));
@@ -62,14 +45,8 @@ export function fitBeam(voxrt, hardware, board, look, onProgress = () => {}) {
   }
 }
 
-/**
- * The bytes of the bitstream.
- * @param {Voxrt} voxrt
- * @param {Uint8Array} bits those of the placed design
- * @param {Board} board
- * @param {Content} memory what voxrt holds
- * @param {{ flat?: boolean, scale: number }} options
- */
+/** The bytes of the bitstream. @param {Voxrt} voxrt @param {Uint8Array} bits those of the placed design @param
+ * {Board} board @param {Content} memory what voxrt holds @param {{ flat?: boolean, scale: number }} options */
 export function bitstreamOf(voxrt, bits, board, memory, { flat = false, scale }) {
   const made = bits.slice();
   const { wasm } = voxrt;
@@ -79,7 +56,8 @@ export function bitstreamOf(voxrt, bits, board, memory, { flat = false, scale })
   return made;
 }
 
-/** The table that the board starts from: its list, and an orbit. @param {Voxrt} voxrt @param {Board} board @param {Content} memory @param {boolean} flat @param {number} scale */
+/** The table that the board starts from: its list, and an orbit. @param {Voxrt} voxrt @param {Board} board @param
+ * {Content} memory @param {boolean} flat @param {number} scale */
 function tableOf(voxrt, { boot, orbit, screen }, { words, depth, materials }, flat, scale) {
   const table = new Uint32Array(boot.words);
   table.set(boot.lists[flat ? "flat" : "faces"][scale]);
@@ -100,7 +78,8 @@ function tableOf(voxrt, { boot, orbit, screen }, { words, depth, materials }, fl
   return table;
 }
 
-/** Replace what block RAMs hold by the rows of a memory, those beyond them by 0. @param {Uint8Array} bits @param {BlockRam[]} blockRams @param {Uint32Array} memory */
+/** Replace what block RAMs hold by the rows of a memory, those beyond them by 0. @param {Uint8Array} bits @param
+ * {BlockRam[]} blockRams @param {Uint32Array} memory */
 function replace(bits, blockRams, memory) {
   for (const { at, row, rows, bit, bits: width, places } of blockRams) {
     const data = bits.subarray(at + HEAD, at + HEAD + DATA);
@@ -126,8 +105,7 @@ function replace(bits, blockRams, memory) {
 /** The CRC that ECP5 keeps of commands: x^16 + x^15 + x^2 + 1, the highest bit first. @param {Uint8Array} bytes */
 function checksum(bytes) {
   let sum = 0;
-  /** @param {number} byte */
-  const add = (byte) => {
+  /** @param {number} byte */ const add = (byte) => {
     for (let bit = 7; bit >= 0; bit--)
       sum = (((sum << 1) & 0xffff) | ((byte >> bit) & 1)) ^ (sum & 0x8000 ? 0x8005 : 0);
   };

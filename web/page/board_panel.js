@@ -9,11 +9,9 @@ import { save } from "./save.js";
 /** @import { BoardCalls } from "./board_worker.js" */
 
 export class BoardPanel {
-  /** @type {Hand<BoardCalls> | null} */
-  #hand = null;
+  /** @type {Hand<BoardCalls> | null} */ #hand = null;
 
-  /** @param {App} app @param {WebAssembly.Module} module voxrt.wasm */
-  constructor(app, module) {
+  /** @param {App} app @param {WebAssembly.Module} module voxrt.wasm */ constructor(app, module) {
     this.app = app;
     this.module = module;
     $("bitstream-cancel").onclick = () => this.#hand?.stop();
@@ -26,14 +24,12 @@ export class BoardPanel {
     return element("button", { type: "button", title, onclick, "aria-label": `Bitstream for ${board}` }, "Bitstream");
   }
 
-  /** @param {string} board */
-  async #make(board) {
+  /** @param {string} board */ async #make(board) {
     this.#hand?.stop();
     const memory = this.app.memory();
     if (!memory) return;
     const { name, words, depth, materials, lighting } = memory;
-    /** @type {Hand<BoardCalls>} */
-    const hand = new Hand("./board_worker.js");
+    /** @type {Hand<BoardCalls>} */ const hand = new Hand("./board_worker.js");
     this.#hand = hand;
     $("bitstream").hidden = false;
     $("bitstream-progress").removeAttribute("value");
@@ -61,14 +57,12 @@ export class BoardPanel {
     this.#showRunning(false);
   }
 
-  /** @param {boolean} on */
-  #showRunning(on) {
+  /** @param {boolean} on */ #showRunning(on) {
     $("bitstream-progress").hidden = !on;
     $("bitstream-cancel").hidden = !on;
   }
 
-  /** @param {string} text */
-  #say(text, bad = false) {
+  /** @param {string} text */ #say(text, bad = false) {
     $("bitstream-says").textContent = text;
     $("bitstream-says").classList.toggle("large", bad);
   }

@@ -8,18 +8,15 @@ import { answerWith, count } from "./worker_answers.js";
 /** @import { Board, Content } from "./board_bits.js" */
 /** @import { Lighting } from "./memory.js" */
 
-/** @param {string} path */
-async function load(path) {
+/** @param {string} path */ async function load(path) {
   const answer = await fetch(path);
   if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
   return answer;
 }
 
 const calls = {
-  /**
-   * @param {Content & { module: WebAssembly.Module, name: string, lighting: Lighting }} job
-   * @param {(stage: { share: number }) => void} report
-   */
+  /** @param {Content & { module: WebAssembly.Module, name: string, lighting: Lighting }} job @param {(stage: {
+   * share: number }) => void} report */
   async bitstream({ module, name, words, depth, materials, lighting }, report) {
     const voxrt = await Voxrt.load(module);
     voxrt.setMemory(words, depth); // which checks the words

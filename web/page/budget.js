@@ -7,14 +7,11 @@ const STEPS = 100; // the last one is no budget
 const SOON = 300; // milliseconds
 
 export class Budget {
-  /** @type {number | null} */
-  words = null;
+  /** @type {number | null} */ words = null;
   #whole = LEAST + 1;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  #soon;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #soon;
 
-  /** @param {() => void} onChange called when a new memory has to be built */
-  constructor(onChange) {
+  /** @param {() => void} onChange called when a new memory has to be built */ constructor(onChange) {
     this.onChange = onChange;
     $("budget").oninput = () => {
       const step = $("budget").valueAsNumber;
@@ -27,8 +24,7 @@ export class Budget {
     };
   }
 
-  /** @param {number | null} words */
-  choose(words) {
+  /** @param {number | null} words */ choose(words) {
     clearTimeout(this.#soon);
     this.words = words;
     this.#show();

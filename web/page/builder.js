@@ -10,29 +10,21 @@ import { Hand } from "./hand.js";
 export class Builder {
   #source = 0;
   #busy = false;
-  /** @type {DroppedFile[] | null} */
-  #files = null;
+  /** @type {DroppedFile[] | null} */ #files = null;
 
-  /** @param {WebAssembly.Module} module */
-  constructor(module) {
+  /** @param {WebAssembly.Module} module */ constructor(module) {
     this.module = module;
     this.ready = this.#start();
   }
 
   async #start() {
-    /** @type {Hand<WorkerCalls>} */
-    const hand = new Hand("./worker.js");
+    /** @type {Hand<WorkerCalls>} */ const hand = new Hand("./worker.js");
     await hand.call("start", { module: this.module });
     return hand;
   }
 
-  /**
-   * Rejects with the reason, or "cancelled".
-   * @param {DroppedFile[]} files
-   * @param {Required<Omit<Options, "colours">>} options
-   * @param {(stage: string) => void} onStage
-   * @returns {Promise<Memory>}
-   */
+  /** Rejects with the reason, or "cancelled". @param {DroppedFile[]} files @param {Required<Omit<Options,
+   * "colours">>} options @param {(stage: string) => void} onStage @returns {Promise<Memory>} */
   async build(files, options, onStage) {
     if (this.#busy) this.cancel();
     if (files !== this.#files) this.#source++;

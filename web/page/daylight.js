@@ -9,11 +9,9 @@ const FIELDS = /** @type {const} */ (["sun-x", "sun-y", "sun-z", "sky", "samples
 const SOON = 300; // milliseconds
 
 export class DaylightControl {
-  /** @param {() => void} onChange called when a new memory has to be built */
-  constructor(onChange) {
+  /** @param {() => void} onChange called when a new memory has to be built */ constructor(onChange) {
     this.set(null);
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    let soon;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */ let soon;
     for (const field of FIELDS)
       $(field).oninput = () => {
         clearTimeout(soon);
@@ -29,23 +27,20 @@ export class DaylightControl {
     return isPressed($("bake"));
   }
 
-  /** @returns {Daylight | null} */
-  get options() {
+  /** @returns {Daylight | null} */ get options() {
     if (!this.on) return null;
     const [x, y, z, sky, samples] = FIELDS.map((field) => $(field).valueAsNumber);
     return { sun: [x, y, z], sky: [sky, sky, sky], samples };
   }
 
-  /** @param {Daylight | null} options */
-  set(options) {
+  /** @param {Daylight | null} options */ set(options) {
     const { sun, sky, samples } = options ?? DAYLIGHT;
     const values = [...sun, sky[0], samples];
     for (const [i, field] of FIELDS.entries()) $(field).value = String(values[i]);
     this.#show(options !== null);
   }
 
-  /** @param {boolean} on */
-  #show(on) {
+  /** @param {boolean} on */ #show(on) {
     pressed($("bake"), on);
     $("daylight").hidden = !on;
   }

@@ -8,7 +8,8 @@ import { DIALECT, hex } from "./voxrt/words.js";
 /** @import { Shown } from "./memory.js" */
 /** @import { Daylight } from "./voxrt/voxrt.js" */
 
-/** The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one. @param {Shown} memory */
+/** The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one. @param
+ * {Shown} memory */
 export function manifestOf(memory) {
   const { name, file, words, depth, materials, grid, objects, warnings, seconds, fill, lighting, baked, voxels } =
     memory;
@@ -66,10 +67,8 @@ export function manifestOf(memory) {
 
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 
-/**
- * The part of an address that carries a scene and its view.
- * @param {{ example: string | null, depth: number, bake: Daylight | null, words: number | null, view: Pose }} link
- */
+/** The part of an address that carries a scene and its view. @param {{ example: string | null, depth: number, bake:
+ * Daylight | null, words: number | null, view: Pose }} link */
 export function linkOf({ example, depth, bake, words, view }) {
   const { eye, yaw, pitch, fov, distance } = view;
   const camera = [...eye, yaw, pitch, fov, distance].map((value) => Number(value.toFixed(3))).join(",");
@@ -85,8 +84,7 @@ export function linkOf({ example, depth, bake, words, view }) {
 /** What such a part of an address says; null for what it does not. @param {string} hash */
 export function readLink(hash) {
   const fields = new URLSearchParams(hash.slice(1));
-  /** @param {string} name @param {number} count */
-  const read = (name, count) => {
+  /** @param {string} name @param {number} count */ const read = (name, count) => {
     const parts = (fields.get(name) ?? "").split(",");
     return parts.length === count && parts.every((part) => NUMBERS.test(part)) ? parts.map(Number) : null;
   };

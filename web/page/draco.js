@@ -5,38 +5,25 @@ import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
 /** @import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js" */
 
 /** @typedef {Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array} Values */
-/** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind of array */
+/** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind
+ * of array */
 /** @typedef {"DT_FLOAT32" | "DT_INT8" | "DT_UINT8" | "DT_INT16" | "DT_UINT16" | "DT_UINT32"} Code of a kind */
 
-/**
- * What is used of the decoder.
- * @typedef {Record<Code, number> & Library} Draco
- */
+/** What is used of the decoder. @typedef {Record<Code, number> & Library} Draco */
 
-/**
- * @typedef {object} Library
- * @property {new () => Decoder} Decoder
- * @property {new () => Mesh} Mesh
- * @property {Int8Array} HEAP8
- * @property {(bytes: number) => number} _malloc
- * @property {(at: number) => void} _free
- * @property {(made: object) => void} destroy
- */
+/** @typedef {{ Decoder: new () => Decoder, Mesh: new () => Mesh, HEAP8: Int8Array, _malloc: (bytes: number) =>
+ * number, _free: (at: number) => void, destroy: (made: object) => void }} Library */
 
 /** @typedef {{ ptr: number, num_faces(): number, num_points(): number }} Mesh */
 /** @typedef {{ num_components(): number }} Attribute */
 
-/**
- * @typedef {object} Decoder
- * @property {(bytes: Int8Array, length: number, mesh: Mesh) => { ok(): boolean, error_msg(): string }} DecodeArrayToMesh
- * @property {(mesh: Mesh, bytes: number, at: number) => void} GetTrianglesUInt32Array
- * @property {(mesh: Mesh, id: number) => Attribute} GetAttributeByUniqueId
- * @property {(mesh: Mesh, attribute: Attribute, kind: number, bytes: number, at: number) => void} GetAttributeDataArrayForAllPoints
- */
+/** @typedef {{ DecodeArrayToMesh: (bytes: Int8Array, length: number, mesh: Mesh) => { ok(): boolean, error_msg():
+ * string }, GetTrianglesUInt32Array: (mesh: Mesh, bytes: number, at: number) => void, GetAttributeByUniqueId:
+ * (mesh: Mesh, id: number) => Attribute, GetAttributeDataArrayForAllPoints: (mesh: Mesh, attribute: Attribute,
+ * kind: number, bytes: number, at: number) => void }} Decoder */
 
 const FOLDER = "./three/draco/";
-/** @type {Record<string, [Kind, Code]>} */
-const TYPES = {
+/** @type {Record<string, [Kind, Code]>} */ const TYPES = {
   Float32Array: [Float32Array, "DT_FLOAT32"],
   Int8Array: [Int8Array, "DT_INT8"],
   Uint8Array: [Uint8Array, "DT_UINT8"],
@@ -47,19 +34,13 @@ const TYPES = {
 
 /** What GLTFLoader needs of a decoder. */
 export class DracoDecoder {
-  /** @type {Promise<Draco> | null} */
-  #library = null;
+  /** @type {Promise<Draco> | null} */ #library = null;
 
   preload() {}
 
-  /**
-   * @param {ArrayBuffer} buffer
-   * @param {(geometry: BufferGeometry) => void} use
-   * @param {Record<string, number>} ids of attributes by name
-   * @param {Record<string, string>} types the names of their arrays
-   * @param {string} _space
-   * @param {(error: Error) => void} refuse
-   */
+  /** @param {ArrayBuffer} buffer @param {(geometry: BufferGeometry) => void} use @param {Record<string, number>} ids
+   * of attributes by name @param {Record<string, string>} types the names of their arrays @param {string} _space
+   * @param {(error: Error) => void} refuse */
   decodeDracoFile(buffer, use, ids, types, _space, refuse) {
     this.#library ??= load();
     this.#library.then((draco) => use(decoded(draco, new Int8Array(buffer), ids, types))).catch(refuse);
@@ -71,8 +52,7 @@ export class DracoDecoder {
   }
 }
 
-/** @returns {Promise<Draco>} */
-async function load() {
+/** @returns {Promise<Draco>} */ async function load() {
   const [{ default: start }, answer] = await Promise.all([
     import(`${FOLDER}draco_decoder.js`),
     fetch(new URL(`${FOLDER}draco_decoder.wasm`, import.meta.url)),
@@ -80,7 +60,8 @@ async function load() {
   return start({ wasmBinary: await answer.arrayBuffer() });
 }
 
-/** @param {Draco} draco @param {Int8Array} bytes @param {Record<string, number>} ids @param {Record<string, string>} types */
+/** @param {Draco} draco @param {Int8Array} bytes @param {Record<string, number>} ids @param {Record<string, string>}
+ * types */
 function decoded(draco, bytes, ids, types) {
   const decoder = new draco.Decoder();
   const mesh = new draco.Mesh();

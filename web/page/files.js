@@ -7,13 +7,12 @@ import { FileError, Folder, stem } from "./folder.js";
 /** @import { Scene, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {Scene & { warnings: Warning[] }} ReadScene */
-/** @typedef {{ name: string, file: string } & ({ scene: ReadScene, memory?: undefined } | { memory: Omit<Memory, "name" | "file">, scene?: undefined })} ReadFile */
+/** @typedef {{ name: string, file: string } & ({ scene: ReadScene, memory?: undefined } | { memory: Omit<Memory,
+ * "name" | "file">, scene?: undefined })} ReadFile */
 /** @typedef {(main: DroppedFile, folder: Folder, voxrt: Voxrt) => Promise<ReadScene>} Reader */
 
-/** @type {() => Promise<Reader>} */
-const usd = async () => (await import("./usd/read.js")).readUsd;
-/** @type {() => Promise<Reader>} */
-const gltf = async () => (await import("./read_gltf.js")).readGltf;
+/** @type {() => Promise<Reader>} */ const usd = async () => (await import("./usd/read.js")).readUsd;
+/** @type {() => Promise<Reader>} */ const gltf = async () => (await import("./read_gltf.js")).readGltf;
 
 /** @type {Map<string, () => Promise<Reader>>} the readers of scenes, by the extension of the file */
 const READERS = new Map([
@@ -29,8 +28,7 @@ const READERS = new Map([
 ]);
 const FORMATS = [...READERS.keys(), "vox", "mem"];
 
-/** @param {string} name */
-const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
+/** @param {string} name */ const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
 /** The first scene that no other one names: layers of USD refer to each other. @param {DroppedFile[]} files */
 function sceneAmong(files) {
@@ -43,7 +41,8 @@ function sceneAmong(files) {
   );
 }
 
-/** Read files, one of which is a scene or a memory. @param {DroppedFile[]} files @param {Voxrt} voxrt @returns {Promise<ReadFile>} */
+/** Read files, one of which is a scene or a memory. @param {DroppedFile[]} files @param {Voxrt} voxrt @returns
+ * {Promise<ReadFile>} */
 export async function readFiles(files, voxrt) {
   const main = sceneAmong(files);
   if (!main) {

@@ -6,11 +6,9 @@ export class FileError extends Error {
   name = "FileError";
 }
 
-/** @param {string} name */
-export const stem = (name) => name.slice(0, name.lastIndexOf("."));
+/** @param {string} name */ export const stem = (name) => name.slice(0, name.lastIndexOf("."));
 
-/** @param {string} name */
-function decoded(name) {
+/** @param {string} name */ function decoded(name) {
   try {
     return decodeURIComponent(name);
   } catch {
@@ -19,8 +17,7 @@ function decoded(name) {
 }
 
 export class Folder {
-  /** @param {DroppedFile[]} files */
-  constructor(files) {
+  /** @param {DroppedFile[]} files */ constructor(files) {
     this.files = new Map(files.map((file) => [file.name.toLowerCase(), file]));
   }
 

@@ -13,44 +13,24 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
 /** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */
 
-/**
- * What is read of a material.
- * @typedef {object} GltfMaterial
- * @property {string} [name]
- * @property {number} [alphaCutoff]
- * @property {string} [alphaMode]
- * @property {{ voxrt_material?: string, voxrt_reflect?: boolean }} [extras]
- * @property {{ baseColorFactor?: number[], baseColorTexture?: TextureInfo }} [pbrMetallicRoughness]
- * @property {{ [GLOSSY]?: { diffuseFactor?: number[], diffuseTexture?: TextureInfo } }} [extensions]
- */
+/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: string, extras?: {
+ * voxrt_material?: string, voxrt_reflect?: boolean }, pbrMetallicRoughness?: { baseColorFactor?: number[],
+ * baseColorTexture?: TextureInfo }, extensions?: { [GLOSSY]?: { diffuseFactor?: number[], diffuseTexture?:
+ * TextureInfo } } }} GltfMaterial */
 
 /** @typedef {{ source?: number, sampler?: number, extensions?: Record<string, { source: number }> }} GltfTexture */
 /** @typedef {{ wrapS?: number, wrapT?: number, magFilter?: number }} Sampler */
 
-/**
- * What is read of a file.
- * @typedef {object} Gltf
- * @property {{ name?: string, mesh?: number }[]} [nodes]
- * @property {{ name?: string, primitives: { material?: number }[] }[]} [meshes]
- * @property {GltfMaterial[]} materials
- * @property {GltfTexture[]} textures
- * @property {{ uri?: string, bufferView: number }[]} images
- * @property {Sampler[]} [samplers]
- * @property {string[]} [extensionsUsed]
- */
+/** What is read of a file. @typedef {{ nodes?: { name?: string, mesh?: number }[], meshes?: { name?: string,
+ * primitives: { material?: number }[] }[], materials: GltfMaterial[], textures: GltfTexture[], images: { uri?:
+ * string, bufferView: number }[], samplers?: Sampler[], extensionsUsed?: string[] }} Gltf */
 
 /** @typedef {{ nodes?: number, materials?: number, textures?: number }} Association */
 
-/**
- * What is used of GLTFLoader's parser.
- * @typedef {object} GltfParser
- * @property {Gltf} json
- * @property {Map<Material | Object3D | Texture, Association>} associations
- * @property {(type: "bufferView", index: number) => Promise<ArrayBuffer>} getDependency
- */
+/** What is used of GLTFLoader's parser. @typedef {{ json: Gltf, associations: Map<Material | Object3D | Texture,
+ * Association>, getDependency: (type: "bufferView", index: number) => Promise<ArrayBuffer> }} GltfParser */
 
-/** @type {Map<number, Wrap>} */
-const WRAPS = new Map([
+/** @type {Map<number, Wrap>} */ const WRAPS = new Map([
   [10497, "repeat"],
   [33648, "mirror"],
   [33071, "clamp"],
@@ -66,15 +46,11 @@ export class GltfLooks {
   static loaders = ["EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu", "voxrt_textures"];
 
   warnings = new Warnings();
-  /** @type {Map<number, Appearance["texture"] | null>} by index */
-  #textures = new Map();
-  /** @type {Map<string, Appearance>} */
-  #entries = new Map();
-  /** @type {Gltf} */
-  #json = { materials: [], textures: [], images: [] };
+  /** @type {Map<number, Appearance["texture"] | null>} by index */ #textures = new Map();
+  /** @type {Map<string, Appearance>} */ #entries = new Map();
+  /** @type {Gltf} */ #json = { materials: [], textures: [], images: [] };
 
-  /** @param {Folder} folder */
-  constructor(folder) {
+  /** @param {Folder} folder */ constructor(folder) {
     this.folder = folder;
   }
 
@@ -90,8 +66,7 @@ export class GltfLooks {
     const used = new Set(
       (this.#json.meshes ?? []).flatMap(({ primitives }) => primitives.map(({ material }) => material)),
     );
-    /** @type {Map<number, Image | null>} */
-    const images = new Map();
+    /** @type {Map<number, Image | null>} */ const images = new Map();
     for (const material of used) {
       const info = material === undefined ? null : this.properties(material).texture;
       if (!info || this.#textures.has(info.index)) continue;
@@ -124,8 +99,7 @@ export class GltfLooks {
   /** @param {GltfParser} parser @param {number} index @param {string} factor what is shown instead */
   async #image(parser, index, factor) {
     const { uri, bufferView } = this.#json.images[index];
-    /** @type {ArrayBuffer | Uint8Array | undefined} */
-    let bytes;
+    /** @type {ArrayBuffer | Uint8Array | undefined} */ let bytes;
     if (uri === undefined) bytes = await parser.getDependency("bufferView", bufferView);
     else if (uri.startsWith("data:")) bytes = await (await fetch(uri)).arrayBuffer();
     else {
@@ -141,8 +115,7 @@ export class GltfLooks {
     return decodeImage(new Uint8Array(bytes), `images[${index}]`);
   }
 
-  /** @param {number} index of a material */
-  properties(index) {
+  /** @param {number} index of a material */ properties(index) {
     const material = this.#json.materials[index];
     const base = material.pbrMetallicRoughness ?? {};
     const glossy = material.extensions?.[GLOSSY];
@@ -163,19 +136,14 @@ export class GltfLooks {
     };
   }
 
-  /** @param {number | undefined} index of a material */
-  isLeftOut(index) {
+  /** @param {number | undefined} index of a material */ isLeftOut(index) {
     if (index === undefined) return false;
     const { factor, cutoff } = this.properties(index);
     return factor[3] < cutoff;
   }
 
-  /**
-   * The look of a primitive; null where its colour is uniform.
-   * @param {number | undefined} index of its material
-   * @param {BufferGeometry} geometry
-   * @returns {Look | null}
-   */
+  /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index of its material
+   * @param {BufferGeometry} geometry @returns {Look | null} */
   appearance(index, geometry) {
     const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false };
     const { name, factor, texture: info, cutoff, mirror } = index === undefined ? plain : this.properties(index);
@@ -189,8 +157,7 @@ export class GltfLooks {
     return { entry, uvOf, colourOf };
   }
 
-  /** @param {BufferGeometry} geometry @returns {Setter | null} */
-  #colours(geometry) {
+  /** @param {BufferGeometry} geometry @returns {Setter | null} */ #colours(geometry) {
     const attribute = geometry.getAttribute("color");
     if (!attribute) return null;
     const set = colours(attribute);

@@ -2,26 +2,18 @@
 
 /** @import { Reply } from "./worker_answers.js" */
 
-/**
- * What a worker can be asked, by name: it takes what was sent, and a function that reports a stage.
- * @typedef {{ [name: string]: (job: never, report: never) => unknown }} Calls
- */
+/** What a worker can be asked, by name: it takes what was sent, and a function that reports a stage. @typedef {{
+ * [name: string]: (job: never, report: never) => unknown }} Calls */
 
-/**
- * @typedef {object} Waiting
- * @property {(result: never) => void} resolve
- * @property {(error: Error) => void} reject
- * @property {((stage: never) => void) | undefined} onStage
- */
+/** @typedef {{ resolve: (result: never) => void, reject: (error: Error) => void, onStage: ((stage: never) => void) |
+ * undefined }} Waiting */
 
 /** @template {Calls} C */
 export class Hand {
-  /** @type {Map<number, Waiting>} */
-  #calls = new Map();
+  /** @type {Map<number, Waiting>} */ #calls = new Map();
   #last = 0;
 
-  /** @param {string} script */
-  constructor(script) {
+  /** @param {string} script */ constructor(script) {
     this.worker = new Worker(new URL(script, import.meta.url), { type: "module" });
     this.worker.onmessage = ({ data }) => this.#answer(data);
     this.worker.onerror = (event) => {
@@ -30,14 +22,8 @@ export class Hand {
     };
   }
 
-  /**
-   * @template {keyof C & string} N
-   * @param {N} call
-   * @param {Parameters<C[N]>[0]} job
-   * @param {Parameters<C[N]>[1]} [onStage]
-   * @param {Transferable[]} [transfer]
-   * @returns {Promise<Awaited<ReturnType<C[N]>>>}
-   */
+  /** @template {keyof C & string} N @param {N} call @param {Parameters<C[N]>[0]} job @param {Parameters<C[N]>[1]}
+   * [onStage] @param {Transferable[]} [transfer] @returns {Promise<Awaited<ReturnType<C[N]>>>} */
   call(call, job, onStage, transfer = []) {
     const id = ++this.#last;
     return new Promise((resolve, reject) => {
@@ -46,8 +32,7 @@ export class Hand {
     });
   }
 
-  /** @param {Reply} reply */
-  #answer({ id, result, problem, stage }) {
+  /** @param {Reply} reply */ #answer({ id, result, problem, stage }) {
     const waiting = this.#calls.get(id);
     if (!waiting) return;
     if (stage) {
@@ -59,8 +44,7 @@ export class Hand {
     else waiting.reject(new Error(problem));
   }
 
-  /** @param {string} problem */
-  #fail(problem) {
+  /** @param {string} problem */ #fail(problem) {
     for (const { reject } of this.#calls.values()) reject(new Error(problem));
     this.#calls.clear();
   }

@@ -10,15 +10,12 @@ import { Hand } from "./hand.js";
 
 const [WIDTH, HEIGHT] = [320, 240];
 
-/** @param {number} number */
-const count = (number) => number.toLocaleString("en");
+/** @param {number} number */ const count = (number) => number.toLocaleString("en");
 
 export class HardwarePanel {
-  /** @type {Hand<HardwareCalls> | null} */
-  #hand = null;
+  /** @type {Hand<HardwareCalls> | null} */ #hand = null;
 
-  /** @param {App} app @param {WebAssembly.Module} module voxrt.wasm */
-  constructor(app, module) {
+  /** @param {App} app @param {WebAssembly.Module} module voxrt.wasm */ constructor(app, module) {
     this.app = app;
     this.module = module;
     $("run-hardware").onclick = () => (this.#hand ? this.#hand.stop() : this.#run());
@@ -27,8 +24,7 @@ export class HardwarePanel {
   async #run() {
     const [memory, view] = [this.app.memory(), this.app.view()];
     if (!memory || !view) return;
-    /** @type {Hand<HardwareCalls>} */
-    const hand = new Hand("./hardware_worker.js");
+    /** @type {Hand<HardwareCalls>} */ const hand = new Hand("./hardware_worker.js");
     this.#hand = hand;
     $("run-hardware").textContent = "Cancel";
     $("hardware-progress").hidden = false;
@@ -56,8 +52,7 @@ export class HardwarePanel {
     $("hardware-progress").hidden = true;
   }
 
-  /** @param {Compared} made @param {string} name */
-  #show({ colour, clocks, wordsRead, seconds, wrong }, name) {
+  /** @param {Compared} made @param {string} name */ #show({ colour, clocks, wordsRead, seconds, wrong }, name) {
     const pixels = WIDTH * HEIGHT;
     const verdict = wrong ? "the hardware and the model differ" : "the hardware and the model agree";
     this.#say(`${count(wrong)} wrong pixels of ${count(pixels)}: ${verdict}`, wrong > 0);
@@ -76,8 +71,7 @@ export class HardwarePanel {
     $("hardware-result").hidden = false;
   }
 
-  /** @param {string} text */
-  #say(text, bad = false) {
+  /** @param {string} text */ #say(text, bad = false) {
     $("hardware-says").textContent = text;
     $("hardware-says").classList.toggle("large", bad);
   }

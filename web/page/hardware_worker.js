@@ -10,14 +10,12 @@ import { answerWith, count } from "./worker_answers.js";
 /** @typedef {Rendered & { seconds: number, wrong: number }} Compared `wrong`: pixels in which both differ */
 
 const state = {
-  /** @type {{ voxrt: Voxrt, hardware: Hardware } | null} */
-  loaded: null,
+  /** @type {{ voxrt: Voxrt, hardware: Hardware } | null} */ loaded: null,
   onProgress: (/** @type {number} */ _pixels) => {},
 };
 
 const calls = {
-  /** @param {{ module: WebAssembly.Module }} job */
-  async start({ module }) {
+  /** @param {{ module: WebAssembly.Module }} job */ async start({ module }) {
     const path = "voxrt/voxrt_hardware.wasm";
     const [voxrt, hardware] = await Promise.all([
       Voxrt.load(module),
@@ -29,12 +27,8 @@ const calls = {
     state.loaded = { voxrt, hardware };
   },
 
-  /**
-   * One frame by both.
-   * @param {{ words: Uint32Array, depth: number, camera: Camera, size: Size, look: Look }} job
-   * @param {(stage: { share: number }) => void} report
-   * @returns {Compared}
-   */
+  /** One frame by both. @param {{ words: Uint32Array, depth: number, camera: Camera, size: Size, look: Look }} job
+   * @param {(stage: { share: number }) => void} report @returns {Compared} */
   run({ words, depth, camera, size, look }, report) {
     if (!state.loaded) throw new Error("the worker has not started");
     const { voxrt, hardware } = state.loaded;

@@ -16,8 +16,7 @@ export async function decodeImage(bytes, place) {
   }
 }
 
-/** @param {Uint8Array<ArrayBuffer>} bytes */
-async function byBrowser(bytes) {
+/** @param {Uint8Array<ArrayBuffer>} bytes */ async function byBrowser(bytes) {
   if (typeof createImageBitmap === "undefined") throw new Error("only browsers decode this kind");
   const bitmap = await createImageBitmap(new Blob([bareJpeg(bytes)]), {
     colorSpaceConversion: "none",
@@ -32,7 +31,8 @@ async function byBrowser(bytes) {
   return { width, height, pixels: new Uint8Array(context.getImageData(0, 0, width, height).data.buffer) };
 }
 
-/** A JPEG file without its colour profile and its orientation (APP1 and APP2). @param {Uint8Array<ArrayBuffer>} bytes */
+/** A JPEG file without its colour profile and its orientation (APP1 and APP2). @param {Uint8Array<ArrayBuffer>}
+ * bytes */
 function bareJpeg(bytes) {
   if (bytes[0] !== 0xff || bytes[1] !== 0xd8) return bytes;
   const kept = [bytes.subarray(0, 2)];

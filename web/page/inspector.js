@@ -26,14 +26,13 @@ const EDGES = [
 ];
 const SVG = "http://www.w3.org/2000/svg";
 
-/** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of the ray of a pixel, at column and row */
+/** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of the ray of a pixel, at column and
+ * row */
 
 export class Inspector {
-  /** @type {Way | null} */
-  #way = null;
+  /** @type {Way | null} */ #way = null;
 
-  /** @param {App} app */
-  constructor(app) {
+  /** @param {App} app */ constructor(app) {
     this.app = app;
     $("ray-close").onclick = () => this.clear();
   }
@@ -44,13 +43,11 @@ export class Inspector {
     $("octants").replaceChildren();
   }
 
-  /** @param {number} id */
-  #materialName(id) {
+  /** @param {number} id */ #materialName(id) {
     return this.app.memory()?.materials[id]?.name ?? `material ${id}`;
   }
 
-  /** @param {Way} way */
-  show(way) {
+  /** @param {Way} way */ show(way) {
     this.#way = way;
     const { readings, cell, material: id, face, pixel } = way;
     $("ray").hidden = false;
@@ -62,8 +59,7 @@ export class Inspector {
     $("ray").scrollIntoView({ block: "nearest" });
   }
 
-  /** @param {Reading} reading @param {Reading | undefined} next @param {number} i */
-  #row(reading, next, i) {
+  /** @param {Reading} reading @param {Reading | undefined} next @param {number} i */ #row(reading, next, i) {
     const { address, word, level } = reading;
     const texts = [String(i + 1), String(address), hex(word), `${2 ** level}³`, this.#why(reading, next)];
     const line = element("tr", { tabIndex: 0 }, ...texts.map((text) => element("td", {}, text)));
@@ -72,8 +68,7 @@ export class Inspector {
     return line;
   }
 
-  /** @param {Reading} reading @param {Reading | undefined} next */
-  #why({ word, level }, next) {
+  /** @param {Reading} reading @param {Reading | undefined} next */ #why({ word, level }, next) {
     if (!isLeaf(word)) {
       const target = next ? `octant ${octant(word, next.address)} of it` : "it";
       return `points to the block at ${word}: the ray goes down into ${target}`;
@@ -102,14 +97,14 @@ export class Inspector {
   }
 }
 
-/** @param {string} tag @param {Record<string, string | number>} attributes */
-function svgElement(tag, attributes) {
+/** @param {string} tag @param {Record<string, string | number>} attributes */ function svgElement(tag, attributes) {
   const made = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
   return made;
 }
 
-/** The edges of an octant in the picture; null where a corner is behind the eye. @param {Reading} reading @param {Registers} registers @param {Size} size */
+/** The edges of an octant in the picture; null where a corner is behind the eye. @param {Reading} reading @param
+ * {Registers} registers @param {Size} size */
 function edgesOf({ corner, level }, { position, look, right, up }, [width, height]) {
   const side = 2 ** level;
   const eye = position.map((value) => value / 16);
@@ -119,8 +114,7 @@ function edgesOf({ corner, level }, { position, look, right, up }, [width, heigh
       eye,
     );
     const far = dot(away, look) / dot(look, look);
-    /** @param {Vector} axis */
-    const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
+    /** @param {Vector} axis */ const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
     return far > 1e-9 ? [Math.floor(width / 2) + at(right) + 0.5, Math.floor(height / 2) - at(up) + 0.5] : null;
   });
   const texts = places.map((place) => place?.map((value) => value.toFixed(1)));

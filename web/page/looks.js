@@ -12,8 +12,7 @@ const BOUNCES = 3;
 const bright = matchMedia("(prefers-color-scheme: light)").matches;
 const AROUND = bright ? [228, 234, 244] : BACKGROUND;
 
-/** @type {Look} */
-export const FIRST_LOOK = {
+/** @type {Look} */ export const FIRST_LOOK = {
   shading: "faces",
   features: [],
   ambient: PLAIN.ambient,
@@ -22,15 +21,9 @@ export const FIRST_LOOK = {
   background: AROUND,
 };
 
-/**
- * The look of a memory that follows another one. A memory is shown as it says. What the user chooses then stays, until a
- * memory says something else.
- * @param {Look} look that of the page now
- * @param {Memory} memory
- * @param {Memory | null} old
- * @param {boolean} first whether the memory is of another file
- * @returns {Look}
- */
+/** The look of a memory that follows another one. A memory is shown as it says. What the user chooses then stays,
+ * until a memory says something else. @param {Look} look that of the page now @param {Memory} memory @param {Memory
+ * | null} old @param {boolean} first whether the memory is of another file @returns {Look} */
 export function nextLook(look, memory, old, first) {
   const { lighting } = memory;
   const changes = (first && lighting) || !same(lighting, old?.lighting);
@@ -46,8 +39,7 @@ export function nextLook(look, memory, old, first) {
 /** @param {unknown} one @param {unknown} other */
 const same = (one, other) => JSON.stringify(one ?? null) === JSON.stringify(other ?? null);
 
-/** @param {Lighting | null | undefined} lighting @returns {Partial<Look>} */
-function lookOf(lighting) {
+/** @param {Lighting | null | undefined} lighting @returns {Partial<Look>} */ function lookOf(lighting) {
   const { flat, faces, ambient, on, bounces } = lighting ?? PLAIN;
   return {
     shading: flat ? "flat" : faces ? "faces" : "report",

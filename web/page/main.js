@@ -17,8 +17,7 @@ import { makeTools } from "./tools.js";
 
 const CLICK = 5; // pixels that a click may move
 
-/** @param {App} app @param {Site} site */
-function openScenes(app, site) {
+/** @param {App} app @param {Site} site */ function openScenes(app, site) {
   acceptFiles(async (files) => {
     if (!files.length) return;
     history.replaceState(null, "", location.pathname + location.search);
@@ -54,8 +53,7 @@ function inspect(app) {
   };
 }
 
-/** @param {App} app */
-function offerDownloads(app) {
+/** @param {App} app */ function offerDownloads(app) {
   $("save-mem").onclick = () => {
     const memory = app.memory();
     if (memory) save(new Blob([memBytes(memory.words)], { type: "text/plain" }), `${memory.name}.mem`);

@@ -11,28 +11,16 @@ const HIGHEST = 2 ** 31 - 1;
 /** @import { Lighting } from "./memory.js" */
 /** @import { Material, Warning } from "./voxrt/voxrt.js" */
 
-/**
- * What is used of a manifest.
- * @typedef {object} Manifest
- * @property {number} depth
- * @property {number} words
- * @property {Required<Material>[]} materials
- * @property {object[]} objects
- * @property {Warning[]} warnings
- * @property {{ origin: number[], voxel_size: number } | null} [world]
- * @property {Partial<Lighting> | null} [lighting]
- * @property {Registers | null} [view]
- * @property {{ frames: object[] } | null} [animation]
- */
+/** What is used of a manifest. @typedef {{ depth: number, words: number, materials: Required<Material>[], objects:
+ * object[], warnings: Warning[], world?: { origin: number[], voxel_size: number } | null, lighting?:
+ * Partial<Lighting> | null, view?: Registers | null, animation?: { frames: object[] } | null }} Manifest */
 
 /** @typedef {(value: unknown) => boolean} Check */
 
-/** @param {number} low @param {number} high @returns {Check} */
-const isWhole = (low, high) => (value) =>
+/** @param {number} low @param {number} high @returns {Check} */ const isWhole = (low, high) => (value) =>
   typeof value === "number" && Number.isInteger(value) && value >= low && value <= high;
 
-/** @param {Check} is @param {number} [length] @returns {Check} */
-const isList = (is, length) => (value) =>
+/** @param {Check} is @param {number} [length] @returns {Check} */ const isList = (is, length) => (value) =>
   Array.isArray(value) && (length === undefined || value.length === length) && value.every((one) => is(one));
 
 /** @param {unknown} value @returns {value is Record<string, unknown>} */
@@ -40,39 +28,32 @@ const isObject = (value) => typeof value === "object" && value !== null && !Arra
 
 const isByte = isWhole(0, 255);
 const isPlace = isList(isWhole(-HIGHEST, HIGHEST), 3);
-/** @type {Check} */
-const isFlag = (value) => typeof value === "boolean";
+/** @type {Check} */ const isFlag = (value) => typeof value === "boolean";
 /** @param {Check} is @returns {Check} */
 const isOptional = (is) => (value) => value === null || value === undefined || is(value);
-/** @type {Check} */
-const isMaterial = (value) =>
+/** @type {Check} */ const isMaterial = (value) =>
   isObject(value) &&
   typeof value.name === "string" &&
   isList(isByte, 3)(value.colour) &&
   isFlag(value.mirror) &&
   isFlag(value.authored);
-/** @type {Check} */
-const isMaterials = (value) =>
+/** @type {Check} */ const isMaterials = (value) =>
   Array.isArray(value) &&
   value.length >= 1 &&
   value.length <= 256 &&
   value.every((one, id) => isMaterial(one) && one.id === id);
-/** @type {Check} */
-const isWorld = (value) =>
+/** @type {Check} */ const isWorld = (value) =>
   isObject(value) &&
   isList(Number.isFinite, 3)(value.origin) &&
   typeof value.voxel_size === "number" &&
   value.voxel_size > 0;
 /** @type {Check} */
 const isView = (value) => isObject(value) && ["position", "look", "right", "up"].every((name) => isPlace(value[name]));
-/** @type {Check} */
-const isFrame = (value) => isObject(value) && isWhole(0, 2 ** 32)(value.root);
-/** @type {Check} */
-const isAnimation = (value) =>
+/** @type {Check} */ const isFrame = (value) => isObject(value) && isWhole(0, 2 ** 32)(value.root);
+/** @type {Check} */ const isAnimation = (value) =>
   isObject(value) && isList(isFrame)(value.frames) && Array.isArray(value.frames) && value.frames.length > 0;
 
-/** @type {Record<string, Check>} */
-const LIGHTING = {
+/** @type {Record<string, Check>} */ const LIGHTING = {
   position: isPlace,
   ambient: isByte,
   on: isFlag,
@@ -80,12 +61,10 @@ const LIGHTING = {
   bounces: isWhole(0, 15),
   faces: (value) => value === null || isList(isByte, 6)(value),
 };
-/** @type {Check} */
-const isLighting = (value) =>
+/** @type {Check} */ const isLighting = (value) =>
   isObject(value) && Object.entries(LIGHTING).every(([name, is]) => value[name] === undefined || is(value[name]));
 
-/** @type {Record<string, Check>} */
-const FIELDS = {
+/** @type {Record<string, Check>} */ const FIELDS = {
   depth: isWhole(1, 16),
   words: isWhole(1, 2 ** 32),
   materials: isMaterials,
@@ -99,10 +78,8 @@ const FIELDS = {
 
 /** Read the manifest that describes a memory. @param {DroppedFile} file @param {DroppedFile} mem @returns {Manifest} */
 export function readManifest(file, mem) {
-  /** @param {string} problem */
-  const fault = (problem) => new Error(`${mem.name}: ${file.name}: ${problem}`);
-  /** @type {unknown} */
-  let known;
+  /** @param {string} problem */ const fault = (problem) => new Error(`${mem.name}: ${file.name}: ${problem}`);
+  /** @type {unknown} */ let known;
   try {
     known = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(file.bytes));
   } catch {

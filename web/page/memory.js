@@ -7,45 +7,22 @@ import { hex } from "./voxrt/words.js";
 /** @import { Manifest } from "./manifest.js" */
 /** @import { Baked, Fitted, Material, Warning } from "./voxrt/voxrt.js" */
 
-/**
- * The lighting of a memory; the fields are those of manifests.
- * @typedef {object} Lighting
- * @property {number[]} position in 1/16 voxel
- * @property {number} ambient
- * @property {boolean} on
- * @property {boolean} flat
- * @property {number} bounces
- * @property {number[] | null} faces
- */
+/** The lighting of a memory; the fields are those of manifests. `position`: in 1/16 voxel. @typedef {{ position:
+ * number[], ambient: number, on: boolean, flat: boolean, bounces: number, faces: number[] | null }} Lighting */
 
 /** @type {Lighting} the lighting of a memory that names no other */
 export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false, bounces: 0, faces: FACES };
 
-/** @type {Lighting} the lighting of a memory with baked light */
-export const FLAT = { ...PLAIN, flat: true };
+/** @type {Lighting} the lighting of a memory with baked light */ export const FLAT = { ...PLAIN, flat: true };
 
-/**
- * A memory that was built or read. `fixed`: it was read, and cannot be built otherwise.
- * @typedef {object} Memory
- * @property {string} name
- * @property {string} file
- * @property {Uint32Array} words
- * @property {number} depth
- * @property {Required<Material>[]} materials
- * @property {{ origin: readonly number[], voxelSize: number } | null} grid
- * @property {object[]} objects
- * @property {Warning[]} warnings
- * @property {Lighting | null} [lighting]
- * @property {Registers | null} [view] the camera of its author
- * @property {Manifest | null} [manifest] that it came with
- * @property {Baked | null} [baked]
- * @property {Fitted | null} [fitted]
- * @property {string} [fill]
- * @property {number} [seconds]
- * @property {boolean} [fixed]
- */
+/** A memory that was built or read. `fixed`: it was read, and cannot be built otherwise. `view`: the camera of its
+ * author; `manifest`: that it came with. @typedef {{ name: string, file: string, words: Uint32Array, depth: number,
+ * materials: Required<Material>[], grid: { origin: readonly number[], voxelSize: number } | null, objects:
+ * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
+ * baked?: Baked | null, fitted?: Fitted | null, fill?: string, seconds?: number, fixed?: boolean }} Memory */
 
-/** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with the voxels by material, and the box that holds what is solid */
+/** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with the voxels by material, and the box that holds
+ * what is solid */
 
 /** The text of a .mem file: one word per line. @param {Uint32Array} words */
 export function memBytes(words) {
@@ -57,7 +34,8 @@ export function memBytes(words) {
   return bytes;
 }
 
-/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes @returns {Box | null} */
+/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes
+ * @returns {Box | null} */
 export function boundsOf(cubes) {
   if (!cubes.length) return null;
   const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];

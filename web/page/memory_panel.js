@@ -13,11 +13,9 @@ const KIB = 256; // words
 const MIB = 1024 * KIB;
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
-/** @param {number} number */
-const count = (number) => number.toLocaleString("en");
+/** @param {number} number */ const count = (number) => number.toLocaleString("en");
 
-/** @param {number} words */
-function size(words) {
+/** @param {number} words */ function size(words) {
   const [unit, name] = words < MIB ? [KIB, "KiB"] : [MIB, "MiB"];
   return `${(words / unit).toLocaleString("en", { maximumFractionDigits: 1 })} ${name}`;
 }
@@ -30,8 +28,7 @@ export class MemoryPanel {
     this.bitstreams = new BoardPanel(app, module);
     this.daylight = new DaylightControl(() => app.build());
     this.budget = new Budget(() => app.build());
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    let soon;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */ let soon;
     $("depth").oninput = () => {
       this.#showDepth();
       clearTimeout(soon);
@@ -45,7 +42,8 @@ export class MemoryPanel {
     return { depth: $("depth").valueAsNumber, fill, bake: this.daylight.options, budget: this.budget.words };
   }
 
-  /** @param {{ depth?: number | null, bake?: ReturnType<MemoryPanel["options"]>["bake"], words?: number | null }} options */
+  /** @param {{ depth?: number | null, bake?: ReturnType<MemoryPanel["options"]>["bake"], words?: number | null }}
+   * options */
   set({ depth = null, bake = null, words = null }) {
     if (depth !== null) $("depth").valueAsNumber = depth;
     if (bake) this.daylight.set(bake);
@@ -57,8 +55,7 @@ export class MemoryPanel {
     $("depth-value").textContent = `${count(2 ** $("depth").valueAsNumber)}³`;
   }
 
-  /** @param {Shown} memory */
-  show(memory) {
+  /** @param {Shown} memory */ show(memory) {
     const { name, words, depth, voxels, warnings, fixed, seconds, fitted } = memory;
     const solid = voxels.reduce((sum, voxelCount, id) => (id ? sum + voxelCount : 0), 0);
     const time = seconds ? ` · ${seconds.toFixed(2)} s` : "";

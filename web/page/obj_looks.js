@@ -8,25 +8,19 @@ import { colours } from "./voxrt/scene.js";
 /** @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
 /** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
-/** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image and its coordinates */
+/** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image and its
+ * coordinates */
 
 const OPAQUE_FROM = 0.5;
 /** @type {Record<string, number>} */
 const VALUES = { "-s": 3, "-o": 3, "-t": 3, "-mm": 2 }; // the most numbers of an option; others have one word
 
-/**
- * @param {Map<string, MaterialInfo>} library by name
- * @param {Folder} folder
- * @param {Voxrt} voxrt
- * @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>}
- */
+/** @param {Map<string, MaterialInfo>} library by name @param {Folder} folder @param {Voxrt} voxrt @returns
+ * {Promise<{ warnings: Warning[], rules: Partial<Rules> }>} */
 export async function objLooks(library, folder, voxrt) {
-  /** @type {Warning[]} */
-  const warnings = [];
-  /** @type {Map<string, Appearance>} */
-  const entries = new Map();
-  /** @type {Map<string, Placed>} */
-  const textures = new Map();
+  /** @type {Warning[]} */ const warnings = [];
+  /** @type {Map<string, Appearance>} */ const entries = new Map();
+  /** @type {Map<string, Placed>} */ const textures = new Map();
   for (const [name, { kd, map_kd: map, map_d: opacity }] of library) {
     if (opacity)
       warnings.push({ kind: "texture", message: `map_d of ${name} is not used here; voxrt build uses it`, count: 1 });
@@ -46,8 +40,7 @@ export async function objLooks(library, folder, voxrt) {
     textures.set(name, placed);
     entries.set(`${name} textured`, { name, texture: { image, wrap: [wrap, wrap] } });
   }
-  /** @param {string} name */
-  const coloured = (name) => {
+  /** @param {string} name */ const coloured = (name) => {
     const key = `${name} coloured`;
     const kd = library.get(name)?.kd?.map((part) => voxrt.linear(code(part)));
     const entry = entries.get(key) ?? { name: name || "vertex colours", factor: [...(kd ?? [1, 1, 1]), 1] };
@@ -81,8 +74,7 @@ export async function objLooks(library, folder, voxrt) {
   };
 }
 
-/** @param {Attribute} uv @param {Placed} placed @returns {Setter} */
-const uvSetter =
+/** @param {Attribute} uv @param {Placed} placed @returns {Setter} */ const uvSetter =
   (uv, { scale, offset }) =>
   (vertex, out) => {
     out[0] = uv.getX(vertex) * scale[0] + offset[0];
@@ -98,15 +90,15 @@ export function code(part) {
 /** @param {MaterialInfo | undefined} material */
 const isClear = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr)) < OPAQUE_FROM;
 
-/** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text @returns {Placed} */
+/** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text @returns
+ * {Placed} */
 function placement(text) {
   const words = text.trim().split(/\s+/);
   const placed = { scale: [1, 1], offset: [0, 0], clamp: false };
   let at = 0;
   while (at < words.length - 1 && words[at].startsWith("-")) {
     const option = words[at++].toLowerCase();
-    /** @type {string[]} */
-    const values = [];
+    /** @type {string[]} */ const values = [];
     for (
       let most = VALUES[option] ?? 1;
       values.length < most && at < words.length - 1 && (!(option in VALUES) || Number.isFinite(Number(words[at])));

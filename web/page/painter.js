@@ -19,24 +19,14 @@ const AHEAD = 2; // bands per worker: it renders one while the next one waits th
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
 
-/**
- * A frame that is rendered.
- * @typedef {object} Job
- * @property {number} request
- * @property {Registers} camera
- * @property {Size} size
- * @property {number} since when it was requested
- * @property {number} scene
- * @property {number} left bands that are not rendered
- * @property {number | null} began
- * @property {Band[]} bands
- */
+/** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered. @typedef {{
+ * request: number, camera: Registers, size: Size, since: number, scene: number, left: number, began: number | null,
+ * bands: Band[] }} Job */
 
 /** @typedef {{ job: Job, first: number, end: number }} Part of a frame: rows of tiles */
 /** @typedef {{ hand: Hand<WorkerCalls>, bands: number }} Artist a worker, and the bands that it has */
 
-/** @extends {Events<{ frame: BandFrame, trouble: string }>} */
-export class Painter extends Events {
+/** @extends {Events<{ frame: BandFrame, trouble: string }>} */ export class Painter extends Events {
   hello = {
     viewer: 1,
     device: {
@@ -47,22 +37,16 @@ export class Painter extends Events {
       features: ["light", "mirrors"],
     },
   };
-  /** @type {Map<number, number>} when frames were requested that have not arrived, by request */
-  sent = new Map();
-  /** @type {Artist[]} */
-  #artists = [];
-  /** @type {Part[]} that no worker has yet */
-  #queue = [];
-  /** @type {Map<number, ArrayBuffer[]>} buffers that no band has, by length */
-  #buffers = new Map();
-  /** @type {Band[]} of the newest frame */
-  #shown = [];
+  /** @type {Map<number, number>} when frames were requested that have not arrived, by request */ sent = new Map();
+  /** @type {Artist[]} */ #artists = [];
+  /** @type {Part[]} that no worker has yet */ #queue = [];
+  /** @type {Map<number, ArrayBuffer[]>} buffers that no band has, by length */ #buffers = new Map();
+  /** @type {Band[]} of the newest frame */ #shown = [];
   #request = 0;
   #sequence = 0;
   #scene = 0;
 
-  /** @param {WebAssembly.Module} module */
-  constructor(module) {
+  /** @param {WebAssembly.Module} module */ constructor(module) {
     super();
     this.module = module;
   }
@@ -75,8 +59,7 @@ export class Painter extends Events {
     this.sent.clear();
     this.#queue = [];
     for (const { hand } of this.#artists.splice(wanted)) hand.stop();
-    /** @type {Artist[]} */
-    const starting = [];
+    /** @type {Artist[]} */ const starting = [];
     while (this.#artists.length < wanted) {
       /** @type {Artist} */
       const artist = { hand: new Hand("./worker.js"), bands: AHEAD }; // no more until it has started
@@ -95,13 +78,11 @@ export class Painter extends Events {
     );
   }
 
-  /** @param {Look} shading */
-  shade(shading) {
+  /** @param {Look} shading */ shade(shading) {
     for (const { hand } of this.#artists) hand.call("shade", { shading }).catch(() => {});
   }
 
-  /** @param {Vector} origin @param {Vector} direction */
-  follow(origin, direction) {
+  /** @param {Vector} origin @param {Vector} direction */ follow(origin, direction) {
     return this.#artists[0].hand.call("follow", { origin, direction });
   }
 
@@ -117,16 +98,14 @@ export class Painter extends Events {
     const tiles = Math.ceil(size[1] / TILE);
     const step = Math.max(1, Math.ceil(tiles / (BANDS * this.#artists.length)));
     const left = Math.ceil(tiles / step);
-    /** @type {Job} */
-    const job = { request, camera, size, since, scene: this.#scene, left, began: null, bands: [] };
+    /** @type {Job} */ const job = { request, camera, size, since, scene: this.#scene, left, began: null, bands: [] };
     for (let first = 0; first < tiles; first += step)
       this.#queue.push({ job, first, end: Math.min(first + step, tiles) });
     for (const artist of this.#artists) this.#next(artist);
     return request;
   }
 
-  /** @param {Artist} artist */
-  #next(artist) {
+  /** @param {Artist} artist */ #next(artist) {
     while (artist.bands < AHEAD) {
       const part = this.#queue.shift();
       if (!part) return;
@@ -134,8 +113,7 @@ export class Painter extends Events {
     }
   }
 
-  /** @param {Artist} artist @param {Part} part */
-  async #render(artist, { job, first, end }) {
+  /** @param {Artist} artist @param {Part} part */ async #render(artist, { job, first, end }) {
     const { camera, size } = job;
     const [width, height] = size;
     const length = 4 * width * (Math.min(TILE * end, height) - TILE * first);

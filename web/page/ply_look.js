@@ -13,8 +13,7 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {Record<string, string>} Properties their types by name */
 
 const STORED = "stored_colour";
-/** @type {Record<string, number>} */
-const WHOLE = {
+/** @type {Record<string, number>} */ const WHOLE = {
   char: 127,
   int8: 127,
   uchar: 255,
@@ -25,18 +24,15 @@ const WHOLE = {
   uint16: 65535,
 };
 
-/** @param {PLYLoader} loader */
-export function readsColours(loader) {
+/** @param {PLYLoader} loader */ export function readsColours(loader) {
   loader.setCustomPropertyNameMapping({ [STORED]: ["red", "green", "blue"] });
   return loader;
 }
 
 /** The properties of each element, by name. @param {string} header */
 function elementsOf(header) {
-  /** @type {Record<string, Properties>} */
-  const elements = {};
-  /** @type {Properties} */
-  let properties = {};
+  /** @type {Record<string, Properties>} */ const elements = {};
+  /** @type {Properties} */ let properties = {};
   for (const words of header.split("\n").map((line) => line.trim().split(/\s+/))) {
     if (words[0] === "element") {
       properties = {};
@@ -47,13 +43,8 @@ function elementsOf(header) {
   return elements;
 }
 
-/**
- * @param {Uint8Array} bytes
- * @param {BufferGeometry} geometry of a PLYLoader that readsColours()
- * @param {Folder} folder
- * @param {Voxrt} voxrt
- * @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>}
- */
+/** @param {Uint8Array} bytes @param {BufferGeometry} geometry of a PLYLoader that readsColours() @param {Folder}
+ * folder @param {Voxrt} voxrt @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>} */
 export async function plyLook(bytes, geometry, folder, voxrt) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16)).split("end_header")[0];
   const names = [...header.matchAll(/^comment\s+TextureFile\s+(.+?)\s*$/gm)].map(([, name]) => name);
@@ -64,7 +55,8 @@ export async function plyLook(bytes, geometry, folder, voxrt) {
   return { warnings: warnings.list(), rules: { appearanceOf: () => look } };
 }
 
-/** @param {string[]} names of images @param {BufferGeometry} geometry @param {Folder} folder @param {Warnings} warnings */
+/** @param {string[]} names of images @param {BufferGeometry} geometry @param {Folder} folder @param {Warnings}
+ * warnings */
 async function textured(names, geometry, folder, { warn }) {
   const uv = geometry.getAttribute("uv");
   if (names.length > 1) warn("texture", "several textures of one PLY file are not shown here; voxrt build shows them");
@@ -78,17 +70,16 @@ async function textured(names, geometry, folder, { warn }) {
   }
   const image = await decodeImage(file.bytes, `texture ${names[0]}`);
   const clear = image.pixels.some((byte, i) => i % 4 === 3 && byte < 255);
-  /** @type {Appearance} */
-  const entry = { name: "texture", texture: { image }, cutoff: clear ? 0.5 : 0 };
-  /** @type {Setter} */
-  const uvOf = (vertex, out) => {
+  /** @type {Appearance} */ const entry = { name: "texture", texture: { image }, cutoff: clear ? 0.5 : 0 };
+  /** @type {Setter} */ const uvOf = (vertex, out) => {
     out[0] = uv.getX(vertex);
     out[1] = 1 - uv.getY(vertex);
   };
   return { entry, uvOf };
 }
 
-/** @param {Record<string, Properties>} elements @param {BufferGeometry} geometry @param {Voxrt} voxrt @param {Warnings} warnings */
+/** @param {Record<string, Properties>} elements @param {BufferGeometry} geometry @param {Voxrt} voxrt @param
+ * {Warnings} warnings */
 function coloured({ vertex: ofVertices = {}, face: ofFaces = {} }, geometry, voxrt, { warn }) {
   const byFace = "red" in ofFaces;
   const properties = byFace ? ofFaces : ofVertices;
@@ -97,12 +88,9 @@ function coloured({ vertex: ofVertices = {}, face: ofFaces = {} }, geometry, vox
   if ("alpha" in properties) warn("vertex-colours", "the opacity of colours is not used here; voxrt build uses it");
   if (byFace) warn("vertex-colours", "dark colours of faces are coarse here; voxrt build has them exactly");
   const whole = WHOLE[ofVertices.red] ?? (colour.array.some((part) => part > 1) ? 255 : 1);
-  /** @param {number} part */
-  const stored = (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
-  /** @param {number} part */
-  const linear = (part) => voxrt.linear(byFace ? voxrt.srgb(part) : stored(part));
-  /** @type {Setter} */
-  const colourOf = (vertex, out) => {
+  /** @param {number} part */ const stored = (part) => Math.round(Math.min(1, Math.max(0, (part || 0) / whole)) * 255);
+  /** @param {number} part */ const linear = (part) => voxrt.linear(byFace ? voxrt.srgb(part) : stored(part));
+  /** @type {Setter} */ const colourOf = (vertex, out) => {
     out[0] = linear(colour.getX(vertex));
     out[1] = linear(colour.getY(vertex));
     out[2] = linear(colour.getZ(vertex));

@@ -8,8 +8,7 @@ const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 /** @typedef {(line: Uint8Array, i: number) => number} Read a value of a line */
 /** @typedef {(line: Uint8Array, column: number, out: Uint8Array, at: number) => void} Write a pixel of a line */
 
-/** @type {Record<number, number>} by the type of the image */
-const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
+/** @type {Record<number, number>} by the type of the image */ const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 const PASSES = [
   [0, 0, 8, 8],
   [4, 0, 8, 8],
@@ -21,19 +20,16 @@ const PASSES = [
 ]; // x, y, steps
 export const MOST_PIXELS = 1 << 26;
 
-/** @param {Uint8Array} bytes */
-export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
+/** @param {Uint8Array} bytes */ export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
 
-/** The pixels have 4 bytes, of 16 bits the upper 8. Throws an Error where the file is broken. @param {Uint8Array<ArrayBuffer>} bytes @returns {Promise<Pixels>} */
+/** The pixels have 4 bytes, of 16 bits the upper 8. Throws an Error where the file is broken. @param
+ * {Uint8Array<ArrayBuffer>} bytes @returns {Promise<Pixels>} */
 export async function decodePng(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const parts = [];
-  /** @type {Head | null} */
-  let head = null;
-  /** @type {Uint8Array | null} */
-  let palette = null;
-  /** @type {Uint8Array | null} */
-  let clear = null;
+  /** @type {Head | null} */ let head = null;
+  /** @type {Uint8Array | null} */ let palette = null;
+  /** @type {Uint8Array | null} */ let clear = null;
   for (let at = 8; at + 12 <= bytes.length; ) {
     const length = view.getUint32(at);
     const kind = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
@@ -90,8 +86,7 @@ export async function decodePng(bytes) {
   return { width, height, pixels };
 }
 
-/** @param {Uint8Array<ArrayBuffer>[]} parts @param {number} size */
-async function inflated(parts, size) {
+/** @param {Uint8Array<ArrayBuffer>[]} parts @param {number} size */ async function inflated(parts, size) {
   const out = new Uint8Array(size);
   const reader = new Blob(parts).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
   let at = 0;
@@ -131,8 +126,7 @@ function unfilter(filter, line, above, step) {
   }
 }
 
-/** @param {number} depth bits per value @returns {Read} */
-function reading(depth) {
+/** @param {number} depth bits per value @returns {Read} */ function reading(depth) {
   if (depth === 8) return (line, i) => line[i];
   if (depth === 16) return (line, i) => line[2 * i];
   return (line, i) => (line[(i * depth) >> 3] >> (8 - depth - ((i * depth) & 7))) & ((1 << depth) - 1);
@@ -141,10 +135,8 @@ function reading(depth) {
 /** @param {Head} head @param {Uint8Array | null} palette @param {Uint8Array | null} clear @returns {Write} */
 function colouring({ type, depth }, palette, clear) {
   const value = reading(depth);
-  /** @type {Read} */
-  const exact = depth === 16 ? (line, i) => 256 * line[2 * i] + line[2 * i + 1] : value;
-  /** @param {number} channel */
-  const key = (channel) =>
+  /** @type {Read} */ const exact = depth === 16 ? (line, i) => 256 * line[2 * i] + line[2 * i + 1] : value;
+  /** @param {number} channel */ const key = (channel) =>
     clear && clear.length > 2 * channel + 1 ? 256 * clear[2 * channel] + clear[2 * channel + 1] : -1;
   const scale = depth < 8 ? 255 / ((1 << depth) - 1) : 1;
   if (type === 3)

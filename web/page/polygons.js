@@ -17,8 +17,7 @@ const STRAIGHT = 1e-9; // a corner that turns back by less, of the square of the
 export function withoutConcave(text) {
   const lines = text.replace(/\\\r?\n/g, " ").split("\n");
   if (!lines.some((line) => /^\s*f\s/.test(line) && line.trim().split(/\s+/).length > 4)) return text;
-  /** @type {number[][]} */
-  const places = [];
+  /** @type {number[][]} */ const places = [];
   return lines
     .map((line) => {
       const words = line.split("#")[0].trim().split(/\s+/);
@@ -38,17 +37,13 @@ export function withoutConcave(text) {
     .join("\n");
 }
 
-/**
- * Triangles of a concave polygon; null for a convex one, or one without area.
- * @param {Vector[]} corners
- * @param {(points: Point[]) => Triangle[] | null} [cut] the triangles of a polygon with more than four corners, which lies in
- *   the plane, counter-clockwise
- */
+/** Triangles of a concave polygon; null for a convex one, or one without area. @param {Vector[]} corners @param
+ * {(points: Point[]) => Triangle[] | null} [cut] the triangles of a polygon with more than four corners, which lies
+ * in the plane, counter-clockwise */
 export function cutConcave(corners, cut = ears) {
   const count = corners.length;
   const points = corners.map((corner) => subtract(corner, corners[0])); // near the origin, products keep their digits
-  /** @param {number} i */
-  const next = (i) => points[(i + 1) % count];
+  /** @param {number} i */ const next = (i) => points[(i + 1) % count];
   const normal = points.reduce(
     (sum, point, i) => cross(point, next(i)).map((part, axis) => part + sum[axis]),
     [0, 0, 0],
@@ -69,7 +64,8 @@ export function cutConcave(corners, cut = ears) {
   return cut(flat(points, normal));
 }
 
-/** Without the axis along which the normal is longest, counter-clockwise. @param {Vector[]} points @param {Vector} normal */
+/** Without the axis along which the normal is longest, counter-clockwise. @param {Vector[]} points @param {Vector}
+ * normal */
 function flat(points, normal) {
   const sizes = normal.map(Math.abs);
   const axis = sizes.indexOf(Math.max(...sizes));
@@ -80,11 +76,11 @@ function flat(points, normal) {
 /** @param {Point} a @param {Point} b @param {Point} c */
 const side = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
 
-/** Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves. @param {Point[]} points */
+/** Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves.
+ * @param {Point[]} points */
 export function ears(points) {
   const left = points.map((_, i) => i);
-  /** @type {Triangle[]} */
-  const triangles = [];
+  /** @type {Triangle[]} */ const triangles = [];
   while (left.length > 3) {
     const at = left.findIndex((_, i) => isEar(points, left, i));
     if (at < 0) return null;
@@ -97,8 +93,7 @@ export function ears(points) {
 /** @param {number[]} left @param {number} i */
 const earAt = (left, i) => [-1, 0, 1].map((step) => left[(i + step + left.length) % left.length]);
 
-/** @param {Point[]} points @param {number[]} left @param {number} i */
-function isEar(points, left, i) {
+/** @param {Point[]} points @param {number[]} left @param {number} i */ function isEar(points, left, i) {
   const [a, b, c] = earAt(left, i).map((at) => points[at]);
   if (side(a, b, c) <= 0) return false;
   return left.every((at) => {

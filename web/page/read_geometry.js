@@ -20,16 +20,13 @@ function bare(geometry, main, voxrt, rules) {
   return sceneOf(mesh, voxrt, { materialOf: () => null, ...rules });
 }
 
-/** @type {Reader} */
-export async function readStl(main, _folder, voxrt) {
+/** @type {Reader} */ export async function readStl(main, _folder, voxrt) {
   const rules = { appearanceOf: () => null, normalsOf: () => null }; // its normals are those of the faces
   return bare(new STLLoader().parse(main.bytes.buffer), main, voxrt, rules);
 }
 
-/**
- * Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early.
- * @param {Uint8Array<ArrayBuffer>} bytes
- */
+/** Where only the last line of a header ends with "\r\n", PLYLoader would start with the data a byte early. @param
+ * {Uint8Array<ArrayBuffer>} bytes */
 function withoutReturn(bytes) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16));
   const at = header.indexOf("end_header\r\n") + "end_header".length;
@@ -40,8 +37,7 @@ function withoutReturn(bytes) {
   return made;
 }
 
-/** @type {Reader} */
-export async function readPly(main, folder, voxrt) {
+/** @type {Reader} */ export async function readPly(main, folder, voxrt) {
   const geometry = readsColours(new PLYLoader()).parse(withoutReturn(main.bytes).buffer);
   const { rules, warnings } = await plyLook(main.bytes, geometry, folder, voxrt);
   const scene = bare(geometry, main, voxrt, rules);

@@ -13,8 +13,7 @@ import { sceneOf } from "./voxrt/scene.js";
 /** @import { DroppedFile, Folder } from "./folder.js" */
 /** @import { GltfParser } from "./gltf_looks.js" */
 
-/** @type {Reader} */
-export async function readGltf(main, folder, voxrt) {
+/** @type {Reader} */ export async function readGltf(main, folder, voxrt) {
   const looks = new GltfLooks(folder);
   const { scene: root, parser } = await parse(main, folder, looks);
   const { json } = parser;
@@ -23,13 +22,11 @@ export async function readGltf(main, folder, voxrt) {
   const place = (object, kind) => parser.associations.get(object)?.[kind];
   /** The primitives of a mesh hang below its node, or are the node. @param {Object3D} mesh */
   const groupOf = (mesh) => (place(mesh, "nodes") === undefined && mesh.parent ? mesh.parent : mesh);
-  /** @param {Object3D} group */
-  const nameOf = (group) => {
+  /** @param {Object3D} group */ const nameOf = (group) => {
     const node = place(group, "nodes") ?? -1;
     return json.nodes?.[node]?.name || json.meshes?.[json.nodes?.[node]?.mesh ?? -1]?.name || `nodes[${node}]`;
   };
-  /** @type {Map<string, number>} objects by name */
-  const counts = new Map();
+  /** @type {Map<string, number>} objects by name */ const counts = new Map();
   root.traverse((object) => {
     const isOwn = (/** @type {Object3D} */ mesh) => "isMesh" in mesh && groupOf(mesh) === object;
     if (!isOwn(object) && !("isGroup" in object && object.children.some(isOwn))) return;
@@ -63,17 +60,11 @@ export async function readGltf(main, folder, voxrt) {
   return scene;
 }
 
-/**
- * @param {DroppedFile} main
- * @param {Folder} folder
- * @param {GltfLooks} looks
- * @returns {Promise<{ scene: Object3D, parser: GltfParser }>}
- */
+/** @param {DroppedFile} main @param {Folder} folder @param {GltfLooks} looks @returns {Promise<{ scene: Object3D,
+ * parser: GltfParser }>} */
 async function parse(main, folder, looks) {
-  /** @type {string[]} */
-  const urls = [];
-  /** @type {string[]} */
-  const missing = [];
+  /** @type {string[]} */ const urls = [];
+  /** @type {string[]} */ const missing = [];
   const manager = new LoadingManager();
   manager.setURLModifier((url) => {
     if (url.startsWith("blob:") || url.startsWith("data:")) return url;

@@ -10,13 +10,13 @@ import { sceneOf } from "./voxrt/scene.js";
 /** @import { Reader } from "./files.js" */
 /** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" */
 
-/** @type {Map<number, string>} encodings by their mark */
-const MARKS = new Map([
+/** @type {Map<number, string>} encodings by their mark */ const MARKS = new Map([
   [0xfeff, "utf-16be"],
   [0xfffe, "utf-16le"],
 ]);
 
-/** Text of UTF-16 where it begins with its mark, else of UTF-8, else of Windows-1252, which old exporters wrote. @param {Uint8Array} bytes */
+/** Text of UTF-16 where it begins with its mark, else of UTF-8, else of Windows-1252, which old exporters wrote.
+ * @param {Uint8Array} bytes */
 function textOf(bytes) {
   const mark = MARKS.get(256 * bytes[0] + bytes[1]);
   try {
@@ -26,11 +26,9 @@ function textOf(bytes) {
   }
 }
 
-/** @type {Reader} */
-export async function readObj(main, folder, voxrt) {
+/** @type {Reader} */ export async function readObj(main, folder, voxrt) {
   const text = textOf(main.bytes);
-  /** @type {Map<string, MaterialInfo>} */
-  const library = new Map();
+  /** @type {Map<string, MaterialInfo>} */ const library = new Map();
   for (const [, name] of text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)) {
     const file = folder.find(name);
     if (!file) continue;

@@ -5,8 +5,7 @@
 
 /** @typedef {{ files: DroppedFile[], example: string | null }} Source */
 
-/** @param {File[]} list @returns {Promise<Source>} */
-export async function sourceOfFiles(list) {
+/** @param {File[]} list @returns {Promise<Source>} */ export async function sourceOfFiles(list) {
   const files = list.map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) }));
   return { files: await Promise.all(files), example: null };
 }

@@ -78,17 +78,12 @@ export function readVox(name, bytes, voxrt) {
   return { words, depth, materials, objects: [], grid: null, warnings };
 }
 
-/**
- * The instances of the scene graph; without one, every model is shown at the origin.
- * @param {string} name
- * @param {VoxFile} file
- * @returns {{ instances: Instance[], warnings: Warning[] }}
- */
+/** The instances of the scene graph; without one, every model is shown at the origin. @param {string} name @param
+ * {VoxFile} file @returns {{ instances: Instance[], warnings: Warning[] }} */
 function instancesOf(name, file) {
   if (!file.nodes.size)
     return { instances: file.models.map((_, model) => ({ model, rows: IDENTITY, offset: [0, 0, 0] })), warnings: [] };
-  /** @type {Instance[]} */
-  const instances = [];
+  /** @type {Instance[]} */ const instances = [];
   let [hidden, animated, visited] = [0, 0, 0];
   /** @type {{ number: number, rows: number[][], offset: number[], above: number[] }[]} */
   const waiting = [{ number: 0, rows: IDENTITY, offset: [0, 0, 0], above: [] }];
@@ -130,8 +125,7 @@ function instancesOf(name, file) {
       instances.push({ model, rows, offset });
     }
   }
-  /** @type {Warning[]} */
-  const warnings = [];
+  /** @type {Warning[]} */ const warnings = [];
   if (hidden) warnings.push({ kind: "vox-hidden", message: "nodes that the author hid are left out", count: hidden });
   if (animated)
     warnings.push({

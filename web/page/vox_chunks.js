@@ -4,20 +4,13 @@ export const DAMAGED = "the file is damaged; save it again";
 
 /** @typedef {{ size: number[], voxels: Uint8Array }} Model `voxels`: x, y, z and colour of each */
 
-/**
- * A node of the scene graph: a transform with its child, a group with its children, or a shape with its models.
+/** A node of the scene graph: a transform with its child, a group with its children, or a shape with its models.
  * @typedef {{ child: number, rows: number[][], offset: number[], hidden: boolean, layer: number, frames: number } |
- *   { children: number[] } | { models: number[] }} VoxNode
- */
+ * { children: number[] } | { models: number[] }} VoxNode */
 
-/**
- * @typedef {object} VoxFile
- * @property {Model[]} models
- * @property {Map<number, VoxNode>} nodes
- * @property {Set<number>} hidden layers
- * @property {Map<number, string>} kinds of materials that are not diffuse, by colour
- * @property {(colour: number) => number[]} palette sRGB
- */
+/** `hidden`: layers; `kinds`: of materials that are not diffuse, by colour; `palette`: sRGB. @typedef {{ models:
+ * Model[], nodes: Map<number, VoxNode>, hidden: Set<number>, kinds: Map<number, string>, palette: (colour: number)
+ * => number[] }} VoxFile */
 
 /** A part of the file, read from its start to its end. */
 class Reader {
@@ -30,12 +23,10 @@ class Reader {
     this.place = `chunk ${kind} at byte ${at}`;
     this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   }
-  /** @param {string} problem */
-  fault(problem) {
+  /** @param {string} problem */ fault(problem) {
     return new Error(`${this.name}: ${this.place}: ${problem}; ${DAMAGED}`);
   }
-  /** @param {number} count */
-  take(count) {
+  /** @param {number} count */ take(count) {
     if (count < 0 || count > this.end - this.at)
       throw this.fault(`${count} bytes should follow, and ${this.end - this.at} do`);
     this.at += count;
@@ -45,8 +36,7 @@ class Reader {
     this.take(4);
     return this.view.getInt32(this.at - 4, true);
   }
-  /** @param {number} size bytes per entry */
-  count(size) {
+  /** @param {number} size bytes per entry */ count(size) {
     const count = this.integer();
     if (count < 0 || count > Math.floor((this.end - this.at) / size))
       throw this.fault(`${count} entries should follow, and the chunk is too short for them`);
@@ -58,18 +48,13 @@ class Reader {
   dictionary() {
     return Object.fromEntries(Array.from({ length: this.count(8) }, () => [this.text(), this.text()]));
   }
-  /**
-   * @template T
-   * @param {number} size bytes per entry, or more
-   * @param {() => T} read
-   */
+  /** @template T @param {number} size bytes per entry, or more @param {() => T} read */
   list(size, read) {
     return Array.from({ length: this.count(size) }, read);
   }
 }
 
-/** @param {string} name @param {Uint8Array} bytes */
-export function readChunks(name, bytes) {
+/** @param {string} name @param {Uint8Array} bytes */ export function readChunks(name, bytes) {
   const reader = new Reader(name, bytes, 0, bytes.length, "header");
   if (new TextDecoder("latin1").decode(reader.take(4)) !== "VOX ")
     throw new Error(`${name}: does not start with 'VOX '; name a MagicaVoxel file`);
@@ -78,8 +63,7 @@ export function readChunks(name, bytes) {
     throw new Error(`${name}: version ${version} is none of (150, 200); save it with MagicaVoxel 0.98 or later`);
   /** @type {VoxFile} */
   const file = { models: [], nodes: new Map(), hidden: new Set(), kinds: new Map(), palette: defaultColour };
-  /** @type {number[] | null} */
-  let size = null;
+  /** @type {number[] | null} */ let size = null;
   while (reader.at < reader.end) {
     const kind = new TextDecoder("latin1").decode(reader.take(4));
     const start = reader.at + 8;
@@ -100,16 +84,14 @@ export function readChunks(name, bytes) {
   return file;
 }
 
-/** @param {Reader} content */
-function sizeOf(content) {
+/** @param {Reader} content */ function sizeOf(content) {
   const size = [content.integer(), content.integer(), content.integer()];
   if (size.some((side) => side < 1 || side > 256))
     throw content.fault(`a model of (${size.join(", ")}) voxels is outside 1 ... 256`);
   return size;
 }
 
-/** @param {Reader} content @param {number[]} size */
-function voxelsOf(content, size) {
+/** @param {Reader} content @param {number[]} size */ function voxelsOf(content, size) {
   const voxels = content.take(4 * content.count(4));
   for (let i = 0; i < voxels.length; i += 4)
     if (voxels[i] >= size[0] || voxels[i + 1] >= size[1] || voxels[i + 2] >= size[2] || voxels[i + 3] === 0)
@@ -119,8 +101,7 @@ function voxelsOf(content, size) {
   return voxels;
 }
 
-/** @type {Record<string, (content: Reader, file: VoxFile) => void>} */
-const PARSERS = {
+/** @type {Record<string, (content: Reader, file: VoxFile) => void>} */ const PARSERS = {
   RGBA(content, file) {
     const rows = content.take(1024);
     file.palette = (colour) => [...rows.subarray(4 * colour - 4, 4 * colour - 1)];
@@ -166,7 +147,8 @@ const PARSERS = {
   },
 };
 
-/** Two bits per row give the column of the first two rows, one bit per row gives its sign. @param {Reader} content @param {string} text */
+/** Two bits per row give the column of the first two rows, one bit per row gives its sign. @param {Reader} content
+ * @param {string} text */
 function rotation(content, text) {
   const bits = /^\d{1,3}$/.test(text) ? Number(text) : 3;
   const [first, second] = [bits & 3, (bits >> 2) & 3];
@@ -177,15 +159,15 @@ function rotation(content, text) {
   );
 }
 
-/** @param {Reader} content @param {string} text */
-function offsetOf(content, text) {
+/** @param {Reader} content @param {string} text */ function offsetOf(content, text) {
   const parts = text.slice(0, 64).trim().split(/\s+/);
   if (parts.length !== 3 || parts.some((part) => !/^[+-]?\d+$/.test(part) || Math.abs(Number(part)) >= 2 ** 31))
     throw content.fault(`'${text.slice(0, 20)}' is not a translation`);
   return parts.map(Number);
 }
 
-/** Files without a palette have a 6x6x6 cube from white down (black left out), then four ramps of ten. @param {number} colour */
+/** Files without a palette have a 6x6x6 cube from white down (black left out), then four ramps of ten. @param
+ * {number} colour */
 function defaultColour(colour) {
   const at = colour - 1;
   if (at < 215) return [Math.floor(at / 36), Math.floor(at / 6) % 6, at % 6].map((step) => 255 - 51 * step);

@@ -10,10 +10,8 @@ import { answerWith } from "./worker_answers.js";
 /** @import { Camera, Look, Options, Size, Triple } from "./voxrt/voxrt.js" */
 
 const state = {
-  /** @type {Voxrt | null} */
-  voxrt: null,
-  /** @type {{ source: number, read: ReadFile } | null} the files that were read last */
-  parsed: null,
+  /** @type {Voxrt | null} */ voxrt: null,
+  /** @type {{ source: number, read: ReadFile } | null} the files that were read last */ parsed: null,
 };
 
 function loaded() {
@@ -32,16 +30,12 @@ async function read(files, source) {
 }
 
 const calls = {
-  /** @param {{ module: WebAssembly.Module }} job */
-  async start({ module }) {
+  /** @param {{ module: WebAssembly.Module }} job */ async start({ module }) {
     state.voxrt = await Voxrt.load(module);
   },
 
-  /**
-   * @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job `source` numbers the files
-   * @param {(stage: string) => void} report
-   * @returns {Promise<Memory>}
-   */
+  /** @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job `source` numbers the
+   * files @param {(stage: string) => void} report @returns {Promise<Memory>} */
   async build({ files, source, depth, fill, bake, budget }, report) {
     if (state.parsed?.source !== source) report("Reading");
     const { name, file, memory, scene } = await read(files, source);
@@ -60,14 +54,12 @@ const calls = {
     };
   },
 
-  /** @param {{ words: Uint32Array, depth: number, shading: Look }} job */
-  memory({ words, depth, shading }) {
+  /** @param {{ words: Uint32Array, depth: number, shading: Look }} job */ memory({ words, depth, shading }) {
     loaded().setMemory(words, depth);
     loaded().shade(shading);
   },
 
-  /** @param {{ shading: Look }} job */
-  shade({ shading }) {
+  /** @param {{ shading: Look }} job */ shade({ shading }) {
     loaded().shade(shading);
   },
 
@@ -80,8 +72,7 @@ const calls = {
     return loaded().renderImage(camera, size, first, end, buffer);
   },
 
-  /** @param {{ origin: Triple, direction: Triple }} job */
-  follow({ origin, direction }) {
+  /** @param {{ origin: Triple, direction: Triple }} job */ follow({ origin, direction }) {
     return loaded().follow(origin, direction);
   },
 };

@@ -11,16 +11,13 @@ const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 /** @typedef {(parser: CrateParser) => number} Read a number */
 /** @typedef {{ new (length: number): { [index: number]: number } }} Kind of array */
 
-/** @type {Read} */
-const half = (parser) => parser._readHalf();
-/** @type {Read} */
-const double = ({ reader }) => reader.readFloat64();
-/** @type {Read} */
-const integer = ({ reader }) => reader.readInt32();
-/** @type {Read} */
-const byte = ({ reader }) => reader.readUint8();
+/** @type {Read} */ const half = (parser) => parser._readHalf();
+/** @type {Read} */ const double = ({ reader }) => reader.readFloat64();
+/** @type {Read} */ const integer = ({ reader }) => reader.readInt32();
+/** @type {Read} */ const byte = ({ reader }) => reader.readUint8();
 
-/** @type {Map<number, [number, number, Read, Kind]>} numbers per value, bytes per number, how to read one, the array for them */
+/** @type {Map<number, [number, number, Read, Kind]>} numbers per value, bytes per number, how to read one, the array
+ * for them */
 const TYPES = new Map([
   [BOOL, [1, 1, ({ reader }) => Number(reader.readUint8() !== 0), Array]],
   [UCHAR, [1, 1, byte, Uint8Array]],
@@ -40,8 +37,7 @@ const TYPES = new Map([
   [VEC_4I, [4, 4, integer, Int32Array]],
 ]);
 
-/** @type {MethodsOf<CrateParser>} */
-export const crateMethods = (kept) => ({
+/** @type {MethodsOf<CrateParser>} */ export const crateMethods = (kept) => ({
   // Whole numbers that fit are bytes in the place of the value's address.
   _readInlinedValue(rep) {
     const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0, 0];
@@ -90,17 +86,12 @@ function countOf({ reader, buffer }) {
   return count;
 }
 
-/**
- * A list with its edits; those that it deletes are left out.
- * @template T
- * @param {CrateParser} parser
- * @param {(parser: CrateParser) => T} read
- */
+/** A list with its edits; those that it deletes are left out. @template T @param {CrateParser} parser @param
+ * {(parser: CrateParser) => T} read */
 function listed(parser, read) {
   const { reader } = parser;
   const flags = reader.readUint8();
-  /** @type {T[]} */
-  const found = [];
+  /** @type {T[]} */ const found = [];
   for (const bit of [0x02, 0x04, 0x20, 0x40]) {
     if (!(flags & bit)) continue;
     for (let left = countOf(parser); left > 0; left--) found.push(read(parser));

@@ -7,11 +7,9 @@ import { Matrix4, Quaternion, Vector3 } from "../three/three.core.js";
 /** @import { Composer, MethodsOf } from "./three_private.js" */
 /** @import { Warn } from "../voxrt/warnings.js" */
 
-/** @type {Record<string, [number, number, number]>} */
-const AXES = { X: [1, 0, 0], Y: [0, 1, 0], Z: [0, 0, 1] };
+/** @type {Record<string, [number, number, number]>} */ const AXES = { X: [1, 0, 0], Y: [0, 1, 0], Z: [0, 0, 1] };
 
-/** @param {Found} found @returns {MethodsOf<Composer>} */
-export const frameMethods = (found) => () => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */ export const frameMethods = (found) => () => ({
   applyTransform(object, fields, attributes = {}) {
     const data = { ...fields, ...attributes };
     const { xformOpOrder } = /** @type {Attributes} */ (data);
@@ -35,8 +33,7 @@ export const frameMethods = (found) => () => ({
   _findSingleMesh: () => null,
 });
 
-/** @param {string} name @param {Attributes} data @param {Found} found */
-function operation(name, data, found) {
+/** @param {string} name @param {Attributes} data @param {Found} found */ function operation(name, data, found) {
   const given = data[name];
   const [, kind = ""] = /^xformOp:(\w+)/.exec(name) ?? [];
   if (!name || given === undefined || given === null) return new Matrix4();
@@ -63,11 +60,11 @@ function operation(name, data, found) {
   return new Matrix4();
 }
 
-/** @param {string} axis @param {number} degrees */
-const turnAbout = (axis, degrees) =>
+/** @param {string} axis @param {number} degrees */ const turnAbout = (axis, degrees) =>
   turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), (degrees * Math.PI) / 180).normalize());
 
-/** A turn by the angle that the real part gives, about the axis of the others, whatever the length of the quaternion. @param {Numbers} parts */
+/** A turn by the angle that the real part gives, about the axis of the others, whatever the length of the
+ * quaternion. @param {Numbers} parts */
 function turnBy([x, y, z, w]) {
   const axis = new Vector3(x, y, z);
   if (axis.length() < 1e-6) return new Matrix4();
@@ -101,7 +98,8 @@ function turn({ x, y, z, w }) {
 /** @type {Record<string, number[]>} */
 const UPWARDS = { X: [0, -1, 0, 1, 0, 0, 0, 0, 1], Y: [1, 0, 0, 0, 1, 0, 0, 0, 1], Z: [1, 0, 0, 0, 0, 1, 0, -1, 0] };
 
-/** The rotation to y up and metres, 9 numbers by rows, of a stage with these root fields. @param {Fields} fields @param {Warn} warn */
+/** The rotation to y up and metres, 9 numbers by rows, of a stage with these root fields. @param {Fields} fields
+ * @param {Warn} warn */
 export function sceneFrame({ upAxis = "Y", metersPerUnit = 0.01 }, warn) {
   const axis = String(upAxis).toUpperCase();
   if (!(axis in UPWARDS)) warn("up-axis", `upAxis '${upAxis}' is not X, Y or Z; Y was used`);

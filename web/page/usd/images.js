@@ -9,15 +9,11 @@ import { decodeImage } from "../images.js";
 /** @import { Composer } from "./three_private.js" */
 
 export class UsdImages {
-  /** @type {Map<string, Uint8Array<ArrayBuffer>>} files of a package */
-  #bytes = new Map();
-  /** @type {Map<string, Pixels | null>} by file */
-  #images = new Map();
-  /** @type {Map<Shading, Appearance["texture"]>} */
-  #textures = new Map();
+  /** @type {Map<string, Uint8Array<ArrayBuffer>>} files of a package */ #bytes = new Map();
+  /** @type {Map<string, Pixels | null>} by file */ #images = new Map();
+  /** @type {Map<Shading, Appearance["texture"]>} */ #textures = new Map();
 
-  /** @param {Folder} folder @param {Voxrt} voxrt */
-  constructor(folder, voxrt) {
+  /** @param {Folder} folder @param {Voxrt} voxrt */ constructor(folder, voxrt) {
     this.folder = folder;
     this.voxrt = voxrt;
   }
@@ -47,8 +43,7 @@ export class UsdImages {
     return texture;
   }
 
-  /** @param {Shading} shading @returns {Appearance["texture"]} */
-  #combined({ image, alpha }) {
+  /** @param {Shading} shading @returns {Appearance["texture"]} */ #combined({ image, alpha }) {
     const colour = image && this.#images.get(image.file);
     const opacity = alpha && this.#images.get(alpha.file);
     const shape = image ? colour : opacity;
@@ -62,8 +57,7 @@ export class UsdImages {
     return { image: { width, height, pixels }, wrap: placed.wrap, nearest: false };
   }
 
-  /** @param {Uint8Array} pixels @param {Texture} texture */
-  #graded(pixels, { raw, factor, bias }) {
+  /** @param {Uint8Array} pixels @param {Texture} texture */ #graded(pixels, { raw, factor, bias }) {
     const made = Uint8Array.from(pixels);
     const plain = factor.slice(0, 3).every((part) => part === 1) && bias.slice(0, 3).every((part) => part === 0);
     if (plain && !raw) return made;
@@ -78,7 +72,8 @@ export class UsdImages {
   }
 }
 
-/** Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go. @param {Coordinates} moved */
+/** Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go. @param
+ * {Coordinates} moved */
 export function coordinates({ turn, scale, offset }) {
   const angle = (turn * Math.PI) / 180;
   const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];

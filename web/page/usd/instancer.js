@@ -8,18 +8,17 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
 /** @typedef {(problem: string) => never} Refuse */
 
-/** @param {Found} found @returns {MethodsOf<Composer>} */
-export const instancerMethods = (found) => (kept) => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */ export const instancerMethods = (found) => (kept) => ({
   _buildHierarchy(parent, path) {
     if (this.specsByPath[path]?.fields?.typeName === "PointInstancer") placeCopies(this, parent, path, found);
     else kept._buildHierarchy.call(this, parent, path);
   },
 });
 
-/** Put the copies of the instancer at `path` into `object`, which stands in its place. @param {Composer} composer @param {Object3D} object @param {string} path @param {Found} found */
+/** Put the copies of the instancer at `path` into `object`, which stands in its place. @param {Composer} composer
+ * @param {Object3D} object @param {string} path @param {Found} found */
 function placeCopies(composer, object, path, found) {
-  /** @type {Refuse} */
-  const refuse = (problem) => {
+  /** @type {Refuse} */ const refuse = (problem) => {
     throw new Error(`${path}: ${problem}`);
   };
   const attributes = composer._getAttributes(path);
@@ -67,7 +66,8 @@ function placeCopies(composer, object, path, found) {
   }
 }
 
-/** The object of one prim, wherever it is; null where it is not shown. @param {Composer} composer @param {string} path @param {Found} found */
+/** The object of one prim, wherever it is; null where it is not shown. @param {Composer} composer @param {string}
+ * path @param {Found} found */
 function built(composer, path, found) {
   if (!isShown(composer, path, found, true)) return null;
   const parent = new Object3D();
@@ -87,17 +87,13 @@ function objectsOf(prototype) {
 /** @param {Numbers} values */
 const single = (values) => (values instanceof Float32Array ? values : Float32Array.from(values));
 
-/**
- * Four numbers per copy: x, y, z, w, of any length, as USD takes them. Files of text have more digits than the values that
- * they stand for.
- * @param {Record<string, Numbers | undefined>} attributes
- */
+/** Four numbers per copy: x, y, z, w, of any length, as USD takes them. Files of text have more digits than the
+ * values that they stand for. @param {Record<string, Numbers | undefined>} attributes */
 function turnsOf({ orientationsf = [], orientations = [] }) {
   return orientationsf.length ? single(orientationsf) : Float64Array.from(orientations, half);
 }
 
-/** @param {number} value */
-function half(value) {
+/** @param {number} value */ function half(value) {
   if (value === 0) return 0;
   const step = 2 ** (Math.max(Math.floor(Math.log2(Math.abs(value))), -14) - 10);
   const steps = Math.abs(value) / step;
@@ -105,11 +101,11 @@ function half(value) {
   return Math.sign(value) * step * (part > 0.5 || (part === 0.5 && low % 2) ? low + 1 : low);
 }
 
-/** The copies that are masked. @param {Composer} composer @param {string} path @param {Attributes} attributes @param {number} count @param {Refuse} refuse @param {Found} found */
+/** The copies that are masked. @param {Composer} composer @param {string} path @param {Attributes} attributes @param
+ * {number} count @param {Refuse} refuse @param {Found} found */
 function hiddenOf(composer, path, attributes, count, refuse, found) {
   const { ids = [], invisibleIds = [] } = /** @type {Record<string, Numbers>} */ (attributes);
-  /** @param {string} name */
-  const has = (name) => composer.specsByPath[`${path}.${name}`];
+  /** @param {string} name */ const has = (name) => composer.specsByPath[`${path}.${name}`];
   if (composer.specsByPath[path].fields.inactiveIds !== undefined)
     refuse("copies that are not active are not read here; voxrt build reads them");
   // The loader leaves long arrays of 64 bits in binary files empty.

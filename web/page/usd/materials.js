@@ -15,33 +15,31 @@ import { placesOf } from "./surface.js";
 /** @import { FaceSurface } from "./surface.js" */
 /** @import { Composer } from "./three_private.js" */
 
-/** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner writes numbers of a corner */
+/** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner writes
+ * numbers of a corner */
 /** @typedef {{ entry: Appearance, setUv?: SetCorner, setColour?: SetCorner }} CornerLook */
-/** @typedef {{ uniform: Described, look?: undefined } | { look: CornerLook, uniform?: undefined }} Shows what faces of a shading show */
+/** @typedef {{ uniform: Described, look?: undefined } | { look: CornerLook, uniform?: undefined }} Shows what faces
+ * of a shading show */
 
 const DEFAULT_COLOUR = [200, 200, 200];
 
 export class UsdMaterials {
-  /** @type {Map<string, Shading>} by path */
-  #read = new Map();
+  /** @type {Map<string, Shading>} by path */ #read = new Map();
   /** @type {Map<Shading, { textured?: Appearance, coloured?: Appearance }>} entries of surfaces */
   #entries = new Map();
-  /** @type {Map<string, Shading>} equal shadings are one */
-  #known = new Map();
-  /** @type {Map<string, number>} keys of uniform materials by their first use */
-  #order = new Map();
+  /** @type {Map<string, Shading>} equal shadings are one */ #known = new Map();
+  /** @type {Map<string, number>} keys of uniform materials by their first use */ #order = new Map();
 
-  /** @param {UsdImages} images @param {Voxrt} voxrt @param {Warn} warn */
-  constructor(images, voxrt, warn) {
+  /** @param {UsdImages} images @param {Voxrt} voxrt @param {Warn} warn */ constructor(images, voxrt, warn) {
     this.images = images;
     this.voxrt = voxrt;
     this.warn = warn;
   }
 
-  /** The shadings of a prim, and the one of each face as an index, -1 for holes. @param {Composer} composer @param {string} path @param {FaceSurface} surface */
+  /** The shadings of a prim, and the one of each face as an index, -1 for holes. @param {Composer} composer @param
+   * {string} path @param {FaceSurface} surface */
   ofFaces(composer, path, surface) {
-    /** @type {Shading[]} */
-    const shadings = [];
+    /** @type {Shading[]} */ const shadings = [];
     const rows = new Int32Array(surface.faceCount).fill(-1);
     /** @param {Shading} shading */
     const row = (shading) => (shadings.includes(shading) ? shadings.indexOf(shading) : shadings.push(shading) - 1);
@@ -71,8 +69,7 @@ export class UsdMaterials {
     return { shadings, rows };
   }
 
-  /** @param {Composer} composer @param {string} material */
-  shading(composer, material) {
+  /** @param {Composer} composer @param {string} material */ shading(composer, material) {
     const known = this.#read.get(material);
     if (known) return known;
     const made = readShading(composer, material, this.warn);
@@ -82,16 +79,14 @@ export class UsdMaterials {
     return one;
   }
 
-  /** @param {Unnumbered} shading */
-  one(shading) {
+  /** @param {Unnumbered} shading */ one(shading) {
     const key = JSON.stringify(shading);
     const known = this.#known.get(key) ?? { ...shading, id: this.#known.size };
     this.#known.set(key, known);
     return known;
   }
 
-  /** @param {Composer} composer @param {string} path */
-  own(composer, path) {
+  /** @param {Composer} composer @param {string} path */ own(composer, path) {
     const material = boundMaterial(composer, path);
     if (material) return this.shading(composer, material);
     const [opacity = 1] = equalOf(primvarOf(composer, path, "displayOpacity")) ?? [];
@@ -107,20 +102,12 @@ export class UsdMaterials {
     return this.one({ ...noShading, opacity, ...(stored && { name: "displayColor", primvar: "displayColor" }) });
   }
 
-  /** @param {readonly number[]} linear */
-  srgb(linear) {
+  /** @param {readonly number[]} linear */ srgb(linear) {
     return linear.map((part) => this.voxrt.srgb(Number.isNaN(part) || part < 0 ? 0 : Math.min(part, 1)));
   }
 
-  /**
-   * What faces of a shading show: null where they are left out.
-   * @param {Shading} shading
-   * @param {Composer} composer
-   * @param {string} path
-   * @param {FaceSurface} surface
-   * @param {number} faces
-   * @returns {Shows | null}
-   */
+  /** What faces of a shading show: null where they are left out. @param {Shading} shading @param {Composer} composer
+   * @param {string} path @param {FaceSurface} surface @param {number} faces @returns {Shows | null} */
   show(shading, composer, path, surface, faces) {
     if (!shading.alpha && shading.opacity < shading.cutoff) {
       this.warn(
@@ -135,14 +122,8 @@ export class UsdMaterials {
     return look ? { look } : { uniform: this.uniform(shading, faces) };
   }
 
-  /**
-   * @param {Shading} shading
-   * @param {Composer} composer
-   * @param {string} path
-   * @param {FaceSurface} surface
-   * @param {number} faces
-   * @returns {CornerLook | null}
-   */
+  /** @param {Shading} shading @param {Composer} composer @param {string} path @param {FaceSurface} surface @param
+   * {number} faces @returns {CornerLook | null} */
   textured(shading, composer, path, surface, faces) {
     const source = shading.image ?? shading.alpha;
     if (!source) return null;
@@ -179,8 +160,7 @@ export class UsdMaterials {
       );
     const plain = !shading.image && shading.colour ? shading.colour : [1, 1, 1];
     const moved = coordinates(source);
-    /** @param {number} value */
-    const finite = (value) => (Number.isFinite(value) ? value : 0);
+    /** @param {number} value */ const finite = (value) => (Number.isFinite(value) ? value : 0);
     return {
       entry: this.entry(shading, {
         name: shading.name ?? "texture",
@@ -196,13 +176,8 @@ export class UsdMaterials {
     };
   }
 
-  /**
-   * @param {Shading} shading
-   * @param {Composer} composer
-   * @param {string} path
-   * @param {FaceSurface} surface
-   * @returns {CornerLook | null}
-   */
+  /** @param {Shading} shading @param {Composer} composer @param {string} path @param {FaceSurface} surface @returns
+   * {CornerLook | null} */
   coloured(shading, composer, path, surface) {
     const name = shading.primvar;
     const stored = name && primvarOf(composer, path, name);
@@ -226,8 +201,7 @@ export class UsdMaterials {
     return known[kind];
   }
 
-  /** @param {Shading} shading @param {number} faces @returns {Described} */
-  uniform({ name, colour }, faces) {
+  /** @param {Shading} shading @param {number} faces @returns {Described} */ uniform({ name, colour }, faces) {
     if (name === null) this.warn("default-material", "faces without a material got the default one", faces);
     const srgb = name === null || !colour ? DEFAULT_COLOUR : this.srgb(colour);
     const key = name === null ? "" : `${name} ${srgb}`;

@@ -21,40 +21,28 @@ import { placesOf, surfaceOf } from "./surface.js";
 
 /** @typedef {FaceSurface & { posed: Posed | null }} Surface */
 
-/**
- * A geometry that has no triangles yet, and what they come from; `rows`: the shading of each face, -1 for none.
- * @typedef {object} Made
- * @property {BufferGeometry} geometry
- * @property {Composer} composer
- * @property {string} path
- * @property {Surface} surface
- * @property {Shading[]} shadings
- * @property {Int32Array} rows
- */
+/** A geometry that has no triangles yet, and what they come from; `rows`: the shading of each face, -1 for none.
+ * @typedef {{ geometry: BufferGeometry, composer: Composer, path: string, surface: Surface, shadings: Shading[],
+ * rows: Int32Array }} Made */
 
-/** @typedef {(size: number, set: SetCorner, Kind?: Float64ArrayConstructor | Float32ArrayConstructor) => Float64Array | Float32Array} Gather values of all corners */
+/** @typedef {(size: number, set: SetCorner, Kind?: Float64ArrayConstructor | Float32ArrayConstructor) =>
+ * Float64Array | Float32Array} Gather values of all corners */
 
 /** Meshes of three.js carry shadings in place of its materials. @param {Material} material */
 const shadingOf = (material) => /** @type {Shading} */ (/** @type {unknown} */ (material));
 
 export class UsdMeshes {
-  /** @type {Map<string, Surface | null>} by path, or by the dimensions of solids */
-  #surfaces = new Map();
-  /** @type {Map<Shading, Described>} */
-  #uniform = new Map();
-  /** @type {Map<Surface, Map<string, Made>>} by surface and shadings */
-  #made = new Map();
-  /** @type {Map<unknown, Map<Shading, Look>>} what is not of one colour, by geometry */
-  #looks = new Map();
+  /** @type {Map<string, Surface | null>} by path, or by the dimensions of solids */ #surfaces = new Map();
+  /** @type {Map<Shading, Described>} */ #uniform = new Map();
+  /** @type {Map<Surface, Map<string, Made>>} by surface and shadings */ #made = new Map();
+  /** @type {Map<unknown, Map<Shading, Look>>} what is not of one colour, by geometry */ #looks = new Map();
 
-  /** @param {UsdMaterials} materials @param {Warn} warn */
-  constructor(materials, warn) {
+  /** @param {UsdMaterials} materials @param {Warn} warn */ constructor(materials, warn) {
     this.materials = materials;
     this.warn = warn;
   }
 
-  /** @type {MethodsOf<Composer>} */
-  methods = (kept) => {
+  /** @type {MethodsOf<Composer>} */ methods = (kept) => {
     const build = this.#build.bind(this);
     const note = this.#note.bind(this);
     return {
@@ -77,16 +65,14 @@ export class UsdMeshes {
     };
   };
 
-  /** @param {string} kind */
-  #note(kind) {
+  /** @param {string} kind */ #note(kind) {
     if (/^(\w*Curves|Points|NurbsPatch|TetMesh|Volume)$/.test(kind))
       this.warn("unsupported-prim", `${kind} prims are not supported and were left out`);
     else if (/^(\w+Light(_1)?|Camera|Skeleton|LightFilter|LightPortal)$/.test(kind))
       this.warn("no-shape", `${kind} prims have no shape and were left out`);
   }
 
-  /** @param {Composer} composer @param {string} path @param {string} kind */
-  #build(composer, path, kind) {
+  /** @param {Composer} composer @param {string} path @param {string} kind */ #build(composer, path, kind) {
     const surface = this.#surfaceOf(composer, path, kind);
     const object = surface ? this.#meshOf(composer, path, surface) : new Object3D();
     object.name = path.slice(path.lastIndexOf("/") + 1);
@@ -94,15 +80,13 @@ export class UsdMeshes {
     return surface?.posed?.frame ? inFrame(object, surface.posed.frame) : object;
   }
 
-  /** @param {Composer} composer @param {string} path @param {Surface} surface */
-  #meshOf(composer, path, surface) {
+  /** @param {Composer} composer @param {string} path @param {Surface} surface */ #meshOf(composer, path, surface) {
     const { shadings, rows } = this.materials.ofFaces(composer, path, surface);
     const { geometry } = this.#madeOf(composer, path, surface, shadings, rows);
     return new Mesh(geometry, /** @type {Material[]} */ (/** @type {unknown} */ (shadings)));
   }
 
-  /** @param {Composer} composer @param {string} path @param {string} kind */
-  #surfaceOf(composer, path, kind) {
+  /** @param {Composer} composer @param {string} path @param {string} kind */ #surfaceOf(composer, path, kind) {
     const dimensions = isSolid(kind) ? dimensionsOf(kind, path, (name) => attributeOf(composer, path, name)) : null;
     const key = dimensions ? `${kind} ${JSON.stringify(dimensions)}` : path;
     const known = this.#surfaces.get(key);
@@ -114,14 +98,8 @@ export class UsdMeshes {
     return made;
   }
 
-  /**
-   * Solids of one kind and look share their geometry.
-   * @param {Composer} composer
-   * @param {string} path
-   * @param {Surface} surface
-   * @param {Shading[]} shadings
-   * @param {Int32Array} rows
-   */
+  /** Solids of one kind and look share their geometry. @param {Composer} composer @param {string} path @param
+   * {Surface} surface @param {Shading[]} shadings @param {Int32Array} rows */
   #madeOf(composer, path, surface, shadings, rows) {
     const known = this.#made.get(surface) ?? new Map();
     this.#made.set(surface, known);
@@ -136,21 +114,18 @@ export class UsdMeshes {
     for (const known of this.#made.values()) for (const made of known.values()) this.#fill(made);
   }
 
-  /** @param {Made} made */
-  #fill({ geometry, composer, path, surface, shadings, rows }) {
+  /** @param {Made} made */ #fill({ geometry, composer, path, surface, shadings, rows }) {
     const counts = new Array(shadings.length).fill(0);
     for (const row of rows) if (row >= 0) counts[row]++;
     const shown = shadings.map((shading, row) => this.materials.show(shading, composer, path, surface, counts[row]));
     const kept = Array.from(surface.faces.keys()).filter((triangle) => shown[rows[surface.faces[triangle]]]);
-    /** @type {Gather} */
-    const gathered = (size, set, Kind = Float64Array) => {
+    /** @type {Gather} */ const gathered = (size, set, Kind = Float64Array) => {
       const values = new Kind(3 * size * kept.length);
       for (const [i, triangle] of kept.entries())
         for (let corner = 0; corner < 3; corner++) set(triangle, corner, values, size * (3 * i + corner));
       return values;
     };
-    /** @type {SetCorner} */
-    const place = (triangle, corner, out, to) => {
+    /** @type {SetCorner} */ const place = (triangle, corner, out, to) => {
       const at = 3 * surface.triangles[3 * triangle + corner];
       for (let part = 0; part < 3; part++) out[to + part] = surface.positions[at + part];
     };
@@ -163,8 +138,7 @@ export class UsdMeshes {
       if (last?.materialIndex === row) last.count += 3;
       else geometry.addGroup(3 * i, 3, row);
     }
-    /** @type {Map<Shading, Look>} */
-    const looks = new Map();
+    /** @type {Map<Shading, Look>} */ const looks = new Map();
     this.#looks.set(geometry, looks);
     for (const [row, shading] of shadings.entries()) {
       const { uniform, look } = shown[row] ?? {};
@@ -175,8 +149,7 @@ export class UsdMeshes {
 
   /** @param {Composer} composer @param {string} path @param {Surface} surface @returns {SetCorner | null} */
   #normalsOf(composer, path, surface) {
-    /** @param {Primvar | null} normals @returns {SetCorner | null} */
-    const setterOf = (normals) => {
+    /** @param {Primvar | null} normals @returns {SetCorner | null} */ const setterOf = (normals) => {
       const place = normals?.size === 3 ? placesOf("normals", normals, surface, this.warn) : null;
       if (!normals || !place) return null;
       return (triangle, corner, out, to) => {
@@ -188,15 +161,15 @@ export class UsdMeshes {
     return setterOf(primvarOf(composer, path, "normals")) ?? setterOf(arrayOf(composer, path, "normals", "vertex"));
   }
 
-  /** @type {Partial<Rules>} */
-  rules = {
+  /** @type {Partial<Rules>} */ rules = {
     nameOf: pathOf,
     appearanceOf: (material, geometry) => this.#looks.get(geometry)?.get(shadingOf(material)) ?? null,
     materialOf: (material) => this.#uniform.get(shadingOf(material)),
   };
 }
 
-/** A mesh whose points are in another frame than those below it: the frame of the prim itself holds both. @param {Object3D} mesh @param {Matrix4} frame */
+/** A mesh whose points are in another frame than those below it: the frame of the prim itself holds both. @param
+ * {Object3D} mesh @param {Matrix4} frame */
 function inFrame(mesh, frame) {
   const prim = new Object3D();
   prim.matrixAutoUpdate = false;
@@ -229,11 +202,11 @@ function lookOf({ entry, setUv, setColour }, gathered) {
   };
 }
 
-/** The path of a prim, as voxrt build names objects: copies of instancers have the instancer's path and their number. @param {ThreeMesh} mesh */
+/** The path of a prim, as voxrt build names objects: copies of instancers have the instancer's path and their
+ * number. @param {ThreeMesh} mesh */
 function pathOf(mesh) {
   const parts = [];
-  /** @type {Object3D | null | undefined} */
-  let object = mesh;
+  /** @type {Object3D | null | undefined} */ let object = mesh;
   while (object?.parent) {
     const { parent } = /** @type {Object3D} */ (object);
     if (object.name && !parent.userData.copies) parts.push(object.name);

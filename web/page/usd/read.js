@@ -25,7 +25,8 @@ import { MEMBERS, patch } from "./three_private.js";
 
 const MOST_PRIMS = 200_000; // of all layers and copies together
 
-/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, message and test of specs that are not read */
+/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, message and test of specs that are
+ * not read */
 const OTHERS = [
   [
     "collider",
@@ -39,8 +40,7 @@ const OTHERS = [
   ],
 ];
 
-/** @type {Reader} */
-export async function readUsd(main, folder, voxrt) {
+/** @type {Reader} */ export async function readUsd(main, folder, voxrt) {
   const warnings = new Warnings();
   const found = foundBy(warnings.warn, folder);
   const images = new UsdImages(folder, voxrt);
@@ -68,8 +68,7 @@ export async function readUsd(main, folder, voxrt) {
   return scene;
 }
 
-/** @param {Warn} warn @param {Folder} folder @returns {Found} */
-function foundBy(warn, folder) {
+/** @param {Warn} warn @param {Folder} folder @returns {Found} */ function foundBy(warn, folder) {
   let prims = 0;
   return {
     warn,
@@ -86,7 +85,8 @@ function foundBy(warn, folder) {
   };
 }
 
-/** The specs of a layer that was dropped together with the scene; null for none. @param {DroppedFile | undefined} file */
+/** The specs of a layer that was dropped together with the scene; null for none. @param {DroppedFile | undefined}
+ * file */
 function layerOf(file) {
   if (!file) return null;
   const isCrate = new TextDecoder("latin1").decode(file.bytes.subarray(0, 8)) === "PXR-USDC";
@@ -96,10 +96,10 @@ function layerOf(file) {
   return parsed.specsByPath;
 }
 
-/** @param {Spec} spec */
-const isAnimated = ({ fields }) => (fields?.timeSamples?.times?.length ?? 0) > 1;
+/** @param {Spec} spec */ const isAnimated = ({ fields }) => (fields?.timeSamples?.times?.length ?? 0) > 1;
 
-/** The outermost methods of a composer: they count, and see what it leaves out. @param {Found} found @returns {MethodsOf<Composer>} */
+/** The outermost methods of a composer: they count, and see what it leaves out. @param {Found} found @returns
+ * {MethodsOf<Composer>} */
 const layerMethods = (found) => (kept) => ({
   compose(parsed, ...rest) {
     const { specsByPath } = parsed;

@@ -12,11 +12,9 @@ export const ELSEWHERE = [...ARCS, "subLayers"];
 /** @typedef {{ file: string, prim: string, text: string }} Arc what a prim refers to; file or prim may be empty */
 /** @typedef {(file: string) => Specs | null} LayerOf the specs of a file; null for none */
 
-/** @param {Found} found @returns {MethodsOf<Composer>} */
-export const referenceMethods = (found) => (kept) => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */ export const referenceMethods = (found) => (kept) => ({
   _buildIndexes() {
-    /** @type {LayerOf} */
-    const layerOf = (file) => {
+    /** @type {LayerOf} */ const layerOf = (file) => {
       const asset = this.assets[file];
       return (asset && "specsByPath" in asset ? asset.specsByPath : null) ?? found.layer(file);
     };
@@ -35,13 +33,8 @@ class Layer {
   #settled = new Map();
   isRoot = false; // the layer that chooses variants: it may choose others than those that it refers to
 
-  /**
-   * @param {Specs} specs
-   * @param {string} folder
-   * @param {LayerOf} layerOf
-   * @param {Map<string, Layer | null>} layers those that were read, by file
-   * @param {Found["charge"]} charge
-   */
+  /** @param {Specs} specs @param {string} folder @param {LayerOf} layerOf @param {Map<string, Layer | null>} layers
+   * those that were read, by file @param {Found["charge"]} charge */
   constructor(specs, folder, layerOf, layers, charge) {
     this.specs = specs;
     this.folder = folder;
@@ -95,10 +88,8 @@ class Layer {
     return made;
   }
 
-  /** @param {string} file */
-  resolved(file) {
-    /** @type {string[]} */
-    const parts = [];
+  /** @param {string} file */ resolved(file) {
+    /** @type {string[]} */ const parts = [];
     for (const part of `${this.folder}/${file}`.split("/")) {
       if (part === "..") parts.pop();
       else if (part && part !== ".") parts.push(part);
@@ -106,15 +97,13 @@ class Layer {
     return parts.join("/");
   }
 
-  /** @param {string} path */
-  note(path) {
+  /** @param {string} path */ note(path) {
     const above = path.slice(0, Math.max(path.lastIndexOf("/"), path.lastIndexOf("."), 0));
     this.below.set(above, this.below.get(above) ?? []);
     this.below.get(above)?.push(path);
   }
 
-  /** @param {string} path */
-  settle(path) {
+  /** @param {string} path */ settle(path) {
     if (this.#settled.get(path) === false) throw new Error(`${path}: refers to itself; repair its references`);
     if (this.#settled.has(path)) return;
     this.#settled.set(path, false);
@@ -146,7 +135,8 @@ class Layer {
     for (const part of this.below.get(path) ?? []) if (/^\/?[^/.{]+$/.test(part.slice(path.length))) this.choose(part);
   }
 
-  /** The chosen variants of a prim say what it does not say itself. They may bring more sets of variants. @param {string} path */
+  /** The chosen variants of a prim say what it does not say itself. They may bring more sets of variants. @param
+   * {string} path */
   takeVariants(path) {
     const { fields } = this.specs[path];
     const taken = new Set();
@@ -161,22 +151,14 @@ class Layer {
     delete fields.variantSetChildren;
   }
 
-  /** @param {string} path */
-  settleAll(path) {
+  /** @param {string} path */ settleAll(path) {
     if (this.specs[path]?.fields) this.settle(path);
     for (const part of this.below.get(path) ?? []) if (!part.slice(path.length).startsWith(".")) this.settleAll(part);
   }
 
-  /**
-   * What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for `source`.
-   * What points elsewhere stays if `keeps`; else it points to what is not there.
-   * @param {Layer} layer
-   * @param {string} from
-   * @param {string} to
-   * @param {string} source
-   * @param {string} place
-   * @param {boolean} keeps
-   */
+  /** What `to` does not say itself it takes from `from` of a layer, with all that is below it: `place` stands for
+   * `source`. What points elsewhere stays if `keeps`; else it points to what is not there. @param {Layer} layer
+   * @param {string} from @param {string} to @param {string} source @param {string} place @param {boolean} keeps */
   copy(layer, from, to, source, place, keeps) {
     this.charge(to, 0.25);
     const theirs = layer.specs[from];
@@ -227,8 +209,7 @@ function arcsOf(fields, path) {
   );
 }
 
-/** @param {List | undefined} list */
-const filesOf = (list) =>
+/** @param {List | undefined} list */ const filesOf = (list) =>
   [list ?? []]
     .flat()
     .flatMap((one) =>

@@ -7,38 +7,23 @@ import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 /** @import { Numbers, Value } from "./stage.js" */
 /** @import { Composer } from "./three_private.js" */
 
-/** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates the primvar, and how it is moved */
+/** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates the primvar, and how
+ * it is moved */
 
-/**
- * A texture; `point` are the coordinates where none are connected.
- * @typedef {object} Image
- * @property {string} file
- * @property {string} channel
- * @property {boolean} raw
- * @property {Wrap[]} wrap
- * @property {number[]} factor
- * @property {number[]} bias
- * @property {number[] | null} point
- */
+/** A texture; `point` are the coordinates where none are connected. @typedef {{ file: string, channel: string, raw:
+ * boolean, wrap: Wrap[], factor: number[], bias: number[], point: number[] | null }} Image */
 
 /** @typedef {Image & Coordinates} Texture */
 
-/**
- * The colour and opacity of a material.
- * @typedef {object} Shading
- * @property {number} id equal shadings are one
- * @property {string | null} name null for no colour
- * @property {number[] | null} colour linear; null where the author gave none
- * @property {number} opacity
- * @property {number} cutoff
- * @property {Texture | null} image
- * @property {Texture | null} alpha
- * @property {string | null} primvar that gives the colour
- */
+/** The colour and opacity of a material. `id`: equal shadings are one; `name`: null for no colour; `colour`: linear;
+ * null where the author gave none; `primvar`: that gives the colour. @typedef {{ id: number, name: string | null,
+ * colour: number[] | null, opacity: number, cutoff: number, image: Texture | null, alpha: Texture | null, primvar:
+ * string | null }} Shading */
 
 /** @typedef {Omit<Shading, "id">} Unnumbered */
 /** @typedef {{ value?: number[] | null, image?: Texture, primvar?: string }} Input */
-/** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer a shader and its output, or a value */
+/** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer a
+ * shader and its output, or a value */
 
 export const BLEND_CUTOFF = 0.5;
 const FALLBACK_DIFFUSE = [0.18, 0.18, 0.18]; // UsdPreviewSurface's own
@@ -55,8 +40,7 @@ const CONTEXTS = ["", "mtlx:", "mdl:", "ri:", "glslfx:"];
 /** @type {Record<string, Wrap>} */
 const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clamp" };
 
-/** @type {Unnumbered} */
-export const noShading = {
+/** @type {Unnumbered} */ export const noShading = {
   name: null,
   colour: null,
   opacity: 1,
@@ -76,8 +60,7 @@ export function readShading(composer, material, warn) {
     warn("material-colour", "materials without a supported surface shader got the default colour");
     return plain;
   }
-  /** @param {string[]} names */
-  const read = (names) => inputOf(composer, shader, names, warn);
+  /** @param {string[]} names */ const read = (names) => inputOf(composer, shader, names, warn);
   const [threshold, opacity, colour] = [read(["opacityThreshold"]), read(["opacity"]), read(COLOUR_INPUTS)];
   const isPreview = attributeOf(composer, shader, "info:id") === "UsdPreviewSurface";
   const bare = !colour || (!colour.value && !colour.image && !colour.primvar);
@@ -96,14 +79,8 @@ export function readShading(composer, material, warn) {
 /** @param {Composer} composer @param {string} path */
 const isShader = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Shader";
 
-/**
- * What gives a property its value; null for nothing.
- * @param {Composer} composer
- * @param {string} prim
- * @param {string} name
- * @param {Set<string>} [seen]
- * @returns {Producer | null}
- */
+/** What gives a property its value; null for nothing. @param {Composer} composer @param {string} prim @param
+ * {string} name @param {Set<string>} [seen] @returns {Producer | null} */
 function producer(composer, prim, name, seen = new Set()) {
   const fields = fieldsOf(composer, prim, name);
   if (!fields || seen.has(`${prim}.${name}`)) return null;
@@ -127,7 +104,8 @@ const constant = (composer, node, name) => input(composer, node, name)?.value ??
 /** @param {Composer} composer @param {string} node */
 const idOf = (composer, node) => attributeOf(composer, node, "info:id")?.toString();
 
-/** The first of some inputs that says anything. @param {Composer} composer @param {string} shader @param {string[]} names @param {Warn} warn @returns {Input | null} */
+/** The first of some inputs that says anything. @param {Composer} composer @param {string} shader @param {string[]}
+ * names @param {Warn} warn @returns {Input | null} */
 function inputOf(composer, shader, names, warn) {
   for (const name of names) {
     const found = input(composer, shader, name);
@@ -151,8 +129,7 @@ function networkOf(composer, { node, output }, warn) {
 
 /** @param {Composer} composer @param {string} node @param {string} channel @param {Warn} warn @returns {Texture} */
 function textureOf(composer, node, channel, warn) {
-  /** @param {string} name */
-  const read = (name) => constant(composer, node, name);
+  /** @param {string} name */ const read = (name) => constant(composer, node, name);
   const wraps = ["wrapS", "wrapT"].map((name) => String(read(name) ?? "repeat"));
   if (wraps.includes("black"))
     warn("texture", "textures that are black beyond their edges were continued with their edges' colours");
@@ -186,7 +163,8 @@ function coordinatesOf(composer, node, warn) {
   return made;
 }
 
-/** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param {number} count @returns {number[] | null} */
+/** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param
+ * {number} count @returns {number[] | null} */
 function numbers(value, count) {
   const flat = /** @type {unknown[]} */ ([value ?? []].flat());
   const found = flat.flatMap((one) =>
@@ -196,8 +174,7 @@ function numbers(value, count) {
   return parts.length === count ? parts.map(Math.fround) : null;
 }
 
-/** @param {Value | null} value */
-function colourOf(value) {
+/** @param {Value | null} value */ function colourOf(value) {
   if (typeof value === "number") return [value, value, value].map(Math.fround);
   return numbers(value, 3);
 }

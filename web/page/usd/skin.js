@@ -9,23 +9,15 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 /** @import { Composer } from "./three_private.js" */
 /** @import { Warn } from "../voxrt/warnings.js" */
 
-/**
- * The points of a mesh; `frame` places them in the mesh's parent, and is null for the mesh's own frame.
- * @typedef {{ positions: Numbers, frame: Matrix | null }} Posed
- */
+/** The points of a mesh; `frame` places them in the mesh's parent, and is null for the mesh's own frame. @typedef {{
+ * positions: Numbers, frame: Matrix | null }} Posed */
 
-/**
- * The joints that move points.
- * @typedef {object} Influences
- * @property {number} each per point
- * @property {boolean} rigid whether all points move alike
- * @property {Numbers} joints
- * @property {Numbers} weights
- * @property {Matrix} matrix from the points' frame
- * @property {boolean} wrong whether their counts do not fit
- */
+/** The joints that move points. `each`: per point; `rigid`: whether all points move alike; `matrix`: from the
+ * points' frame; `wrong`: whether their counts do not fit. @typedef {{ each: number, rigid: boolean, joints:
+ * Numbers, weights: Numbers, matrix: Matrix, wrong: boolean }} Influences */
 
-/** The points of a mesh that is deformed; null for meshes at rest. @param {Composer} composer @param {string} path @param {Warn} warn @returns {Posed | null} */
+/** The points of a mesh that is deformed; null for meshes at rest. @param {Composer} composer @param {string} path
+ * @param {Warn} warn @returns {Posed | null} */
 export function posedPoints(composer, path, warn) {
   const points = numbersOf(composer, path, "points");
   const skeleton = targetAbove(composer, path, "skel:skeleton");
@@ -53,8 +45,7 @@ export function posedPoints(composer, path, warn) {
 /** @param {Composer} composer @param {string} path */
 const kindOf = (composer, path) => composer.specsByPath[path]?.fields.typeName;
 
-/** @param {Composer} composer @param {string} path @param {string} name */
-function valueAbove(composer, path, name) {
+/** @param {Composer} composer @param {string} path @param {string} name */ function valueAbove(composer, path, name) {
   for (const above of upwards(path)) {
     const value = attributeOf(composer, above, name);
     if (value !== null) return value;
@@ -62,8 +53,7 @@ function valueAbove(composer, path, name) {
   return null;
 }
 
-/** @param {Composer} composer @param {string} path @param {string} name */
-function targetAbove(composer, path, name) {
+/** @param {Composer} composer @param {string} path @param {string} name */ function targetAbove(composer, path, name) {
   for (const above of upwards(path)) {
     const [target] = targetsOf(fieldsOf(composer, above, name)?.targetPaths, above);
     if (target) return target;
@@ -88,12 +78,8 @@ function influencesOf(composer, path, count) {
   return { each: elementSize, rigid, joints, weights, matrix, wrong };
 }
 
-/**
- * The skinning transform of each joint of a skeleton, by name; null where it has no pose.
- * @param {Composer} composer
- * @param {string} skeleton
- * @param {string | null} animation
- */
+/** The skinning transform of each joint of a skeleton, by name; null where it has no pose. @param {Composer}
+ * composer @param {string} skeleton @param {string | null} animation */
 function posedJoints(composer, skeleton, animation) {
   const names = namesOf(composer, skeleton, "joints");
   const [bind, rest] = ["bindTransforms", "restTransforms"].map((name) =>
@@ -101,10 +87,8 @@ function posedJoints(composer, skeleton, animation) {
   );
   const local = animated(composer, animation);
   if (!bind || !names.length) return null;
-  /** @type {Map<string, Matrix>} */
-  const placed = new Map();
-  /** @type {Map<string, Matrix>} */
-  const made = new Map();
+  /** @type {Map<string, Matrix>} */ const placed = new Map();
+  /** @type {Map<string, Matrix>} */ const made = new Map();
   for (const [i, name] of names.entries()) {
     const matrix = local.get(name) ?? rest?.[i];
     if (!matrix) return null;
@@ -117,10 +101,10 @@ function posedJoints(composer, skeleton, animation) {
   return made;
 }
 
-/** The transforms of joints below their parents that an animation gives, by name. @param {Composer} composer @param {string | null} animation */
+/** The transforms of joints below their parents that an animation gives, by name. @param {Composer} composer @param
+ * {string | null} animation */
 function animated(composer, animation) {
-  /** @type {Map<string, Matrix>} */
-  const made = new Map();
+  /** @type {Map<string, Matrix>} */ const made = new Map();
   if (animation === null || kindOf(composer, animation) !== "SkelAnimation") return made;
   const names = namesOf(composer, animation, "joints");
   const [places, turns, sizes] = ["translations", "rotations", "scales"].map(
@@ -144,7 +128,8 @@ function matrices(composer, values, count) {
     : null;
 }
 
-/** Move points by a matrix for each influence. @param {Float32Array} points @param {Matrix[]} moves @param {Influences} influences */
+/** Move points by a matrix for each influence. @param {Float32Array} points @param {Matrix[]} moves @param
+ * {Influences} influences */
 function skinned(points, moves, { each, rigid, weights, matrix }) {
   const made = new Float32Array(points.length);
   const [point, part] = [new Vector3(), new Vector3()];
@@ -163,14 +148,8 @@ function skinned(points, moves, { each, rigid, weights, matrix }) {
   return made;
 }
 
-/**
- * Add the blend shapes to points; returns whether an animation gives them weights.
- * @param {Composer} composer
- * @param {string} path
- * @param {string} animation
- * @param {Float32Array} points
- * @param {Warn} warn
- */
+/** Add the blend shapes to points; returns whether an animation gives them weights. @param {Composer} composer
+ * @param {string} path @param {string} animation @param {Float32Array} points @param {Warn} warn */
 function blend(composer, path, animation, points, warn) {
   const weights = numbersOf(composer, animation, "blendShapeWeights");
   const targets = targetsOf(fieldsOf(composer, path, "skel:blendShapeTargets")?.targetPaths, path);
@@ -193,13 +172,13 @@ function blend(composer, path, animation, points, warn) {
   return true;
 }
 
-/** From the frame of a skeleton to that of a prim's parent. @param {Composer} composer @param {string} path @param {string} skeleton */
+/** From the frame of a skeleton to that of a prim's parent. @param {Composer} composer @param {string} path @param
+ * {string} skeleton */
 function between(composer, path, skeleton) {
   const [from, to] = [[...upwards(skeleton)].reverse(), [...upwards(path)].slice(1).reverse()];
   let shared = 0;
   while (shared < to.length && from[shared] === to[shared]) shared++;
-  /** @param {string[]} paths */
-  const frame = (paths) =>
+  /** @param {string[]} paths */ const frame = (paths) =>
     paths
       .slice(shared)
       .map((at) => localFrame(composer, at))
@@ -207,8 +186,7 @@ function between(composer, path, skeleton) {
   return frame(to).invert().multiply(frame(from));
 }
 
-/** @param {Composer} composer @param {string} path */
-function localFrame(composer, path) {
+/** @param {Composer} composer @param {string} path */ function localFrame(composer, path) {
   const object = new Object3D();
   composer.applyTransform(object, composer.specsByPath[path].fields, composer._getAttributes(path));
   return object.matrix;

@@ -3,30 +3,21 @@
 const SEGMENTS = 128;
 /** @import { Value } from "./stage.js" */
 
-/** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex, three vertices per triangle */
+/** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex, three vertices per
+ * triangle */
 /** @typedef {[number, number]} Place of a profile: radius and height */
 
-/** @type {Record<string, number>} */
-const AXES = { X: 0, Y: 1, Z: 2 };
+/** @type {Record<string, number>} */ const AXES = { X: 0, Y: 1, Z: 2 };
 
-/**
- * Lengths, each of some solids, and the axis of those that are not alike along all.
- * @typedef {object} Dimensions
- * @property {number} size
- * @property {number} radius
- * @property {number} radiusBottom
- * @property {number} radiusTop
- * @property {number} height
- * @property {number} width
- * @property {number} length
- * @property {string} axis
- */
+/** Lengths, each of some solids, and the axis of those that are not alike along all. @typedef {{ size: number,
+ * radius: number, radiusBottom: number, radiusTop: number, height: number, width: number, length: number, axis:
+ * string }} Dimensions */
 
-/** @type {Record<string, number[]>} the axes of a plane */
-const ACROSS = { X: [2, 1], Y: [0, 2], Z: [0, 1] };
+/** @type {Record<string, number[]>} the axes of a plane */ const ACROSS = { X: [2, 1], Y: [0, 2], Z: [0, 1] };
 const Z = { axis: "Z" };
 
-/** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} dimensions where the file has none */
+/** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} dimensions where
+ * the file has none */
 const SOLIDS = {
   Cube: { usual: { size: 2 }, make: ({ size }) => cube(size) },
   Sphere: { usual: { radius: 1 }, make: ({ radius }) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), Z.axis) },
@@ -50,18 +41,13 @@ const SOLIDS = {
   Plane: { usual: { width: 2, length: 2, ...Z }, make: ({ width, length, axis }) => plane(width, length, axis) },
 };
 
-/** @param {string} kind */
-export const isSolid = (kind) => Object.hasOwn(SOLIDS, kind);
+/** @param {string} kind */ export const isSolid = (kind) => Object.hasOwn(SOLIDS, kind);
 
 /** The solids that the loader does not know. @param {string} kind */
 export const isNewSolid = (kind) => ["Cylinder_1", "Capsule_1", "Plane"].includes(kind);
 
-/**
- * The values of a solid's dimensions.
- * @param {string} kind
- * @param {string} path
- * @param {(name: string) => Value | null} read the file's value, or null
- */
+/** The values of a solid's dimensions. @param {string} kind @param {string} path @param {(name: string) => Value |
+ * null} read the file's value, or null */
 export function dimensionsOf(kind, path, read) {
   const { usual } = SOLIDS[kind];
   const values = Object.entries(usual).map(([name, plain]) => {
@@ -78,8 +64,7 @@ export function dimensionsOf(kind, path, read) {
 /** @param {string} kind @param {Dimensions} dimensions */
 export const solidOf = (kind, dimensions) => SOLIDS[kind].make(dimensions);
 
-/** @param {number} size */
-function cube(size) {
+/** @param {number} size */ function cube(size) {
   const positions = [-1, 1]
     .flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].flatMap((x) => [x, y, z])))
     .map((part) => part * (size / 2));
@@ -94,8 +79,7 @@ function cube(size) {
   return { positions, triangles: quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
 }
 
-/** @param {number} width @param {number} length @param {string} axis */
-function plane(width, length, axis) {
+/** @param {number} width @param {number} length @param {string} axis */ function plane(width, length, axis) {
   const [across, along] = ACROSS[axis];
   const positions = new Array(12).fill(0);
   [
@@ -123,8 +107,7 @@ function cylinder(bottom, top, height, axis) {
   );
 }
 
-/** @param {number} radius @param {number} height @param {string} axis */
-function cone(radius, height, axis) {
+/** @param {number} radius @param {number} height @param {string} axis */ function cone(radius, height, axis) {
   return revolved(
     [
       [0, -height / 2],
@@ -140,7 +123,8 @@ function capsule(bottom, top, height, axis) {
   return revolved([...arc(bottom, -Math.PI / 2, 0, -height / 2), ...arc(top, 0, Math.PI / 2, height / 2)], axis);
 }
 
-/** Part of a circle; a half turn has half of the segments. @param {number} radius @param {number} start @param {number} stop @param {number} centre @returns {Place[]} */
+/** Part of a circle; a half turn has half of the segments. @param {number} radius @param {number} start @param
+ * {number} stop @param {number} centre @returns {Place[]} */
 function arc(radius, start, stop, centre) {
   const steps = Math.round((SEGMENTS * (stop - start)) / (2 * Math.PI));
   return Array.from({ length: steps + 1 }, (_, i) => {
@@ -155,13 +139,12 @@ function arc(radius, start, stop, centre) {
 /** @param {number} value */
 const rounded = (value) => Math.round(value * 1e15) / 1e15; // exact zeros and ones on the axes
 
-/** A closed surface of revolution of a profile from bottom to top, whose ends have radius 0. @param {Place[]} profile @param {string} axis */
+/** A closed surface of revolution of a profile from bottom to top, whose ends have radius 0. @param {Place[]}
+ * profile @param {string} axis */
 function revolved(profile, axis) {
   const turn = (AXES[axis] + 1) % 3;
-  /** @type {number[]} */
-  const positions = [];
-  /** @param {number} x @param {number} y @param {number} z */
-  const put = (x, y, z) => {
+  /** @type {number[]} */ const positions = [];
+  /** @param {number} x @param {number} y @param {number} z */ const put = (x, y, z) => {
     const at = positions.length;
     positions.push(0, 0, 0);
     [x, y, z].forEach((part, i) => {

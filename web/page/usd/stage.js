@@ -9,49 +9,21 @@
 /** @typedef {Record<string, Value | undefined>} Attributes by name */
 /** @typedef {string | string[]} List of paths or references; text has all of them as one */
 
-/**
- * The fields of a spec that are used.
- * @typedef {object} Fields
- * @property {string} [typeName]
- * @property {number} [specifier]
- * @property {boolean} [active]
- * @property {Value} [default]
- * @property {{ times: Numbers, values: Value[] }} [timeSamples]
- * @property {string} [interpolation]
- * @property {number} [elementSize]
- * @property {List} [targetPaths]
- * @property {List} [connectionPaths]
- * @property {string} [bindMaterialAs]
- * @property {string[]} [primChildren]
- * @property {string[]} [variantSetChildren]
- * @property {Record<string, string>} [variantSelection]
- * @property {string[]} [apiSchemas]
- * @property {List} [references]
- * @property {List} [payload]
- * @property {List} [inheritPaths]
- * @property {List} [specializes]
- * @property {List} [subLayers]
- * @property {string} [defaultPrim]
- * @property {unknown} [inactiveIds]
- * @property {number} [startTimeCode]
- * @property {number} [endTimeCode]
- * @property {string} [upAxis]
- * @property {number} [metersPerUnit]
- */
+/** The fields of a spec that are used. @typedef {{ typeName?: string, specifier?: number, active?: boolean,
+ * default?: Value, timeSamples?: { times: Numbers, values: Value[] }, interpolation?: string, elementSize?: number,
+ * targetPaths?: List, connectionPaths?: List, bindMaterialAs?: string, primChildren?: string[],
+ * variantSetChildren?: string[], variantSelection?: Record<string, string>, apiSchemas?: string[], references?:
+ * List, payload?: List, inheritPaths?: List, specializes?: List, subLayers?: List, defaultPrim?: string,
+ * inactiveIds?: unknown, startTimeCode?: number, endTimeCode?: number, upAxis?: string, metersPerUnit?: number }}
+ * Fields */
 
 /** @typedef {{ specType: number, fields: Fields }} Spec */
 /** @typedef {Record<string, Spec>} Specs by path */
 
-/**
- * What is known of the stage that is read.
- * @typedef {object} Found
- * @property {Warn} warn
- * @property {Fields} fields of its root
- * @property {number | null} moment the time, null for the earliest
- * @property {Set<string>} open instancers whose prototypes are built
- * @property {(place: string, count: number) => void} charge refuses too many prims
- * @property {(file: string) => Specs | null} layer the specs of a file that was dropped together with the scene
- */
+/** What is known of the stage that is read. `fields`: of its root; `moment`: the time, null for the earliest;
+ * `open`: instancers whose prototypes are built; `charge`: refuses too many prims; `layer`: the specs of a file
+ * that was dropped together with the scene. @typedef {{ warn: Warn, fields: Fields, moment: number | null, open:
+ * Set<string>, charge: (place: string, count: number) => void, layer: (file: string) => Specs | null }} Found */
 
 /** @typedef {{ values: Numbers, size: number, interpolation: string }} Primvar `size`: numbers per value */
 
@@ -66,14 +38,16 @@ export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.
 /** @param {Composer} composer @param {string} prim @param {string} name */
 export const attributeOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
-/** An attribute that has numbers; null for none. @param {Composer} composer @param {string} prim @param {string} name */
+/** An attribute that has numbers; null for none. @param {Composer} composer @param {string} prim @param {string}
+ * name */
 export const numbersOf = (composer, prim, name) => /** @type {Numbers | null} */ (attributeOf(composer, prim, name));
 
 /** An attribute that has names; empty for none. @param {Composer} composer @param {string} prim @param {string} name */
 export const namesOf = (composer, prim, name) =>
   /** @type {string[]} */ (Array.from(/** @type {string[]} */ (attributeOf(composer, prim, name) ?? [])));
 
-/** What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]". @param {List | undefined} paths @param {string} prim */
+/** What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]". @param {List | undefined}
+ * paths @param {string} prim */
 export function targetsOf(paths, prim) {
   const names = [paths ?? []]
     .flat()
@@ -84,8 +58,7 @@ export function targetsOf(paths, prim) {
   return names.map((name) => (name.startsWith("/") ? name : `${prim}/${name}`));
 }
 
-/** @param {Found} found @returns {MethodsOf<Composer>} */
-export const stageMethods = (found) => (kept) => ({
+/** @param {Found} found @returns {MethodsOf<Composer>} */ export const stageMethods = (found) => (kept) => ({
   _buildIndexes() {
     kept._buildIndexes.call(this);
     for (const [parent, children] of this.childrenByPath) {
@@ -116,7 +89,8 @@ export const stageMethods = (found) => (kept) => ({
 
 const HELD = /^(u?int|bool|token|string|asset|uchar)/;
 
-/** @param {Numbers} times @param {Value[]} values @param {number | null} moment @param {string} type @returns {Value | undefined} */
+/** @param {Numbers} times @param {Value[]} values @param {number | null} moment @param {string} type @returns {Value
+ * | undefined} */
 function sampleOf(times, values, moment, type) {
   const after = moment === null ? 0 : times.findIndex((time) => time >= moment);
   if (after < 0) return values.at(-1);
@@ -130,13 +104,9 @@ function sampleOf(times, values, moment, type) {
 
 const OVER = 1;
 
-/**
- * Whether a prim and those below it are shown, as far as the prim decides it. Prototypes, and what is below a prim that is
- * not defined, need not be defined themselves.
- * @param {Composer} composer
- * @param {string} path
- * @param {Found} found
- */
+/** Whether a prim and those below it are shown, as far as the prim decides it. Prototypes, and what is below a prim
+ * that is not defined, need not be defined themselves. @param {Composer} composer @param {string} path @param
+ * {Found} found */
 export function isShown(composer, path, found, isPrototype = false) {
   const fields = composer.specsByPath[path]?.fields;
   if (!fields) return false;
@@ -160,7 +130,8 @@ export function isShown(composer, path, found, isPrototype = false) {
 
 const BINDINGS = ["material:binding:preview", "material:binding", "material:binding:full"];
 
-/** The path of the material of a prim: of the nearest binding above it, unless one further up is stronger. @param {Composer} composer @param {string} prim */
+/** The path of the material of a prim: of the nearest binding above it, unless one further up is stronger. @param
+ * {Composer} composer @param {string} prim */
 export function boundMaterial(composer, prim) {
   for (const name of BINDINGS) {
     let winner = null;
@@ -177,7 +148,8 @@ export function boundMaterial(composer, prim) {
 /** @param {Composer} composer @param {string} path */
 export const isMaterial = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Material";
 
-/** A primvar; null for none. Prims inherit those that are constant. @param {Composer} composer @param {string} prim @param {string} name @returns {Primvar | null} */
+/** A primvar; null for none. Prims inherit those that are constant. @param {Composer} composer @param {string} prim
+ * @param {string} name @returns {Primvar | null} */
 export function primvarOf(composer, prim, name) {
   for (const above of name ? upwards(prim) : []) {
     const found = arrayOf(composer, above, `primvars:${name}`, "constant");
@@ -186,14 +158,8 @@ export function primvarOf(composer, prim, name) {
   return null;
 }
 
-/**
- * The same of an attribute.
- * @param {Composer} composer
- * @param {string} prim
- * @param {string} name
- * @param {string} usual the interpolation where none is given
- * @returns {Primvar | null}
- */
+/** The same of an attribute. @param {Composer} composer @param {string} prim @param {string} name @param {string}
+ * usual the interpolation where none is given @returns {Primvar | null} */
 export function arrayOf(composer, prim, name, usual) {
   const given = attributeOf(composer, prim, name);
   if (given === null || typeof given === "string") return null;

@@ -12,28 +12,16 @@ const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 /** @import { Composer } from "./three_private.js" */
 /** @import { Warn } from "../voxrt/warnings.js" */
 
-/**
- * Corners count those of all faces.
- * @typedef {object} FaceSurface
- * @property {Numbers} positions three numbers per vertex
- * @property {number[]} triangles three vertices per triangle
- * @property {number[]} faces the face of each triangle
- * @property {number} faceCount
- * @property {number[]} corners three corners per triangle
- * @property {number} cornerCount 0 for solids
- */
+/** Corners count those of all faces. `positions`: three numbers per vertex; `triangles`: three vertices per
+ * triangle; `faces`: the face of each triangle; `corners`: three corners per triangle; `cornerCount`: 0 for solids.
+ * @typedef {{ positions: Numbers, triangles: number[], faces: number[], faceCount: number, corners: number[],
+ * cornerCount: number }} FaceSurface */
 
-/** @typedef {(triangle: number, corner: number) => number} PlaceOf the first number of a corner, 0 … 2, of a triangle */
+/** @typedef {(triangle: number, corner: number) => number} PlaceOf the first number of a corner, 0 … 2, of a
+ * triangle */
 
-/**
- * The surface of a prim; null for no faces.
- * @param {Composer} composer
- * @param {string} path
- * @param {string} kind
- * @param {Warn} warn
- * @param {Numbers} [posed] points instead of the mesh's own
- * @returns {FaceSurface | null}
- */
+/** The surface of a prim; null for no faces. @param {Composer} composer @param {string} path @param {string} kind
+ * @param {Warn} warn @param {Numbers} [posed] points instead of the mesh's own @returns {FaceSurface | null} */
 export function surfaceOf(composer, path, kind, warn, posed) {
   if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
   const { positions, triangles } = solidOf(
@@ -50,7 +38,8 @@ export function surfaceOf(composer, path, kind, warn, posed) {
   };
 }
 
-/** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] @returns {FaceSurface | null} */
+/** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] @returns {FaceSurface
+ * | null} */
 function meshSurface(composer, path, warn, posed) {
   const positions = posed ?? numbersOf(composer, path, "points") ?? [];
   const [counts, corners, holes] = ["faceVertexCounts", "faceVertexIndices", "holeIndices"].map((name) =>
@@ -65,12 +54,9 @@ function meshSurface(composer, path, warn, posed) {
     warn("subdivision", "subdivision surfaces were replaced by their control cage");
   const hole = new Set(holes);
   const turned = attributeOf(composer, path, "orientation") === "leftHanded";
-  /** @type {number[]} */
-  const triangles = [];
-  /** @type {number[]} */
-  const faces = [];
-  /** @type {number[]} */
-  const chosen = [];
+  /** @type {number[]} */ const triangles = [];
+  /** @type {number[]} */ const faces = [];
+  /** @type {number[]} */ const chosen = [];
   let start = 0;
   let thin = 0;
   for (let face = 0; face < counts.length; start += counts[face++]) {
@@ -99,8 +85,7 @@ function integers(composer, path, name) {
 
 /** @param {string} path @param {Numbers} positions @param {Numbers} counts @param {Numbers} corners */
 function check(path, positions, counts, corners) {
-  /** @param {string} problem */
-  const refuse = (problem) => {
+  /** @param {string} problem */ const refuse = (problem) => {
     throw new Error(`${path}: ${problem}; export the mesh again`);
   };
   let wanted = 0;
@@ -119,7 +104,8 @@ function check(path, positions, counts, corners) {
     refuse("points has a coordinate that is not a finite number");
 }
 
-/** A fan from the first corner where a polygon is convex. @param {string} path @param {Numbers} positions @param {Numbers} corners @param {number} start @param {number} count */
+/** A fan from the first corner where a polygon is convex. @param {string} path @param {Numbers} positions @param
+ * {Numbers} corners @param {number} start @param {number} count */
 function trianglesOf(path, positions, corners, start, count) {
   if (count === 3) return [[0, 1, 2]];
   const points = Array.from({ length: count }, (_, i) =>
@@ -138,14 +124,9 @@ function trianglesOf(path, positions, corners, start, count) {
   return Array.from({ length: count - 2 }, (_, i) => [0, i + 1, i + 2]);
 }
 
-/**
- * Where values of a primvar lie; null, with a warning, where there are not as many as the interpolation wants.
- * @param {string} name
- * @param {Primvar} primvar
- * @param {FaceSurface} surface
- * @param {Warn} warn
- * @returns {PlaceOf | null}
- */
+/** Where values of a primvar lie; null, with a warning, where there are not as many as the interpolation wants.
+ * @param {string} name @param {Primvar} primvar @param {FaceSurface} surface @param {Warn} warn @returns {PlaceOf |
+ * null} */
 export function placesOf(name, { values, size, interpolation }, surface, warn) {
   const count = Math.floor(values.length / size);
   if (count === 1 || interpolation === "constant") return () => 0;

@@ -13,10 +13,8 @@ const isData = (value) => typeof value === "object" && value !== null;
 /** The symbols of values that have notes in parentheses. @param {Data} data */
 const noteSymbols = (data) => Object.getOwnPropertySymbols(data).filter((symbol) => symbol !== SPECIFIER);
 
-/** @type {MethodsOf<TextParser>} */
-export const textMethods = (kept) => {
-  /** @type {Data} the text that was parsed last */
-  let parsed = {};
+/** @type {MethodsOf<TextParser>} */ export const textMethods = (kept) => {
+  /** @type {Data} the text that was parsed last */ let parsed = {};
   return {
     _preprocess(text) {
       return kept._preprocess.call(this, text).split("\n").flatMap(statements).join("\n");
@@ -52,8 +50,7 @@ export const textMethods = (kept) => {
   };
 };
 
-/** @param {string} key */
-const setName = (key) => SET.exec(key)?.[1] ?? "";
+/** @param {string} key */ const setName = (key) => SET.exec(key)?.[1] ?? "";
 
 /** What the parser takes of a prim. @param {Data} data */
 function plainData(data) {
@@ -82,7 +79,8 @@ function readLists(data, fields) {
   if (schemas.length) fields.apiSchemas = schemas;
 }
 
-/** Read the notes of attributes, in parentheses behind them. @param {Data} data @param {string} path @param {Specs} specs */
+/** Read the notes of attributes, in parentheses behind them. @param {Data} data @param {string} path @param {Specs}
+ * specs */
 function readNotes(data, path, specs) {
   const [symbol] = noteSymbols(data);
   const notes = symbol ? withoutPrefixes(/** @type {Data} */ (data[symbol])) : {};
@@ -94,11 +92,11 @@ function readNotes(data, path, specs) {
   }
 }
 
-/** Add the specs of a variant, or of a prim in one. @param {TextParser} parser @param {Data | string} data @param {string} path @param {Specs} specs @param {SpecTypes} types */
+/** Add the specs of a variant, or of a prim in one. @param {TextParser} parser @param {Data | string} data @param
+ * {string} path @param {Specs} specs @param {SpecTypes} types */
 function addVariant(parser, data, path, specs, types, typeName = "") {
   if (!isData(data)) return;
-  /** @type {Fields} */
-  const fields = { typeName };
+  /** @type {Fields} */ const fields = { typeName };
   specs[path] = { specType: typeName || !path.endsWith("}") ? types.Prim : VARIANT, fields };
   parser._extractPrimData(data, path, fields, specs, types);
   for (const key of Object.keys(data)) {
@@ -111,8 +109,7 @@ function addVariant(parser, data, path, specs, types, typeName = "") {
 
 /** The parser knows prims that begin with "def" alone. @param {Data} data */
 function asDefinitions(data) {
-  /** @type {Data} */
-  const made = {};
+  /** @type {Data} */ const made = {};
   for (const symbol of Object.getOwnPropertySymbols(data)) made[symbol] = data[symbol];
   for (const [key, value] of Object.entries(data)) {
     const [, word] = /^(def|over|class)\b/.exec(key) ?? [];

@@ -60,82 +60,43 @@ export const READER = [
 
 /** @typedef {{ specsByPath: Specs }} Parsed */
 
-/**
- * @typedef {object} Composer
- * @property {Specs} specsByPath
- * @property {Map<string, { name: string, path: string }[]>} childrenByPath
- * @property {Map<string, Map<string, unknown>>} attributesByPrimPath
- * @property {Record<string, Parsed | Uint8Array<ArrayBuffer>>} assets
- * @property {string} basePath
- * @property {(parsed: Parsed, ...rest: unknown[]) => Group} compose
- * @property {(object: Object3D, fields: Fields, attributes?: Attributes) => void} applyTransform
- * @property {() => void} _buildIndexes
- * @property {(parent: Object3D, path: string) => void} _buildHierarchy
- * @property {(path: string, ...rest: unknown[]) => Object3D | null} _buildMesh
- * @property {(path: string, spec: unknown, kind: string) => Object3D | null} _buildGeomPrimitive
- * @property {(path: string) => null} _buildSkeleton
- * @property {() => never[]} _buildAnimations
- * @property {(group: Object3D) => Object3D | null} _findSingleMesh
- * @property {(path: string) => string[]} _getVariantPaths
- * @property {(path: string) => Value | undefined} _resolveAttributeValue
- * @property {(reference: unknown) => null} _resolveReference
- * @property {(matrices: unknown[], count: number) => number[] | null} _flattenMatrixArray
- * @property {(path: string) => Attributes} _getAttributes
- * @property {(file: string) => string} _resolveFilePath
- */
+/** @typedef {{ specsByPath: Specs, childrenByPath: Map<string, { name: string, path: string }[]>,
+ * attributesByPrimPath: Map<string, Map<string, unknown>>, assets: Record<string, Parsed |
+ * Uint8Array<ArrayBuffer>>, basePath: string, compose: (parsed: Parsed, ...rest: unknown[]) => Group,
+ * applyTransform: (object: Object3D, fields: Fields, attributes?: Attributes) => void, _buildIndexes: () => void,
+ * _buildHierarchy: (parent: Object3D, path: string) => void, _buildMesh: (path: string, ...rest: unknown[]) =>
+ * Object3D | null, _buildGeomPrimitive: (path: string, spec: unknown, kind: string) => Object3D | null,
+ * _buildSkeleton: (path: string) => null, _buildAnimations: () => never[], _findSingleMesh: (group: Object3D) =>
+ * Object3D | null, _getVariantPaths: (path: string) => string[], _resolveAttributeValue: (path: string) => Value |
+ * undefined, _resolveReference: (reference: unknown) => null, _flattenMatrixArray: (matrices: unknown[], count:
+ * number) => number[] | null, _getAttributes: (path: string) => Attributes, _resolveFilePath: (file: string) =>
+ * string }} Composer */
 
-/** Text as the parser has it: values by what stands before "=" or "{". @typedef {{ [key: string | symbol]: Data | string }} Data */
+/** Text as the parser has it: values by what stands before "=" or "{". @typedef {{ [key: string | symbol]: Data |
+ * string }} Data */
 /** @typedef {Record<string, number>} SpecTypes */
 
-/**
- * @typedef {object} TextParser
- * @property {(text: string) => Data} parseText
- * @property {(text: string) => Parsed} parseData
- * @property {(text: string) => string} _preprocess
- * @property {(data: Data, path: string, fields: Fields, specs: Specs, types: SpecTypes) => void} _extractPrimData
- */
+/** @typedef {{ parseText: (text: string) => Data, parseData: (text: string) => Parsed, _preprocess: (text: string)
+ * => string, _extractPrimData: (data: Data, path: string, fields: Fields, specs: Specs, types: SpecTypes) => void
+ * }} TextParser */
 
-/**
- * @typedef {object} BinaryReader
- * @property {() => number} readUint8
- * @property {() => number} readInt32
- * @property {() => number} readUint32
- * @property {() => number} readInt64
- * @property {() => number} readUint64
- * @property {() => number} readFloat64
- * @property {(offset: number) => void} seek
- * @property {() => number} tell
- */
+/** @typedef {{ readUint8: () => number, readInt32: () => number, readUint32: () => number, readInt64: () => number,
+ * readUint64: () => number, readFloat64: () => number, seek: (offset: number) => void, tell: () => number }}
+ * BinaryReader */
 
 /** @typedef {{ typeEnum: number, isCompressed: boolean, lo: number }} ValueRep */
 
-/**
- * @typedef {object} CrateParser
- * @property {BinaryReader} reader
- * @property {string[]} tokens
- * @property {number[]} strings
- * @property {string[]} paths
- * @property {{ major: number, minor: number }} version
- * @property {ArrayBuffer} buffer
- * @property {(buffer: ArrayBuffer) => Parsed} parseData
- * @property {() => number} _readHalf
- * @property {(rep: ValueRep) => unknown} _readInlinedValue
- * @property {(type: number) => unknown} _readScalarValue
- * @property {(rep: ValueRep) => unknown} _readArrayValue
- */
+/** @typedef {{ reader: BinaryReader, tokens: string[], strings: number[], paths: string[], version: { major: number,
+ * minor: number }, buffer: ArrayBuffer, parseData: (buffer: ArrayBuffer) => Parsed, _readHalf: () => number,
+ * _readInlinedValue: (rep: ValueRep) => unknown, _readScalarValue: (type: number) => unknown, _readArrayValue:
+ * (rep: ValueRep) => unknown }} CrateParser */
 
-/**
- * Methods that replace some of a class. `kept` has those that they replace.
- * @template C
- * @typedef {(kept: C) => Partial<C> & ThisType<C>} MethodsOf
- */
+/** Methods that replace some of a class. `kept` has those that they replace. @template C @typedef {(kept: C) =>
+ * Partial<C> & ThisType<C>} MethodsOf */
 
-/**
- * Replace methods of a class, each time by more; returns what puts the old ones back.
- * @template {object} C
- * @param {{ class: new () => C, replaced: string[] }} members
- * @param {MethodsOf<C>[]} layers later ones stand before earlier ones
- */
+/** Replace methods of a class, each time by more; returns what puts the old ones back. @template {object} C @param
+ * {{ class: new () => C, replaced: string[] }} members @param {MethodsOf<C>[]} layers later ones stand before
+ * earlier ones */
 export function patch({ class: { prototype }, replaced }, layers) {
   const methodsNow = () => {
     const found = replaced.map((name) => [name, Object.getOwnPropertyDescriptor(prototype, name)?.value]);
