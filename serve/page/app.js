@@ -17,10 +17,8 @@ import { add, scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
 
-/** @import { Box, Registers, Size } from "./camera.js" */
-/** @import { Away } from "./connection.js" */
-/** @import { Frame, Hello, State, View } from "./protocol.js" */
-/** @import { Move } from "./viewpoint.js" */
+/** @import { Box, Registers, Size } from "./camera.js" @import { Away } from "./connection.js" */
+/** @import { Frame, Hello, State, View } from "./protocol.js" @import { Move } from "./viewpoint.js" */
 
 const CONTROLS = "#panel :is(button, input, select), #empty button, #frame, #player :is(button, input), #pad button";
 

@@ -5,8 +5,7 @@ import { PROTOCOL, readFrame } from "./protocol.js";
 import { askForReason } from "./refusal.js";
 
 /** @import { Registers, Size } from "./camera.js" */
-/** @import { Frame, Hello, Progress, State, View } from "./protocol.js" */
-/** @import { Refusal } from "./refusal.js" */
+/** @import { Frame, Hello, Progress, State, View } from "./protocol.js" @import { Refusal } from "./refusal.js" */
 /** @import { Vector } from "./vectors.js" */
 
 const RETRY = { first: 500, longest: 5000 }; // milliseconds

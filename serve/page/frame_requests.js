@@ -4,8 +4,7 @@
 import { toRegisters } from "./camera.js";
 import { Resolution } from "./resolution.js";
 
-/** @import { Pose, Registers, Size } from "./camera.js" */
-/** @import { Device, Frame, View } from "./protocol.js" */
+/** @import { Pose, Registers, Size } from "./camera.js" @import { Device, Frame, View } from "./protocol.js" */
 
 const REST = 180; // milliseconds without a change, until finer frames are asked for
 const LONG_REST = 1200; // before frames that are announced

@@ -7,8 +7,7 @@ import { Gestures } from "./gestures.js";
 import { dolly, fly, look, orbit, pan } from "./navigation.js";
 import { scale } from "./vectors.js";
 
-/** @import { Box, Pose, Size } from "./camera.js" */
-/** @import { Commands } from "./tools.js" */
+/** @import { Box, Pose, Size } from "./camera.js" @import { Commands } from "./tools.js" */
 /** @import { Move } from "./viewpoint.js" */
 
 /** What controls of the camera ask of a page; places are in voxels. `size`: of the picture; `side`: of the world;

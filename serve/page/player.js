@@ -4,8 +4,7 @@ import { $, isPressed, pressed } from "./elements.js";
 
 const PERIOD = 0.1; // seconds from frame to frame, where the scene does not say
 
-/** @import { App } from "./app.js" */
-/** @import { State } from "./protocol.js" */
+/** @import { App } from "./app.js" @import { State } from "./protocol.js" */
 
 export class Player {
   #frames = 1;

@@ -1,7 +1,6 @@
 // The messages of the frame server (docs/protocol.md), and how its frames are read.
 
-/** @import { Box, Registers, Size } from "./camera.js" */
-/** @import { Look } from "./light.js" */
+/** @import { Box, Registers, Size } from "./camera.js" @import { Look } from "./light.js" */
 
 export const PROTOCOL = 2;
 const HEADER = 56;

@@ -1,8 +1,7 @@
 // The size of frames: as fine as the stage at rest, coarser while the camera moves, and fine again in steps where the
 // device is slow. All sizes have the shape of the stage.
 
-/** @import { Size } from "./camera.js" */
-/** @import { Wanted } from "./frame_requests.js" */
+/** @import { Size } from "./camera.js" @import { Wanted } from "./frame_requests.js" */
 /** @import { Device } from "./protocol.js" */
 
 const MOVING = 0.05; // seconds that a frame may take while the camera moves

@@ -19,8 +19,7 @@ import { uploadFiles } from "./upload.js";
 };
 const ALSO = [".json", ".bin", ".mtl", ".png", ".jpg", ".jpeg"]; // what scene files refer to
 
-/** @import { App } from "./app.js" */
-/** @import { Hello, State } from "./protocol.js" */
+/** @import { App } from "./app.js" @import { Hello, State } from "./protocol.js" */
 
 /** @typedef {(stage: string, done: number, total: number) => void} OnProgress */
 

@@ -5,8 +5,7 @@ import { crc32 } from "./crc32.js";
 
 const WINDOW = 8; // chunks that the server has not acknowledged
 
-/** @import { Connection, Report } from "./connection.js" */
-/** @import { OnProgress } from "./scenes.js" */
+/** @import { Connection, Report } from "./connection.js" @import { OnProgress } from "./scenes.js" */
 
 /** @param {number} upload @param {number} offset @param {Uint8Array} bytes */ function chunk(upload, offset, bytes) {
   const message = new Uint8Array(16 + bytes.length);

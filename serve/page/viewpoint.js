@@ -3,10 +3,8 @@
 import { Glide } from "./glide.js";
 import { showBusy } from "./tools.js";
 
-/** @import { Pose } from "./camera.js" */
-/** @import { Flight } from "./flight.js" */
-/** @import { FrameRequests } from "./frame_requests.js" */
-/** @import { Gestures } from "./gestures.js" */
+/** @import { Pose } from "./camera.js" @import { Flight } from "./flight.js" */
+/** @import { FrameRequests } from "./frame_requests.js" @import { Gestures } from "./gestures.js" */
 
 /** @typedef {(now: Pose) => Pose} Move */
 

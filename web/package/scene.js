@@ -20,8 +20,7 @@ export { colours } from "./three_looks.js";
 /** @import { BufferGeometry, InstancedMesh, Material as ThreeMaterial, Mesh as ThreeMesh, Object3D } from "three" */
 /** @import { Joined } from "./triangles.js" */
 /** @import { Mesh, Scene, SceneObject, Triple, Warning } from "./scene_format.js" */
-/** @import { Voxrt } from "./voxrt.js" */
-/** @import { Warn } from "./warnings.js" */
+/** @import { Voxrt } from "./voxrt.js" @import { Warn } from "./warnings.js" */
 
 /** A material of the scene; those of equal keys are one, and `order` sorts them. `colour` (sRGB) replaces that of
  * the material of three.js. @typedef {{ key: unknown, name: string, order?: number, colour?: Triple, mirror?:

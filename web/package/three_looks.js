@@ -1,10 +1,8 @@
 // What materials of three.js look like: their colours, textures, and the colours of vertices.
 
 /** @import { BufferAttribute, BufferGeometry, InterleavedBufferAttribute, Material, MeshBasicMaterial } from "three" */
-/** @import { Texture } from "three" */
-/** @import { Appearance, Image, Wrap } from "./scene_format.js" */
-/** @import { Voxrt } from "./voxrt.js" */
-/** @import { Warn } from "./warnings.js" */
+/** @import { Texture } from "three" @import { Appearance, Image, Wrap } from "./scene_format.js" */
+/** @import { Voxrt } from "./voxrt.js" @import { Warn } from "./warnings.js" */
 
 /** @typedef {BufferAttribute | InterleavedBufferAttribute} Attribute */
 /** @typedef {(vertex: number, out: { [index: number]: number }) => void} Setter sets numbers of a vertex */

@@ -1,10 +1,8 @@
 // Meshes of three.js as triangles: positions, the material of each triangle, textures, colours and normals.
 
 /** @import { BufferGeometry, Material, Mesh as ThreeMesh, SkinnedMesh } from "three" */
-/** @import { Rules } from "./scene.js" */
-/** @import { Attribute, Look } from "./three_looks.js" */
-/** @import { Mesh, Surface } from "./scene_format.js" */
-/** @import { Warn } from "./warnings.js" */
+/** @import { Rules } from "./scene.js" @import { Attribute, Look } from "./three_looks.js" */
+/** @import { Mesh, Surface } from "./scene_format.js" @import { Warn } from "./warnings.js" */
 
 /** @typedef {Omit<Mesh, "materials"> & { keys: unknown[] }} Joined `keys`: of the material of each triangle */
 

@@ -16,8 +16,7 @@ import { voxelize } from "./voxelize.js";
 export * from "./scene_format.js";
 export { VoxrtError };
 
-/** @import { Arrays } from "./instance.js" */
-/** @import { Built, Options, Scene, Triple } from "./scene_format.js" */
+/** @import { Arrays } from "./instance.js" @import { Built, Options, Scene, Triple } from "./scene_format.js" */
 
 /** The camera registers: direction(column, row) = look + right (column - W/2) + up (H/2 - row). `position`: in 1/16
  * voxel; `look`: whole numbers below 2^15, as those of right and up. @typedef {{ position: Triple, look: Triple,

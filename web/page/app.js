@@ -18,10 +18,8 @@ import { scale, add } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
 
-/** @import { Box, Pose, Size } from "./camera.js" */
-/** @import { Look } from "./light.js" */
-/** @import { Memory, Shown } from "./memory.js" */
-/** @import { Source } from "./sources.js" */
+/** @import { Box, Pose, Size } from "./camera.js" @import { Look } from "./light.js" */
+/** @import { Memory, Shown } from "./memory.js" @import { Source } from "./sources.js" */
 /** @import { Move } from "./viewpoint.js" */
 
 const CORNER = [-0.62, -0.55, -1];

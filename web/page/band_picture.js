@@ -2,8 +2,7 @@
 
 import { average, Picture } from "./picture.js";
 
-/** @import { Registers } from "./camera.js" */
-/** @import { Frame } from "./protocol.js" */
+/** @import { Registers } from "./camera.js" @import { Frame } from "./protocol.js" */
 
 /** @typedef {{ top: number, pixels: Uint8ClampedArray<ArrayBuffer> }} Band the first row, and RGBA */
 /** @typedef {Frame & { bands: Band[], camera: Registers }} BandFrame */

@@ -3,8 +3,7 @@
 
 const [HEAD, DATA] = [12, 2304]; // bytes of a command before its data, and of its data
 
-/** @import { Memory } from "./memory.js" */
-/** @import { Hardware } from "./voxrt/hardware.js" */
+/** @import { Memory } from "./memory.js" @import { Hardware } from "./voxrt/hardware.js" */
 /** @import { Look, Size, Voxrt } from "./voxrt/voxrt.js" */
 
 /** Part of a memory in a block RAM: `at` is its command in the bitstream; rows from `row` on; bits from `bit` on,

@@ -5,8 +5,7 @@ import { Hand } from "./hand.js";
 import { PLAIN } from "./memory.js";
 import { save } from "./save.js";
 
-/** @import { App } from "./app.js" */
-/** @import { BoardCalls } from "./board_worker.js" */
+/** @import { App } from "./app.js" @import { BoardCalls } from "./board_worker.js" */
 
 export class BoardPanel {
   /** @type {Hand<BoardCalls> | null} */ #hand = null;

@@ -5,8 +5,7 @@ import { Hardware } from "./voxrt/hardware.js";
 import { FACES, Voxrt } from "./voxrt/voxrt.js";
 import { answerWith, count } from "./worker_answers.js";
 
-/** @import { Board, Content } from "./board_bits.js" */
-/** @import { Lighting } from "./memory.js" */
+/** @import { Board, Content } from "./board_bits.js" @import { Lighting } from "./memory.js" */
 
 /** @param {string} path */ async function load(path) {
   const answer = await fetch(path);

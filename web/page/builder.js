@@ -2,10 +2,8 @@
 
 import { Hand } from "./hand.js";
 
-/** @import { DroppedFile } from "./folder.js" */
-/** @import { Memory } from "./memory.js" */
-/** @import { Options } from "./voxrt/voxrt.js" */
-/** @import { WorkerCalls } from "./worker.js" */
+/** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
+/** @import { Options } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
 
 export class Builder {
   #source = 0;

@@ -4,8 +4,7 @@ import { crc32 } from "./crc32.js";
 import { memBytes } from "./memory.js";
 import { DIALECT, hex } from "./voxrt/words.js";
 
-/** @import { Pose } from "./camera.js" */
-/** @import { Shown } from "./memory.js" */
+/** @import { Pose } from "./camera.js" @import { Shown } from "./memory.js" */
 /** @import { Daylight } from "./voxrt/voxrt.js" */
 
 /** The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one. @param

@@ -2,8 +2,7 @@
 
 import { FileError, Folder, stem } from "./folder.js";
 
-/** @import { DroppedFile } from "./folder.js" */
-/** @import { Memory } from "./memory.js" */
+/** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 /** @import { Scene, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {Scene & { warnings: Warning[] }} ReadScene */

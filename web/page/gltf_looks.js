@@ -5,10 +5,8 @@ import { colours } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
 
 /** @import { BufferGeometry, Material, Object3D, Texture } from "three" */
-/** @import { GLTFParser } from "three/addons/loaders/GLTFLoader.js" */
-/** @import { Folder } from "./folder.js" */
-/** @import { Look, Setter } from "./voxrt/scene.js" */
-/** @import { Appearance, Image, Wrap } from "./voxrt/voxrt.js" */
+/** @import { GLTFParser } from "three/addons/loaders/GLTFLoader.js" @import { Folder } from "./folder.js" */
+/** @import { Look, Setter } from "./voxrt/scene.js" @import { Appearance, Image, Wrap } from "./voxrt/voxrt.js" */
 
 /** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
 /** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */

@@ -3,8 +3,7 @@
 import { PLAIN } from "./memory.js";
 import { BACKGROUND, FACES } from "./voxrt/voxrt.js";
 
-/** @import { Look } from "./light.js" */
-/** @import { Lighting, Memory } from "./memory.js" */
+/** @import { Look } from "./light.js" @import { Lighting, Memory } from "./memory.js" */
 /** @import { Look as Shading } from "./voxrt/voxrt.js" */
 
 const LAMP = [1.4, 1.9, 1.1]; // sides of the world

@@ -6,10 +6,8 @@ import { DIALECT, hex } from "./voxrt/words.js";
 const DAMAGED = "it is no manifest of a memory, or damaged: build it again";
 const HIGHEST = 2 ** 31 - 1;
 
-/** @import { Registers } from "./camera.js" */
-/** @import { DroppedFile } from "./folder.js" */
-/** @import { Lighting } from "./memory.js" */
-/** @import { Material, Warning } from "./voxrt/voxrt.js" */
+/** @import { Registers } from "./camera.js" @import { DroppedFile } from "./folder.js" */
+/** @import { Lighting } from "./memory.js" @import { Material, Warning } from "./voxrt/voxrt.js" */
 
 /** What is used of a manifest. @typedef {{ depth: number, words: number, materials: Required<Material>[], objects:
  * object[], warnings: Warning[], world?: { origin: number[], voxel_size: number } | null, lighting?:

@@ -3,8 +3,7 @@
 import { FACES } from "./voxrt/voxrt.js";
 import { hex } from "./voxrt/words.js";
 
-/** @import { Box, Registers } from "./camera.js" */
-/** @import { Manifest } from "./manifest.js" */
+/** @import { Box, Registers } from "./camera.js" @import { Manifest } from "./manifest.js" */
 /** @import { Baked, Fitted, Material, Warning } from "./voxrt/voxrt.js" */
 
 /** The lighting of a memory; the fields are those of manifests. `position`: in 1/16 voxel. @typedef {{ position:

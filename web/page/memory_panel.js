@@ -5,8 +5,7 @@ import { Budget } from "./budget.js";
 import { DaylightControl } from "./daylight.js";
 import { $, all, element, pressed, showFacts } from "./elements.js";
 
-/** @import { App, Site } from "./app.js" */
-/** @import { Shown } from "./memory.js" */
+/** @import { App, Site } from "./app.js" @import { Shown } from "./memory.js" */
 
 const SOON = 150; // milliseconds after the last change of the slider
 const KIB = 256; // words

@@ -6,12 +6,9 @@
 import { Events } from "./events.js";
 import { Hand } from "./hand.js";
 
-/** @import { Band, BandFrame } from "./band_picture.js" */
-/** @import { Registers, Size } from "./camera.js" */
-/** @import { Memory } from "./memory.js" */
-/** @import { Vector } from "./vectors.js" */
-/** @import { Look } from "./voxrt/voxrt.js" */
-/** @import { WorkerCalls } from "./worker.js" */
+/** @import { Band, BandFrame } from "./band_picture.js" @import { Registers, Size } from "./camera.js" */
+/** @import { Memory } from "./memory.js" @import { Vector } from "./vectors.js" */
+/** @import { Look } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
 
 const TILE = 16; // rows of pixels
 const BANDS = 3; // per worker: they cost differently

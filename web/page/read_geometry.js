@@ -7,10 +7,8 @@ import { STLLoader } from "./three/addons/loaders/STLLoader.js";
 import { Mesh } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
 
-/** @import { BufferGeometry } from "three" */
-/** @import { Reader } from "./files.js" */
-/** @import { DroppedFile } from "./folder.js" */
-/** @import { Rules } from "./voxrt/scene.js" */
+/** @import { BufferGeometry } from "three" @import { Reader } from "./files.js" */
+/** @import { DroppedFile } from "./folder.js" @import { Rules } from "./voxrt/scene.js" */
 /** @import { Voxrt } from "./voxrt/voxrt.js" */
 
 /** @param {BufferGeometry} geometry @param {DroppedFile} main @param {Voxrt} voxrt @param {Partial<Rules>} rules */

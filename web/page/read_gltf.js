@@ -8,10 +8,8 @@ import { GLTFLoader } from "./three/addons/loaders/GLTFLoader.js";
 import { LoadingManager, Texture } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
 
-/** @import { Material, Object3D } from "three" */
-/** @import { Reader } from "./files.js" */
-/** @import { DroppedFile, Folder } from "./folder.js" */
-/** @import { GltfParser } from "./gltf_looks.js" */
+/** @import { Material, Object3D } from "three" @import { Reader } from "./files.js" */
+/** @import { DroppedFile, Folder } from "./folder.js" @import { GltfParser } from "./gltf_looks.js" */
 
 /** @type {Reader} */ export async function readGltf(main, folder, voxrt) {
   const looks = new GltfLooks(folder);

@@ -7,8 +7,7 @@ import { MTLLoader } from "./three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "./three/addons/loaders/OBJLoader.js";
 import { sceneOf } from "./voxrt/scene.js";
 
-/** @import { Reader } from "./files.js" */
-/** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" */
+/** @import { Reader } from "./files.js" @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" */
 
 /** @type {Map<number, string>} encodings by their mark */ const MARKS = new Map([
   [0xfeff, "utf-16be"],

@@ -1,7 +1,6 @@
 // What the page builds memories of: files that were dropped or chosen, and examples.
 
-/** @import { Site } from "./app.js" */
-/** @import { DroppedFile } from "./folder.js" */
+/** @import { Site } from "./app.js" @import { DroppedFile } from "./folder.js" */
 
 /** @typedef {{ files: DroppedFile[], example: string | null }} Source */
 

@@ -5,8 +5,7 @@ import { dot } from "./vectors.js";
 import { BACKGROUND } from "./voxrt/voxrt.js";
 import { DAMAGED, readChunks } from "./vox_chunks.js";
 
-/** @import { Memory } from "./memory.js" */
-/** @import { VoxFile } from "./vox_chunks.js" */
+/** @import { Memory } from "./memory.js" @import { VoxFile } from "./vox_chunks.js" */
 /** @import { Voxrt, Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {{ model: number, rows: number[][], offset: number[] }} Instance */

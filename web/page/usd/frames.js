@@ -4,8 +4,7 @@
 import { Matrix4, Quaternion, Vector3 } from "../three/three.core.js";
 
 /** @import { Attributes, Fields, Found, Numbers } from "./stage.js" */
-/** @import { Composer, MethodsOf } from "./three_private.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Composer, MethodsOf } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 
 /** @type {Record<string, [number, number, number]>} */ const AXES = { X: [1, 0, 0], Y: [0, 1, 0], Z: [0, 0, 1] };
 

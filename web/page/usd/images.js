@@ -2,11 +2,9 @@
 
 import { decodeImage } from "../images.js";
 
-/** @import { Folder } from "../folder.js" */
-/** @import { Pixels } from "../images.js" */
+/** @import { Folder } from "../folder.js" @import { Pixels } from "../images.js" */
 /** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" */
-/** @import { Coordinates, Shading, Texture } from "./shading.js" */
-/** @import { Composer } from "./three_private.js" */
+/** @import { Coordinates, Shading, Texture } from "./shading.js" @import { Composer } from "./three_private.js" */
 
 export class UsdImages {
   /** @type {Map<string, Uint8Array<ArrayBuffer>>} files of a package */ #bytes = new Map();

@@ -6,14 +6,10 @@ import { noShading, readShading } from "./shading.js";
 import { attributeOf, boundMaterial, fieldsOf, isMaterial, numbersOf, primvarOf, targetsOf } from "./stage.js";
 import { placesOf } from "./surface.js";
 
-/** @import { UsdImages } from "./images.js" */
-/** @import { Described } from "../voxrt/scene.js" */
-/** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
-/** @import { Shading, Unnumbered } from "./shading.js" */
-/** @import { Primvar } from "./stage.js" */
-/** @import { FaceSurface } from "./surface.js" */
-/** @import { Composer } from "./three_private.js" */
+/** @import { UsdImages } from "./images.js" @import { Described } from "../voxrt/scene.js" */
+/** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Shading, Unnumbered } from "./shading.js" @import { Primvar } from "./stage.js" */
+/** @import { FaceSurface } from "./surface.js" @import { Composer } from "./three_private.js" */
 
 /** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner writes
  * numbers of a corner */

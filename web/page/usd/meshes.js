@@ -10,14 +10,10 @@ import { arrayOf, attributeOf, primvarOf } from "./stage.js";
 import { placesOf, surfaceOf } from "./surface.js";
 
 /** @import { Material, Matrix4, Mesh as ThreeMesh } from "three" */
-/** @import { Described, Look, Rules } from "../voxrt/scene.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
-/** @import { CornerLook, SetCorner, UsdMaterials } from "./materials.js" */
-/** @import { Shading } from "./shading.js" */
-/** @import { Posed } from "./skin.js" */
-/** @import { Primvar } from "./stage.js" */
-/** @import { FaceSurface } from "./surface.js" */
-/** @import { Composer, MethodsOf } from "./three_private.js" */
+/** @import { Described, Look, Rules } from "../voxrt/scene.js" @import { Warn } from "../voxrt/warnings.js" */
+/** @import { CornerLook, SetCorner, UsdMaterials } from "./materials.js" @import { Shading } from "./shading.js" */
+/** @import { Posed } from "./skin.js" @import { Primvar } from "./stage.js" */
+/** @import { FaceSurface } from "./surface.js" @import { Composer, MethodsOf } from "./three_private.js" */
 
 /** @typedef {FaceSurface & { posed: Posed | null }} Surface */
 

@@ -17,10 +17,8 @@ import { stageMethods } from "./stage.js";
 import { textMethods } from "./text.js";
 import { MEMBERS, patch } from "./three_private.js";
 
-/** @import { Reader } from "../files.js" */
-/** @import { DroppedFile, Folder } from "../folder.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
-/** @import { Fields, Found, Spec } from "./stage.js" */
+/** @import { Reader } from "../files.js" @import { DroppedFile, Folder } from "../folder.js" */
+/** @import { Warn } from "../voxrt/warnings.js" @import { Fields, Found, Spec } from "./stage.js" */
 /** @import { Composer, MethodsOf } from "./three_private.js" */
 
 const MOST_PRIMS = 200_000; // of all layers and copies together

@@ -2,10 +2,8 @@
 
 import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 
-/** @import { Wrap } from "../voxrt/voxrt.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
-/** @import { Numbers, Value } from "./stage.js" */
-/** @import { Composer } from "./three_private.js" */
+/** @import { Wrap } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Numbers, Value } from "./stage.js" @import { Composer } from "./three_private.js" */
 
 /** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates the primvar, and how
  * it is moved */

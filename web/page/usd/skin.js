@@ -4,10 +4,8 @@
 import { attributeOf, fieldsOf, namesOf, numbersOf, targetsOf, upwards } from "./stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
-/** @import { Matrix4 as Matrix } from "three" */
-/** @import { Numbers, Value } from "./stage.js" */
-/** @import { Composer } from "./three_private.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Matrix4 as Matrix } from "three" @import { Numbers, Value } from "./stage.js" */
+/** @import { Composer } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 
 /** The points of a mesh; `frame` places them in the mesh's parent, and is null for the mesh's own frame. @typedef {{
  * positions: Numbers, frame: Matrix | null }} Posed */

@@ -1,8 +1,7 @@
 // What a stage of USD says of its prims: values at its first moment, inherited bindings and primvars, which prims it shows.
 // A prim is known by its path in a composer.
 
-/** @import { Composer, MethodsOf } from "./three_private.js" */
-/** @import { Warn } from "../voxrt/warnings.js" */
+/** @import { Composer, MethodsOf } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 
 /** @typedef {number[] | Float32Array | Float64Array | Int32Array} Numbers */
 /** @typedef {string | number | boolean | string[] | Numbers} Value of an attribute */

@@ -8,8 +8,7 @@ import { ShapeUtils, Vector2 } from "../three/three.core.js";
 const FARTHEST = 1e70;
 const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
 
-/** @import { Numbers, Primvar } from "./stage.js" */
-/** @import { Composer } from "./three_private.js" */
+/** @import { Numbers, Primvar } from "./stage.js" @import { Composer } from "./three_private.js" */
 /** @import { Warn } from "../voxrt/warnings.js" */
 
 /** Corners count those of all faces. `positions`: three numbers per vertex; `triangles`: three vertices per

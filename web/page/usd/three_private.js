@@ -5,8 +5,7 @@ import { USDAParser } from "../three/addons/loaders/usd/USDAParser.js";
 import { USDComposer } from "../three/addons/loaders/usd/USDComposer.js";
 import { USDCParser } from "../three/addons/loaders/usd/USDCParser.js";
 
-/** @import { Group, Object3D } from "three" */
-/** @import { Attributes, Fields, Specs, Value } from "./stage.js" */
+/** @import { Group, Object3D } from "three" @import { Attributes, Fields, Specs, Value } from "./stage.js" */
 
 /** The REVISION of three.js with which the members were checked. */
 export const CHECKED_RELEASE = "187";
