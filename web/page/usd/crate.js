@@ -8,18 +8,17 @@ const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 
 /** @import { CrateParser, MethodsOf } from "./three_private.js" */
 
-/** @typedef {(parser: CrateParser) => number} Read a number */
-/** @typedef {{ new (length: number): { [index: number]: number } }} Kind of array */
+/** @typedef {(parser: CrateParser) => any} Read a number or a truth value */
+/** @typedef {new (length: number) => { [index: number]: number }} Kind of array */
 
 /** @type {Read} */ const half = (parser) => parser._readHalf();
 /** @type {Read} */ const double = ({ reader }) => reader.readFloat64();
 /** @type {Read} */ const integer = ({ reader }) => reader.readInt32();
 /** @type {Read} */ const byte = ({ reader }) => reader.readUint8();
 
-/** @type {Map<number, [number, number, Read, Kind]>} numbers per value, bytes per number, how to read one, the array
- * for them */
-const TYPES = new Map([
-  [BOOL, [1, 1, ({ reader }) => Number(reader.readUint8() !== 0), Array]],
+/** Numbers per value, bytes per number, how to read one, the array for them. @type {[number, [number, number, Read, Kind]][]} */
+const KNOWN = [
+  [BOOL, [1, 1, ({ reader }) => reader.readUint8() !== 0, Array]],
   [UCHAR, [1, 1, byte, Uint8Array]],
   [INT64, [1, 8, ({ reader }) => reader.readInt64(), Float64Array]],
   [UINT64, [1, 8, ({ reader }) => reader.readUint64(), Float64Array]],
@@ -35,21 +34,15 @@ const TYPES = new Map([
   [VEC_4D, [4, 8, double, Float64Array]],
   [VEC_4H, [4, 2, half, Float32Array]],
   [VEC_4I, [4, 4, integer, Int32Array]],
-]);
+];
+const TYPES = new Map(KNOWN);
 
 /** @type {MethodsOf<CrateParser>} */ export const crateMethods = (kept) => ({
   // Whole numbers that fit are bytes in the place of the value's address.
   _readInlinedValue(rep) {
     const [numbers, bytes] = TYPES.get(rep.typeEnum) ?? [0, 0];
-    if (
-      numbers < 2 ||
-      numbers === 9 ||
-      bytes < 2 ||
-      rep.typeEnum === VEC_2H ||
-      rep.typeEnum === QUATD ||
-      rep.typeEnum === QUATH
-    )
-      return kept._readInlinedValue.call(this, rep);
+    const isOther = [MATRIX_3D, VEC_2H, QUATD, QUATH].includes(rep.typeEnum);
+    if (numbers < 2 || bytes < 2 || isOther) return kept._readInlinedValue.call(this, rep);
     return Array.from({ length: numbers }, (_, i) => (rep.lo << (24 - 8 * i)) >> 24);
   },
   _readScalarValue(type) {

@@ -202,11 +202,7 @@ function lookOf({ entry, setUv, setColour }, gathered) {
  * number. @param {ThreeMesh} mesh */
 function pathOf(mesh) {
   const parts = [];
-  /** @type {Object3D | null | undefined} */ let object = mesh;
-  while (object?.parent) {
-    const { parent } = /** @type {Object3D} */ (object);
-    if (object.name && !parent.userData.copies) parts.push(object.name);
-    object = object.userData.copies ? parent.parent : parent;
-  }
+  for (let at = /** @type {any} */ (mesh); at?.parent; at = at.userData.copies ? at.parent.parent : at.parent)
+    if (at.name && !at.parent.userData.copies) parts.push(at.name);
   return `/${parts.reverse().join("/")}`;
 }

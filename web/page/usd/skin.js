@@ -120,10 +120,9 @@ function animated(composer, animation) {
 
 /** @param {Composer} composer @param {Value | null} values @param {number} count */
 function matrices(composer, values, count) {
-  const flat = values && composer._flattenMatrixArray(Array.from(/** @type {Numbers} */ (values)), count);
-  return flat?.length === 16 * count
-    ? Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i))
-    : null;
+  const flat = values && composer._flattenMatrixArray(Array.from(values), count);
+  if (flat?.length !== 16 * count) return null;
+  return Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i));
 }
 
 /** Move points by a matrix for each influence. @param {Float32Array} points @param {Matrix[]} moves @param

@@ -4,8 +4,9 @@
 /** @import { Composer, MethodsOf } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 
 /** @typedef {number[] | Float32Array | Float64Array | Int32Array} Numbers */
-/** @typedef {string | number | boolean | string[] | Numbers} Value of an attribute */
-/** @typedef {Record<string, Value | undefined>} Attributes by name */
+/** @typedef {any} Value of an attribute: whatever a file holds */
+/** @typedef {Record<string, Value>} Attributes by name */
+/** @typedef {(composer: Composer, prim: string, name: string) => Value} Ask */
 /** @typedef {string | string[]} List of paths or references; text has all of them as one */
 
 /** The fields of a spec that are used. @typedef {{ typeName?: string, specifier?: number, active?: boolean,
@@ -31,19 +32,17 @@ export function* upwards(path) {
   for (let at = path; at.length > 1; at = at.slice(0, Math.max(at.lastIndexOf("/"), 0))) yield at;
 }
 
-/** @param {Composer} composer @param {string} prim @param {string} name */
+/** @type {(composer: Composer, prim: string, name: string) => Fields | null} */
 export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.${name}`]?.fields ?? null;
 
-/** @param {Composer} composer @param {string} prim @param {string} name */
+/** @type {Ask} */
 export const attributeOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
-/** An attribute that has numbers; null for none. @param {Composer} composer @param {string} prim @param {string}
- * name */
-export const numbersOf = (composer, prim, name) => /** @type {Numbers | null} */ (attributeOf(composer, prim, name));
+/** An attribute that has numbers; null for none. @type {(composer: Composer, prim: string, name: string) => Numbers | null} */
+export const numbersOf = attributeOf;
 
-/** An attribute that has names; empty for none. @param {Composer} composer @param {string} prim @param {string} name */
-export const namesOf = (composer, prim, name) =>
-  /** @type {string[]} */ (Array.from(/** @type {string[]} */ (attributeOf(composer, prim, name) ?? [])));
+/** An attribute that has names; empty for none. @type {(composer: Composer, prim: string, name: string) => string[]} */
+export const namesOf = (composer, prim, name) => Array.from(attributeOf(composer, prim, name) ?? []);
 
 /** What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]". @param {List | undefined}
  * paths @param {string} prim */
@@ -52,9 +51,9 @@ export function targetsOf(paths, prim) {
     .flat()
     .join()
     .replace(/[[\]<>\s]/g, "")
-    .split(",")
-    .filter((name) => name && name !== "None");
-  return names.map((name) => (name.startsWith("/") ? name : `${prim}/${name}`));
+    .split(",");
+  const known = names.filter((name) => name && name !== "None");
+  return known.map((name) => (name.startsWith("/") ? name : `${prim}/${name}`));
 }
 
 /** @param {Found} found @returns {MethodsOf<Composer>} */ export const stageMethods = (found) => (kept) => ({
@@ -63,13 +62,10 @@ export function targetsOf(paths, prim) {
     for (const [parent, children] of this.childrenByPath) {
       const order = this.specsByPath[parent]?.fields.primChildren;
       const places = new Map(order ? Array.from(order, (name, i) => [name, i]) : []);
-      const sorted = places.size
-        ? children.toSorted((a, b) => (places.get(a.name) ?? Infinity) - (places.get(b.name) ?? Infinity) || 0)
-        : children;
-      this.childrenByPath.set(
-        parent,
-        sorted.filter(({ path }) => isShown(this, path, found)),
-      );
+      const place = (/** @type {{ name: string }} */ { name }) => places.get(name) ?? Infinity;
+      const sorted = places.size ? children.toSorted((a, b) => place(a) - place(b) || 0) : children;
+      const shown = sorted.filter(({ path }) => isShown(this, path, found));
+      this.childrenByPath.set(parent, shown);
     }
   },
   _resolveAttributeValue(path) {
@@ -88,16 +84,16 @@ export function targetsOf(paths, prim) {
 
 const HELD = /^(u?int|bool|token|string|asset|uchar)/;
 
-/** @param {Numbers} times @param {Value[]} values @param {number | null} moment @param {string} type @returns {Value
- * | undefined} */
+/** @type {(times: Numbers, values: Value[], moment: number | null, type: string) => Value} */
 function sampleOf(times, values, moment, type) {
-  const after = moment === null ? 0 : times.findIndex((time) => time >= moment);
+  if (moment === null) return values[0];
+  const after = times.findIndex((time) => time >= moment);
   if (after < 0) return values.at(-1);
   if (after === 0 || times[after] === moment) return values[after];
   const [low, high] = [values[after - 1], values[after]];
   if (HELD.test(type) || low?.length !== high?.length || typeof low === "string") return low;
   const part = (moment - times[after - 1]) / (times[after] - times[after - 1]);
-  const mixed = (a, b) => (1 - part) * a + part * b;
+  const mixed = (/** @type {number} */ a, /** @type {number} */ b) => (1 - part) * a + part * b;
   return typeof low === "number" ? mixed(low, high) : Array.from(low, (one, i) => mixed(one, high[i]));
 }
 
@@ -109,13 +105,10 @@ const OVER = 1;
 export function isShown(composer, path, found, isPrototype = false) {
   const fields = composer.specsByPath[path]?.fields;
   if (!fields) return false;
-  const { typeName, specifier, active } = fields;
+  const { typeName, specifier = 0, active } = fields;
   const above = composer.specsByPath[path.slice(0, path.lastIndexOf("/"))]?.fields ?? {};
-  if (
-    active === false ||
-    (specifier >= OVER && !isPrototype && above.typeName !== "PointInstancer" && !(above.specifier >= OVER))
-  )
-    return false;
+  const isBelow = above.typeName === "PointInstancer" || (above.specifier ?? 0) >= OVER;
+  if (active === false || (specifier >= OVER && !isPrototype && !isBelow)) return false;
   if (!typeName) return true;
   if (attributeOf(composer, path, "visibility") === "invisible") {
     found.warn("invisible", "invisible prims and their descendants were left out");
@@ -137,7 +130,7 @@ export function boundMaterial(composer, prim) {
     for (const above of upwards(prim)) {
       const fields = fieldsOf(composer, above, name);
       const [target] = targetsOf(fields?.targetPaths, above);
-      if (target && (winner === null || fields.bindMaterialAs === "strongerThanDescendants")) winner = target;
+      if (target && (winner === null || fields?.bindMaterialAs === "strongerThanDescendants")) winner = target;
     }
     if (winner !== null && isMaterial(composer, winner)) return winner;
   }
@@ -162,9 +155,9 @@ export function primvarOf(composer, prim, name) {
 export function arrayOf(composer, prim, name, usual) {
   const given = attributeOf(composer, prim, name);
   if (given === null || typeof given === "string") return null;
-  const { typeName = "", interpolation = usual } = fieldsOf(composer, prim, name);
+  const { typeName = "", interpolation = usual } = fieldsOf(composer, prim, name) ?? {};
   const [, size = 1] = Array.from(/(?<!\d)([234])[fdhi]?(?:\[\])?$/.exec(typeName) ?? [], Number);
-  const all = ArrayBuffer.isView(given) ? given : Float64Array.from([given].flat());
+  const all = ArrayBuffer.isView(given) ? /** @type {Float32Array} */ (given) : Float64Array.from([given].flat());
   const indices = attributeOf(composer, prim, `${name}:indices`);
   if (!indices?.length) return all.length >= size ? { values: all, size, interpolation } : null;
   const values = new Float64Array(size * indices.length);
@@ -175,10 +168,9 @@ export function arrayOf(composer, prim, name, usual) {
 
 const SINGLE = /^(float|quatf)|\df(\[\])?$/;
 
-// Files of text have more digits than the values that they stand for.
-/** @param {Value | undefined} value @param {string} typeName @returns {Value | undefined} */
-function singles(value, typeName) {
-  if (!SINGLE.test(typeName)) return value;
+/** Files of text have more digits than the values that they stand for. @type {(value: Value, type: string) => Value} */
+function singles(value, type) {
+  if (!SINGLE.test(type)) return value;
   if (typeof value === "number") return Math.fround(value);
   return Array.isArray(value) ? Float32Array.from(value) : value;
 }

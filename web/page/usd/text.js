@@ -38,13 +38,11 @@ const noteSymbols = (data) => Object.getOwnPropertySymbols(data).filter((symbol)
       if (!isData(data)) return;
       readLists(data, fields);
       kept._extractPrimData.call(this, plainData(data), path, fields, specs, types);
-      const sets = Object.keys(data).flatMap(
-        (key) => /** @type {const} */ (SET.exec(key) ? [[key, setName(key)]] : []),
-      );
-      if (sets.length) fields.variantSetChildren = sets.map(([, set]) => set);
-      for (const [key, set] of sets)
+      const keys = Object.keys(data).filter((key) => SET.test(key));
+      if (keys.length) fields.variantSetChildren = keys.map(setName);
+      for (const key of keys)
         for (const [name, variant] of Object.entries(data[key]))
-          addVariant(this, variant, `${path}/{${set}=${name.replace(/"/g, "")}}`, specs, types);
+          addVariant(this, variant, `${path}/{${setName(key)}=${name.replace(/"/g, "")}}`, specs, types);
       readNotes(data, path, specs);
     },
   };
