@@ -71,8 +71,8 @@ export class Advanced {
     const view = this.app.view();
     if (!view || !$("advanced").open) return;
     const { look } = axes(view);
-    this.position.forEach((slider, i) => slider.set(Math.round(view.eye[i] * 16) / 16));
-    this.direction.forEach((slider, i) => slider.set(look[i].toFixed(3)));
+    for (const [i, slider] of this.position.entries()) slider.set(Math.round(view.eye[i] * 16) / 16);
+    for (const [i, slider] of this.direction.entries()) slider.set(look[i].toFixed(3));
     this.magnitude.set(Math.round(focal(view.fov, this.app.size())));
     this.fov.set(view.fov.toFixed(1));
     pressed($("flip-x"), view.flipX);

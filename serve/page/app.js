@@ -50,38 +50,26 @@ export class App {
   }
 
   /** The state of the server, which has told it when it can change. */
-  state() {
-    return /** @type {State} */ (this.connection.state);
-  }
+  state = () => /** @type {State} */ (this.connection.state);
 
-  device() {
-    return this.frames.device;
-  }
+  device = () => this.frames.device;
 
   hasControl() {
     const { hello, state } = this.connection;
     return hello !== null && state?.controller === hello.viewer;
   }
 
-  view() {
-    return this.viewpoint.pose;
-  }
+  view = () => this.viewpoint.pose;
 
-  size() {
-    return this.frames.size;
-  }
+  size = () => this.frames.size;
 
-  side() {
-    return 2 ** this.state().scene.depth;
-  }
+  side = () => 2 ** this.state().scene.depth;
 
   /** @returns {Box} what is solid */ bounds() {
     return this.state().scene.bounds ?? [[0, 0, 0], Array(3).fill(this.side())];
   }
 
-  limit() {
-    return Math.min(8 * this.side() + 512, this.device().position_limit / 16 - 1);
-  }
+  limit = () => Math.min(8 * this.side() + 512, this.device().position_limit / 16 - 1);
 
   /** @param {Move} how */ change(how) {
     if (this.hasControl()) this.viewpoint.change(how);
@@ -98,9 +86,7 @@ export class App {
     this.frames.change(fields);
   }
 
-  waits() {
-    return this.connection.sent.size > 0 || this.frames.changed;
-  }
+  waits = () => this.connection.sent.size > 0 || this.frames.changed;
 
   /** @param {Size | null} size null for that of the stage */ fixSize(size) {
     this.frames.resolution.fixed = size;
@@ -111,9 +97,7 @@ export class App {
   }
 
   /** Whether the camera can move. */
-  isReady() {
-    return this.hasControl() && this.viewpoint.pose !== null && this.#scene !== 0;
-  }
+  isReady = () => this.hasControl() && this.viewpoint.pose !== null && this.#scene !== 0;
 
   /** The first view of the scene. */
   firstView() {

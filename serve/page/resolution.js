@@ -22,9 +22,7 @@ export class Resolution {
     this.cost = this.cost === null ? cost : Math.sqrt(this.cost * cost);
   }
 
-  /** @param {Size} size */ seconds([width, height]) {
-    return this.cost === null ? 0 : this.cost * width * height;
-  }
+  /** @param {Size} size */ seconds = ([width, height]) => (this.cost === null ? 0 : this.cost * width * height);
 
   /** The frame of the stage at rest; with 2 samples a frame has twice the columns and rows. @param {HTMLElement}
    * stage @param {Device} device @returns {Wanted} */

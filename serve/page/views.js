@@ -21,7 +21,7 @@ const SAVED = "voxrt.views";
 export class Views {
   /** @param {Page} app */ constructor(app) {
     this.app = app;
-    PRESETS.forEach(([name], i) => makeButton($("presets"), name, () => this.choose(i), `Key ${i + 1}`));
+    for (const [i, [name]] of PRESETS.entries()) makeButton($("presets"), name, () => this.choose(i), `Key ${i + 1}`);
     makeToolbar($("presets"));
     $("save-view").onsubmit = (event) => {
       event.preventDefault();
@@ -31,9 +31,7 @@ export class Views {
   }
 
   /** The keys of the presets. @returns {Commands} */
-  commands() {
-    return Object.fromEntries(PRESETS.map((_, i) => [`Digit${i + 1}`, () => this.choose(i)]));
-  }
+  commands = () => Object.fromEntries(PRESETS.map((_, i) => [`Digit${i + 1}`, () => this.choose(i)]));
 
   /** @param {number} i */ choose(i) {
     this.app.glide((view) => {

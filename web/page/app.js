@@ -62,55 +62,33 @@ export class App {
   }
 
   /** The memory that is shown, once there is one. */
-  memory() {
-    return this.#memory;
-  }
+  memory = () => this.#memory;
 
   #shown() {
     if (!this.#memory) throw new Error("no memory is shown");
     return this.#memory;
   }
 
-  view() {
-    return this.viewpoint.pose;
-  }
+  view = () => this.viewpoint.pose;
 
-  device() {
-    return this.painter.hello.device;
-  }
+  device = () => this.painter.hello.device;
 
-  state() {
-    return { view: this.#look, scene: { depth: this.#memory?.depth ?? 1 } };
-  }
+  state = () => ({ view: this.#look, scene: { depth: this.#memory?.depth ?? 1 } });
 
-  size() {
-    return this.frames.size;
-  }
+  size = () => this.frames.size;
 
-  #shownSize() {
-    return [$("picture").width, $("picture").height];
-  }
+  #shownSize = () => [$("picture").width, $("picture").height];
 
-  side() {
-    return 2 ** this.#shown().depth;
-  }
+  side = () => 2 ** this.#shown().depth;
 
-  /** @returns {Box} */ bounds() {
-    return this.#shown().bounds;
-  }
+  /** @returns {Box} */ bounds = () => this.#shown().bounds;
 
-  limit() {
-    return 8 * this.side() + 512;
-  }
+  limit = () => 8 * this.side() + 512;
 
-  #shading() {
-    return shadingOf(this.#shown(), this.#look);
-  }
+  #shading = () => shadingOf(this.#shown(), this.#look);
 
   /** How hits are coloured, without light and mirrors. */
-  plainShading() {
-    return { ...this.#shading(), mirrors: [], light: null, bounces: 0 };
-  }
+  plainShading = () => ({ ...this.#shading(), mirrors: [], light: null, bounces: 0 });
 
   /** @param {Move} how */ change(how) {
     this.inspector.clear();

@@ -41,9 +41,7 @@ export class Inspector {
     $("octants").replaceChildren();
   }
 
-  /** @param {number} id */ #materialName(id) {
-    return this.app.memory()?.materials[id]?.name ?? `material ${id}`;
-  }
+  /** @param {number} id */ #materialName = (id) => this.app.memory()?.materials[id]?.name ?? `material ${id}`;
 
   /** @param {Way} way */ show(way) {
     this.#way = way;

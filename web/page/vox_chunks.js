@@ -23,9 +23,7 @@ class Reader {
     this.place = `chunk ${kind} at byte ${at}`;
     this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   }
-  /** @param {string} problem */ fault(problem) {
-    return new Error(`${this.name}: ${this.place}: ${problem}; ${DAMAGED}`);
-  }
+  /** @param {string} problem */ fault = (problem) => new Error(`${this.name}: ${this.place}: ${problem}; ${DAMAGED}`);
   /** @param {number} count */ take(count) {
     if (count < 0 || count > this.end - this.at)
       throw this.fault(`${count} bytes should follow, and ${this.end - this.at} do`);
@@ -42,16 +40,10 @@ class Reader {
       throw this.fault(`${count} entries should follow, and the chunk is too short for them`);
     return count;
   }
-  text() {
-    return new TextDecoder().decode(this.take(this.count(1)));
-  }
-  dictionary() {
-    return Object.fromEntries(Array.from({ length: this.count(8) }, () => [this.text(), this.text()]));
-  }
+  text = () => new TextDecoder().decode(this.take(this.count(1)));
+  dictionary = () => Object.fromEntries(Array.from({ length: this.count(8) }, () => [this.text(), this.text()]));
   /** @template T @param {number} size bytes per entry, or more @param {() => T} read */
-  list(size, read) {
-    return Array.from({ length: this.count(size) }, read);
-  }
+  list = (size, read) => Array.from({ length: this.count(size) }, read);
 }
 
 /** @param {string} name @param {Uint8Array} bytes */ export function readChunks(name, bytes) {

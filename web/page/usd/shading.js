@@ -67,7 +67,7 @@ export function readShading(composer, material, warn) {
     ...plain,
     colour: colour?.value ?? (bare && isPreview ? FALLBACK_DIFFUSE : null),
     opacity: opacity?.value ? opacity.value[0] : 1,
-    cutoff: (threshold?.value && threshold.value[0]) || BLEND_CUTOFF,
+    cutoff: threshold?.value?.[0] || BLEND_CUTOFF,
     image: colour?.image ?? null,
     alpha: opacity?.image ?? null,
     primvar: colour?.primvar ?? null,
