@@ -7,14 +7,7 @@ import { clamp } from "./vectors.js";
 /** @import { App } from "./app.js" @import { Hello, State } from "./protocol.js" */
 /** @import { Limits, OnNumber } from "./elements.js" @import { Vector } from "./vectors.js" */
 
-const SIZES = [
-  [320, 240],
-  [512, 512],
-  [640, 480],
-  [800, 600],
-  [1280, 720],
-  [1920, 1080],
-];
+const SIZES = ["320x240", "512x512", "640x480", "800x600", "1280x720", "1920x1080"];
 
 export class Advanced {
   /** @param {App} app */ constructor(app) {
@@ -50,13 +43,11 @@ export class Advanced {
   }
 
   /** @param {Hello} hello */ hello({ device }) {
-    const sizes = SIZES.filter(
-      (size) => size.every((part, i) => part <= device.size[i]) && size[0] % device.width_step === 0,
-    );
-    $("size").replaceChildren(
-      new Option("as the page", "stage"),
-      ...sizes.map((size) => new Option(size.join(" × "), size.join("x"))),
-    );
+    const sizes = SIZES.map((text) => text.split("x").map(Number));
+    const fits = (/** @type {number[]} */ [width, height]) =>
+      width <= device.size[0] && height <= device.size[1] && width % device.width_step === 0;
+    const options = sizes.filter(fits).map((size) => new Option(size.join(" × "), size.join("x")));
+    $("size").replaceChildren(new Option("as the page", "stage"), ...options);
     this.app.fixSize(null);
   }
 
@@ -87,15 +78,11 @@ export class Advanced {
         connection.request("registers"),
         connection.request("counters"),
       ]);
-      const rows = [
-        ...Object.entries(registers),
-        ...Object.entries(counters).map(([name, value]) => /** @type {const} */ ([`server ${name}`, value])),
-      ];
-      part($("registers"), "tbody").replaceChildren(
-        ...rows.map(([name, value]) =>
-          element("tr", {}, element("td", {}, name), element("td", {}, value.toLocaleString())),
-        ),
+      const named = Object.entries(counters).map(([name, value]) => /** @type {const} */ ([`server ${name}`, value]));
+      const rows = [...Object.entries(registers), ...named].map(([name, value]) =>
+        element("tr", {}, element("td", {}, name), element("td", {}, value.toLocaleString())),
       );
+      part($("registers"), "tbody").replaceChildren(...rows);
     } catch {
       // The connection was lost, and the page shows it.
     }

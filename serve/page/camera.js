@@ -42,11 +42,8 @@ export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead
   const halves = size.map((side) => Math.floor(side / 2));
   const ahead = scale(look, focal(view.fov, size));
   const rounding = 1 + halves[0] + halves[1];
-  const reach = Math.max(
-    ...[0, 1, 2].map(
-      (axis) => Math.abs(ahead[axis]) + Math.abs(right[axis]) * halves[0] + Math.abs(up[axis]) * halves[1],
-    ),
-  );
+  const reaches = ahead.map((part, i) => Math.abs(part) + Math.abs(right[i]) * halves[0] + Math.abs(up[i]) * halves[1]);
+  const reach = Math.max(...reaches);
   const largest = Math.max(...[...ahead, ...right, ...up].map(Math.abs));
   const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / reach);
   /** @param {Vector} triple */

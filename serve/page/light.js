@@ -24,23 +24,15 @@ const DEGREE = Math.PI / 180;
 export class Light {
   /** @param {LitPage} app */ constructor(app) {
     this.app = app;
-    this.direction = makeSlider($("light"), "Direction", { min: -180, max: 180, step: 1 }, (value) =>
-      this.move({ direction: value }),
-    );
-    this.height = makeSlider($("light"), "Height", { min: 0, max: 90, step: 1 }, (value) =>
-      this.move({ height: value }),
-    );
-    this.ambient = makeSlider($("light"), "Ambient", { min: 0, max: 255, step: 1 }, (value) =>
-      app.set({ ambient: clamp(Math.round(value), 0, 255) }),
-    );
+    /** @param {string} label @param {number} min @param {number} max @param {(value: number) => void} onInput */
+    const slider = (label, min, max, onInput) => makeSlider($("light"), label, { min, max, step: 1 }, onInput);
+    this.direction = slider("Direction", -180, 180, (value) => this.move({ direction: value }));
+    this.height = slider("Height", 0, 90, (value) => this.move({ height: value }));
+    this.ambient = slider("Ambient", 0, 255, (value) => app.set({ ambient: clamp(Math.round(value), 0, 255) }));
+    /** @param {number} i @param {number} value */
+    const moved = (i, value) => app.state().view.light.map((old, j) => (j === i ? Math.round(value * 16) : old));
     this.place = [0, 1, 2].map((i) =>
-      makeSlider(
-        $("light-place"),
-        "XYZ"[i],
-        { step: 0.0625 },
-        (value) => app.set({ light: app.state().view.light.map((old, j) => (j === i ? Math.round(value * 16) : old)) }),
-        true,
-      ),
+      makeSlider($("light-place"), "XYZ"[i], { step: 0.0625 }, (value) => app.set({ light: moved(i, value) }), true),
     );
     $("background").oninput = () =>
       app.set({ background: [1, 3, 5].map((at) => Number.parseInt($("background").value.slice(at, at + 2), 16)) });
@@ -67,11 +59,8 @@ export class Light {
     const { direction, height } = { ...this.angles(), ...changed };
     const { centre, far } = this.middle();
     const level = Math.cos(height * DEGREE);
-    const towards = [
-      level * Math.sin(direction * DEGREE),
-      Math.sin(height * DEGREE),
-      level * Math.cos(direction * DEGREE),
-    ];
+    const [sine, cosine] = [Math.sin(direction * DEGREE), Math.cos(direction * DEGREE)];
+    const towards = [level * sine, Math.sin(height * DEGREE), level * cosine];
     const limit = this.app.device().position_limit - 1;
     this.app.set({ light: add(centre, towards, far).map((place) => clamp(Math.round(place * 16), -limit, limit)) });
   }
@@ -81,15 +70,11 @@ export class Light {
     $("features").replaceChildren();
     for (const [name, [label, title]] of Object.entries(FEATURES)) {
       if (!device.features.includes(name)) continue;
-      const toggle = makeButton(
-        $("features"),
-        label,
-        () => {
-          const on = this.app.state().view.features;
-          this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name].sort() });
-        },
-        title,
-      );
+      const change = () => {
+        const on = this.app.state().view.features;
+        this.app.set({ features: on.includes(name) ? on.filter((other) => other !== name) : [...on, name].sort() });
+      };
+      const toggle = makeButton($("features"), label, change, title);
       toggle.dataset.feature = name;
       pressed(toggle, false);
     }

@@ -19,11 +19,9 @@ export function orbit(view, right, down) {
 }
 
 /** Turn around the eye. @param {Pose} view @param {number} right @param {number} up @returns {Pose} */
-export const look = (view, right, up) => ({
-  ...view,
-  yaw: view.yaw + right,
-  pitch: clamp(view.pitch + up, -UPRIGHT, UPRIGHT),
-});
+export function look(view, right, up) {
+  return { ...view, yaw: view.yaw + right, pitch: clamp(view.pitch + up, -UPRIGHT, UPRIGHT) };
+}
 
 /** Move eye and target in the plane of the picture. `right` and `down` are how far the scene moves, in parts of the
  * height across which the field of view counts. @param {Pose} view @param {number} right @param {number} down

@@ -48,10 +48,8 @@ export class Picture {
     const box = this.canvas.getBoundingClientRect();
     const { width, height } = this.canvas;
     const part = Math.min(box.width / width, box.height / height);
-    return [
-      Math.floor((x - box.left - box.width / 2) / part + width / 2),
-      Math.floor((y - box.top - box.height / 2) / part + height / 2),
-    ];
+    const [right, down] = [x - box.left - box.width / 2, y - box.top - box.height / 2];
+    return [Math.floor(right / part + width / 2), Math.floor(down / part + height / 2)];
   }
 
   /** @param {string} name */ save(name) {

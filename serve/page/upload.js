@@ -27,10 +27,8 @@ export async function uploadFiles(connection, files, report, signal) {
   if (!connection.hello) throw new Error("there is no connection to the server");
   const { upload: limit, chunk: step } = connection.hello.limits;
   if (total === 0) throw new Error("the file is empty");
-  if (total > limit)
-    throw new Error(
-      `${(total / 2 ** 20).toFixed(0)} MB are more than the ${limit / 2 ** 20} MB that the server accepts`,
-    );
+  const [size, most] = [(total / 2 ** 20).toFixed(0), limit / 2 ** 20];
+  if (total > limit) throw new Error(`${size} MB are more than the ${most} MB that the server accepts`);
   const data = new Uint8Array(total);
   let end = 0;
   for (const part of parts) {

@@ -115,12 +115,10 @@ class Materials {
   }
 
   list() {
-    return this.#ordered().map(([, { name, colour, mirror = false, authored = true }]) => ({
-      name,
-      colour,
-      mirror,
-      authored,
-    }));
+    return this.#ordered().map(([, one]) => {
+      const { name, colour, mirror = false, authored = true } = one;
+      return { name, colour, mirror, authored };
+    });
   }
 }
 

@@ -54,10 +54,9 @@ export class App {
       this.picture.showBands(bands, samples);
       this.figures.add(bands, samples);
       const shownCamera = () => toRegisters(/** @type {Pose} */ (this.view()), this.#shownSize());
-      // Scripts may read the picture.
-      Object.assign(window, {
-        voxrt: { newest: bands, colours: () => coloursOf(bands), view: () => this.view(), shownCamera },
-      });
+      const colours = () => coloursOf(bands);
+      const readable = { newest: bands, colours, view: () => this.view(), shownCamera };
+      Object.assign(window, { voxrt: readable }); // scripts may read the picture
     });
   }
 
@@ -150,14 +149,8 @@ export class App {
   /** @param {Memory} built @param {boolean} first */ async #show(built, first) {
     const old = this.#memory;
     const side = 2 ** built.depth;
-    /** @type {Shown} */ const memory = {
-      ...built,
-      voxels: [],
-      bounds: [
-        [0, 0, 0],
-        [side, side, side],
-      ],
-    };
+    /** @type {Box} */ const world = [Array(3).fill(0), Array(3).fill(side)];
+    /** @type {Shown} */ const memory = { ...built, voxels: [], bounds: world };
     this.#look = nextLook(this.#look, memory, old, first);
     this.#memory = memory;
     this.inspector.clear();
@@ -180,15 +173,8 @@ export class App {
   firstView() {
     const { view, bounds } = this.#shown();
     if (view?.look.some(Boolean)) return fromRegisters(view, MADE_FOR, scale(add(...bounds), 0.5), this.size());
-    const origin = {
-      eye: [0, 0, 0],
-      yaw: 0,
-      pitch: 0,
-      fov: FIELD_OF_VIEW.usual,
-      distance: 1,
-      flipX: false,
-      flipY: false,
-    };
+    const plain = { fov: FIELD_OF_VIEW.usual, distance: 1, flipX: false, flipY: false };
+    const origin = { eye: [0, 0, 0], yaw: 0, pitch: 0, ...plain };
     return frame(lookAlong(origin, CORNER), bounds, this.size(), this.limit());
   }
 
@@ -216,14 +202,8 @@ export class App {
   async focusAt(x, y) {
     if (!this.view()) return;
     const { cell } = await this.#follow(this.picture.pixelAt(x, y));
-    if (cell)
-      this.glide((now) =>
-        focus(
-          now,
-          cell.map((value) => value + 0.5),
-          this.limit(),
-        ),
-      );
+    const middle = cell?.map((value) => value + 0.5);
+    if (middle) this.glide((now) => focus(now, middle, this.limit()));
   }
 }
 

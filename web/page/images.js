@@ -18,10 +18,8 @@ export async function decodeImage(bytes, place) {
 
 /** @param {Uint8Array<ArrayBuffer>} bytes */ async function byBrowser(bytes) {
   if (typeof createImageBitmap === "undefined") throw new Error("only browsers decode this kind");
-  const bitmap = await createImageBitmap(new Blob([bareJpeg(bytes)]), {
-    colorSpaceConversion: "none",
-    premultiplyAlpha: "none",
-  });
+  const plain = /** @type {const} */ ({ colorSpaceConversion: "none", premultiplyAlpha: "none" });
+  const bitmap = await createImageBitmap(new Blob([bareJpeg(bytes)]), plain);
   const { width, height } = bitmap;
   if (width * height > MOST_PIXELS) throw new Error(`it has more than ${MOST_PIXELS.toLocaleString("en")} pixels`);
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });

@@ -8,20 +8,7 @@ import { hex, isLeaf, material, octant } from "./voxrt/words.js";
 /** @import { Vector } from "./vectors.js" @import { Followed, Reading } from "./voxrt/voxrt.js" */
 
 const AXES = "xyz";
-const EDGES = [
-  [0, 1],
-  [2, 3],
-  [4, 5],
-  [6, 7],
-  [0, 2],
-  [1, 3],
-  [4, 6],
-  [5, 7],
-  [0, 4],
-  [1, 5],
-  [2, 6],
-  [3, 7],
-];
+const EDGES = ["01", "23", "45", "67", "02", "13", "46", "57", "04", "15", "26", "37"]; // corners
 const SVG = "http://www.w3.org/2000/svg";
 
 /** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of the ray of a pixel, at column and
@@ -105,15 +92,13 @@ function edgesOf({ corner, level }, { position, look, right, up }, [width, heigh
   const side = 2 ** level;
   const eye = position.map((value) => value / 16);
   const places = Array.from({ length: 8 }, (_, i) => {
-    const away = subtract(
-      corner.map((value, axis) => value + ((i >> axis) & 1) * side),
-      eye,
-    );
+    const place = corner.map((value, axis) => value + ((i >> axis) & 1) * side);
+    const away = subtract(place, eye);
     const far = dot(away, look) / dot(look, look);
     /** @param {Vector} axis */ const at = (axis) => dot(away, axis) / dot(axis, axis) / far;
     return far > 1e-9 ? [Math.floor(width / 2) + at(right) + 0.5, Math.floor(height / 2) - at(up) + 0.5] : null;
   });
   const texts = places.map((place) => place?.map((value) => value.toFixed(1)));
   if (texts.includes(undefined)) return null;
-  return EDGES.map(([a, b]) => `M${texts[a]}L${texts[b]}`).join("");
+  return EDGES.map(([a, b]) => `M${texts[Number(a)]}L${texts[Number(b)]}`).join("");
 }

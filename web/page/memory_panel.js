@@ -86,14 +86,8 @@ export class MemoryPanel {
   #board(board, limit, { words, fixed }) {
     const fits = words.length <= limit;
     const share = words.length / limit;
-    const meter = element("meter", {
-      min: 0,
-      max: 1,
-      high: 0.999,
-      optimum: 0,
-      value: Math.min(1, share),
-      "aria-label": `Memory of ${board} in use`,
-    });
+    const label = { "aria-label": `Memory of ${board} in use` };
+    const meter = element("meter", { min: 0, max: 1, high: 0.999, optimum: 0, value: Math.min(1, share), ...label });
     const verdict = fits ? "fits" : `${share.toFixed(1)} × too large`;
     let last = element("span", { className: fits ? "fits" : "large" }, verdict);
     if (fits && this.site.designs.includes(board)) last = this.bitstreams.button(board);

@@ -15,6 +15,8 @@ const BANDS = 3; // per worker: they cost differently
 const AHEAD = 2; // bands per worker: it renders one while the next one waits there
 const MOST = 8; // workers
 const MEMORY = 1 << 30; // bytes of words in all workers
+const LIMITS = { size: [4096, 4096], width_step: 1, position_limit: 2 ** 27 };
+const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS };
 
 /** A frame that is rendered. `since`: when it was requested; `left`: bands that are not rendered. @typedef {{
  * request: number, camera: Registers, size: Size, since: number, scene: number, left: number, began: number | null,
@@ -24,16 +26,7 @@ const MEMORY = 1 << 30; // bytes of words in all workers
 /** @typedef {{ hand: Hand<WorkerCalls>, bands: number }} Artist a worker, and the bands that it has */
 
 /** @extends {Events<{ frame: BandFrame, trouble: string }>} */ export class Painter extends Events {
-  hello = {
-    viewer: 1,
-    device: {
-      name: "this browser",
-      size: [4096, 4096],
-      width_step: 1,
-      position_limit: 2 ** 27,
-      features: ["light", "mirrors"],
-    },
-  };
+  hello = { viewer: 1, device: DEVICE };
   /** @type {Map<number, number>} when frames were requested that have not arrived, by request */ sent = new Map();
   /** @type {Artist[]} */ #artists = [];
   /** @type {Part[]} that no worker has yet */ #queue = [];

@@ -11,16 +11,9 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {Record<string, string>} Properties their types by name */
 
 const STORED = "stored_colour";
-/** @type {Record<string, number>} */ const WHOLE = {
-  char: 127,
-  int8: 127,
-  uchar: 255,
-  uint8: 255,
-  short: 32767,
-  int16: 32767,
-  ushort: 65535,
-  uint16: 65535,
-};
+const BYTES = { char: 127, int8: 127, uchar: 255, uint8: 255 };
+/** @type {Record<string, number>} */
+const WHOLE = { ...BYTES, short: 32767, int16: 32767, ushort: 65535, uint16: 65535 };
 
 /** @param {PLYLoader} loader */ export function readsColours(loader) {
   loader.setCustomPropertyNameMapping({ [STORED]: ["red", "green", "blue"] });
@@ -46,7 +39,6 @@ function elementsOf(header) {
 export async function plyLook(bytes, geometry, folder, voxrt) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16)).split("end_header")[0];
   const names = [...header.matchAll(/^comment\s+TextureFile\s+(.+?)\s*$/gm)].map(([, name]) => name);
-  const { vertex: ofVertices = {}, face: ofFaces = {} } = elementsOf(header);
   const warnings = new Warnings();
   const look =
     (await textured(names, geometry, folder, warnings)) ?? coloured(elementsOf(header), geometry, voxrt, warnings);

@@ -9,15 +9,8 @@ const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 /** @typedef {(line: Uint8Array, column: number, out: Uint8Array, at: number) => void} Write a pixel of a line */
 
 /** @type {Record<number, number>} by the type of the image */ const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
-const PASSES = [
-  [0, 0, 8, 8],
-  [4, 0, 8, 8],
-  [0, 4, 4, 8],
-  [2, 0, 4, 4],
-  [0, 2, 2, 4],
-  [1, 0, 2, 2],
-  [0, 1, 1, 2],
-]; // x, y, steps
+// biome-ignore format: x, y, steps
+const PASSES = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
 export const MOST_PIXELS = 1 << 26;
 
 /** @param {Uint8Array} bytes */ export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
@@ -116,11 +109,8 @@ function unfilter(filter, line, above, step) {
     else if (filter === 3) line[i] += (left + up) >> 1;
     else if (filter === 4) {
       const corner = i >= step ? above[i - step] : 0;
-      const [toLeft, toUp, toCorner] = [
-        Math.abs(up - corner),
-        Math.abs(left - corner),
-        Math.abs(left + up - 2 * corner),
-      ];
+      const [toLeft, toUp] = [Math.abs(up - corner), Math.abs(left - corner)];
+      const toCorner = Math.abs(left + up - 2 * corner);
       line[i] += toLeft <= toUp && toLeft <= toCorner ? left : toUp <= toCorner ? up : corner;
     }
   }

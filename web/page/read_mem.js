@@ -16,10 +16,8 @@ export function readMem(mem, beside) {
   const text = new TextDecoder().decode(bytes).replace(/\/\*[\s\S]*?\*\/|\/\/[^\n]*/g, " ");
   const parts = text.split(/\s+/).filter(Boolean);
   const broken = parts.findIndex((part) => !/^[0-9A-Fa-f_]{1,16}$/.test(part));
-  if (broken >= 0)
-    throw new Error(
-      `${name}: word ${broken} is ${JSON.stringify(parts[broken].slice(0, 20))}, which is not hexadecimal`,
-    );
+  const shown = JSON.stringify(parts[broken]?.slice(0, 20));
+  if (broken >= 0) throw new Error(`${name}: word ${broken} is ${shown}, which is not hexadecimal`);
   if (!parts.length) throw new Error(`${name}: has no words`);
   const words = Uint32Array.from(parts, (part) => Number.parseInt(part.replaceAll("_", ""), 16));
   if (!beside)

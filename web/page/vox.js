@@ -14,11 +14,7 @@ const VOXEL_LIMIT = 1 << 25;
 const INSTANCE_LIMIT = 1 << 16;
 const NESTING_LIMIT = 256;
 const DEPTH_LIMIT = 16;
-const IDENTITY = [
-  [1, 0, 0],
-  [0, 1, 0],
-  [0, 0, 1],
-];
+const IDENTITY = [0, 1, 2].map((row) => [0, 1, 2].map((column) => Number(row === column)));
 
 /** @param {string} name @param {Uint8Array} bytes @param {Voxrt} voxrt @returns {Omit<Memory, "name" | "file">} */
 export function readVox(name, bytes, voxrt) {
@@ -40,10 +36,7 @@ export function readVox(name, bytes, voxrt) {
       colours[at] = voxels[i + 3];
     }
   }
-  const [low, high] = [
-    [Infinity, Infinity, Infinity],
-    [-Infinity, -Infinity, -Infinity],
-  ];
+  const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];
   places.forEach((value, i) => {
     low[i % 3] = Math.min(low[i % 3], value);
     high[i % 3] = Math.max(high[i % 3], value);
@@ -54,20 +47,16 @@ export function readVox(name, bytes, voxrt) {
     throw new Error(`${name}: ${span} voxels from end to end do not fit depth ${DEPTH_LIMIT}; move the parts closer`);
   const used = [...new Set(colours)].sort((a, b) => a - b);
   const ids = new Map(used.map((colour, i) => [colour, i + 1]));
+  const moved = places.map((value, i) => value - low[i % 3]);
   const words = voxrt.fromPoints(
-    places.map((value, i) => value - low[i % 3]),
+    moved,
     colours.map((colour) => ids.get(colour) ?? 0),
     depth,
   );
-  const materials = [
-    { name: "empty", colour: BACKGROUND, mirror: false, authored: true },
-    ...used.map((colour) => ({
-      name: `colour ${colour}`,
-      colour: file.palette(colour),
-      mirror: false,
-      authored: true,
-    })),
-  ];
+  /** @param {string} name @param {readonly number[]} colour */
+  const plain = (name, colour) => ({ name, colour, mirror: false, authored: true });
+  const shown = used.map((colour) => plain(`colour ${colour}`, file.palette(colour)));
+  const materials = [plain("empty", BACKGROUND), ...shown];
   const kinds = used.flatMap((colour) => file.kinds.get(colour) ?? []);
   const names = [...new Set(kinds)].sort().map((kind) => kind.replaceAll("_", ""));
   if (names.length) {
@@ -108,12 +97,8 @@ function instancesOf(name, file) {
           (column) => row[0] * node.rows[0][column] + row[1] * node.rows[1][column] + row[2] * node.rows[2][column],
         ),
       );
-      waiting.push({
-        number: node.child,
-        rows: local,
-        offset: rows.map((row, axis) => dot(row, node.offset) + offset[axis]),
-        above: here,
-      });
+      const moved = rows.map((row, axis) => dot(row, node.offset) + offset[axis]);
+      waiting.push({ number: node.child, rows: local, offset: moved, above: here });
     } else if ("children" in node) {
       for (const child of [...node.children].reverse()) waiting.push({ number: child, rows, offset, above: here });
     } else {

@@ -18,6 +18,11 @@ import { placesOf } from "./surface.js";
  * of a shading show */
 
 const DEFAULT_COLOUR = [200, 200, 200];
+const TRANSPARENT = "faces of materials below their opacity threshold (0.5 by default) were left out";
+const MISSING = "textures that are missing or of an unsupported format were replaced by the fallback or default colour";
+const UNPLACED = "textured faces without texture coordinates took the texture's fallback or the default colour";
+const UNIFORM = "textured faces took one colour of their image: no texture coordinates are connected to it";
+const UNCONNECTED = "textures without connected coordinates were placed by the coordinates 'st' of their meshes";
 
 export class UsdMaterials {
   /** @type {Map<string, Shading>} by path */ #read = new Map();
@@ -40,16 +45,12 @@ export class UsdMaterials {
     /** @param {Shading} shading */
     const row = (shading) => (shadings.includes(shading) ? shadings.indexOf(shading) : shadings.push(shading) - 1);
     for (const { path: subset } of composer.childrenByPath.get(path) ?? []) {
-      if (
-        composer.specsByPath[subset]?.fields.typeName !== "GeomSubset" ||
-        attributeOf(composer, subset, "familyName") !== "materialBind"
-      )
-        continue;
+      const isSubset = composer.specsByPath[subset]?.fields.typeName === "GeomSubset";
+      if (!isSubset || attributeOf(composer, subset, "familyName") !== "materialBind") continue;
       const indices = Array.from(numbersOf(composer, subset, "indices") ?? []);
-      if (!indices.every((face) => face >= 0 && face < surface.faceCount))
-        throw new Error(
-          `${subset}: a face subset refers to faces beyond the mesh's ${surface.faceCount}; export the mesh again`,
-        );
+      const count = surface.faceCount;
+      if (!indices.every((face) => face >= 0 && face < count))
+        throw new Error(`${subset}: a face subset refers to faces beyond the mesh's ${count}; export the mesh again`);
       const [material] = targetsOf(fieldsOf(composer, subset, "material:binding")?.targetPaths, subset);
       if (material && !isMaterial(composer, material))
         this.warn("missing-material", "bindings to materials that do not exist were ignored", indices.length);
@@ -106,11 +107,7 @@ export class UsdMaterials {
    * @param {string} path @param {FaceSurface} surface @param {number} faces @returns {Shows | null} */
   show(shading, composer, path, surface, faces) {
     if (!shading.alpha && shading.opacity < shading.cutoff) {
-      this.warn(
-        "transparent",
-        "faces of materials below their opacity threshold (0.5 by default) were left out",
-        faces,
-      );
+      this.warn("transparent", TRANSPARENT, faces);
       return null;
     }
     const look =
@@ -125,35 +122,17 @@ export class UsdMaterials {
     if (!source) return null;
     const texture = this.images.texture(shading);
     if (!texture) {
-      this.warn(
-        "missing-texture",
-        "textures that are missing or of an unsupported format were replaced by the fallback or default colour",
-        faces,
-      );
+      this.warn("missing-texture", MISSING, faces);
       return null;
     }
     const stored = primvarOf(composer, path, source.primvar);
     const place = stored && stored.size >= 2 ? placesOf(source.primvar, stored, surface, this.warn) : null;
     if (!place && !source.point) {
-      this.warn(
-        "texture",
-        "textured faces without texture coordinates took the texture's fallback or the default colour",
-        faces,
-      );
+      this.warn("texture", UNPLACED, faces);
       return null;
     }
-    if (!place)
-      this.warn(
-        "texture",
-        "textured faces took one colour of their image: no texture coordinates are connected to it",
-        faces,
-      );
-    else if (source.point)
-      this.warn(
-        "texture",
-        "textures without connected coordinates were placed by the coordinates 'st' of their meshes",
-        faces,
-      );
+    if (!place) this.warn("texture", UNIFORM, faces);
+    else if (source.point) this.warn("texture", UNCONNECTED, faces);
     const plain = !shading.image && shading.colour ? shading.colour : [1, 1, 1];
     const moved = coordinates(source);
     /** @param {number} value */ const finite = (value) => (Number.isFinite(value) ? value : 0);

@@ -25,15 +25,8 @@ import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 
 export const BLEND_CUTOFF = 0.5;
 const FALLBACK_DIFFUSE = [0.18, 0.18, 0.18]; // UsdPreviewSurface's own
-const COLOUR_INPUTS = [
-  "diffuseColor",
-  "base_color",
-  "baseColor",
-  "diffuse_color_constant",
-  "diffuse_reflection_color",
-  "diffuse_color",
-  "color",
-];
+const COLOUR_INPUTS =
+  "diffuseColor base_color baseColor diffuse_color_constant diffuse_reflection_color diffuse_color color".split(" ");
 const CONTEXTS = ["", "mtlx:", "mdl:", "ri:", "glslfx:"];
 /** @type {Record<string, Wrap>} */
 const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clamp" };

@@ -68,14 +68,8 @@ export const solidOf = (kind, dimensions) => SOLIDS[kind].make(dimensions);
   const positions = [-1, 1]
     .flatMap((z) => [-1, 1].flatMap((y) => [-1, 1].flatMap((x) => [x, y, z])))
     .map((part) => part * (size / 2));
-  const quads = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-  ];
+  // biome-ignore format: the corners of each side
+  const quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
   return { positions, triangles: quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
 }
 

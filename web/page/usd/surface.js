@@ -23,10 +23,8 @@ const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
  * @param {Warn} warn @param {Numbers} [posed] points instead of the mesh's own @returns {FaceSurface | null} */
 export function surfaceOf(composer, path, kind, warn, posed) {
   if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
-  const { positions, triangles } = solidOf(
-    kind,
-    dimensionsOf(kind, path, (name) => attributeOf(composer, path, name)),
-  );
+  const dimensions = dimensionsOf(kind, path, (name) => attributeOf(composer, path, name));
+  const { positions, triangles } = solidOf(kind, dimensions);
   return {
     positions,
     triangles,
@@ -114,10 +112,8 @@ function trianglesOf(path, positions, corners, start, count) {
     if (count <= FEW_CORNERS) return ears(flat);
     if (count > MOST_CORNERS)
       throw new Error(`${path}: a concave polygon of ${count} corners is too large here; voxrt build takes it`);
-    return ShapeUtils.triangulateShape(
-      flat.map(([x, y]) => new Vector2(x, y)),
-      [],
-    );
+    const contour = flat.map(([x, y]) => new Vector2(x, y));
+    return ShapeUtils.triangulateShape(contour, []);
   });
   if (cut?.length === count - 2) return cut.map((triangle) => [...triangle]);
   return Array.from({ length: count - 2 }, (_, i) => [0, i + 1, i + 2]);

@@ -46,16 +46,7 @@ export const MEMBERS = {
 };
 
 /** The methods of USDCParser's `reader` that are called. */
-export const READER = [
-  "readUint8",
-  "readInt32",
-  "readUint32",
-  "readInt64",
-  "readUint64",
-  "readFloat64",
-  "seek",
-  "tell",
-];
+export const READER = "readUint8 readInt32 readUint32 readInt64 readUint64 readFloat64 seek tell".split(" ");
 
 /** @typedef {{ specsByPath: Specs }} Parsed */
 
