@@ -8,7 +8,7 @@
 import { Instance, VoxrtError } from "./instance.js";
 import { colourTable, FACES } from "./voxrt.js";
 
-/** @import { Arrays, Source } from "./instance.js" @import { Camera, Look, Size } from "./voxrt.js" */
+/** @import { Source } from "./instance.js" @import { Camera, Look, Size } from "./voxrt.js" */
 
 /** @typedef {{ colour: Uint8Array, material: Uint8Array, face: Uint8Array, clocks: number, wordsRead: number }}
  * Rendered */
@@ -32,19 +32,15 @@ export class Hardware extends Instance {
     if (words.length > this.wordLimit)
       throw new VoxrtError(`the hardware's memory holds ${this.wordLimit} words, not ${words.length}`);
     this.#depth = depth;
-    this.guard(() => this.with([[Uint32Array, words]], (at) => this.checked(this.wasm.vx_load(at, words.length))));
+    this.guard(() => this.with([Uint32Array], [words], (at) => this.checked(this.wasm.vx_load(at, words.length))));
   }
 
   /** Render a frame as its pixels leave the circuit. Returns copies. @param {Camera} camera @param {Size} size
    * @param {Pick<Look, "materials" | "flat" | "faces">} look @returns {Rendered} */
   render({ position, look, right, up }, [width, height], { materials, flat = false, faces = FACES }) {
-    /** @type {Arrays} */ const arrays = [
-      [Int32Array, [...position, ...look, ...right, ...up]],
-      [Uint8Array, colourTable(materials)],
-      [Uint8Array, faces ?? []],
-    ];
+    const arrays = [[...position, ...look, ...right, ...up], colourTable(materials), faces ?? []];
     return this.guard(() => {
-      const clocks = this.with(arrays, (at, colours, brightness) => {
+      const clocks = this.with([Int32Array, Uint8Array, Uint8Array], arrays, (at, colours, brightness) => {
         const lit = faces && !flat ? brightness : 0;
         return this.checked(this.wasm.vx_run(at, width, height, this.#depth, colours, flat, lit));
       });

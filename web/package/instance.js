@@ -20,7 +20,6 @@ export const textBytes = (text) => encoder.encode(`${text}\0`);
  * (buffer: ArrayBuffer, at: number, length: number): T }} Kind */
 
 /** @typedef {{ readonly length: number, set(values: ArrayLike<number>): void }} NumberArray */
-/** @typedef {[Kind<NumberArray>, ArrayLike<number>][]} Arrays kinds of arrays and their numbers */
 
 /** What Voxrt and Hardware have in common. Buffers of a module move when its memory grows: views are made anew each
  * time. */
@@ -61,12 +60,12 @@ export class Instance {
     return at;
   }
 
-  /** Call with the addresses of copies of some numbers. @template T @param {Arrays} arrays @param {(...at: number[])
-   * => T} work */
-  with(arrays, work) {
+  /** Call with the addresses of copies of some numbers. @template T @param {Kind<NumberArray>[]} kinds of arrays
+   * @param {ArrayLike<number>[]} arrays @param {(...at: number[]) => T} work */
+  with(kinds, arrays, work) {
     /** @type {number[]} */ const copies = [];
     try {
-      for (const [type, values] of arrays) copies.push(this.copy(type, values));
+      for (const [i, values] of arrays.entries()) copies.push(this.copy(kinds[i], values));
       return work(...copies);
     } finally {
       for (const at of copies) this.wasm.vx_free(at);

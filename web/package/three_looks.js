@@ -12,11 +12,7 @@
  * plain. @typedef {{ entry: Appearance, uvOf?: Setter | null, colourOf?: Setter | null, covers?: (vertex: number)
  * => boolean }} Look */
 
-/** @type {Map<number, Wrap>} */ const WRAPS = new Map([
-  [1000, "repeat"],
-  [1001, "clamp"],
-  [1002, "mirror"],
-]);
+/** @type {Record<number, Wrap>} */ const WRAPS = { 1000: "repeat", 1001: "clamp", 1002: "mirror" };
 const NEAREST = 1003;
 
 /** @param {Material} material */ const rgbOf = (material) => {
@@ -45,15 +41,12 @@ export function appearanceOfThree(material, geometry, warn) {
     factor: [...rgbOf(material), 1],
     texture: map && image && { image, wrap: wrapsOf(map), nearest: map.magFilter === NEAREST },
   };
-  return {
-    entry: known[kind],
-    uvOf: map && image ? coordinatesOf(uv, map) : null,
-    colourOf: colour ? colours(colour) : null,
-  };
+  const uvOf = map && image ? coordinatesOf(uv, map) : null;
+  return { entry: known[kind], uvOf, colourOf: colour ? colours(colour) : null };
 }
 
 /** @param {Texture} texture */
-const wrapsOf = ({ wrapS, wrapT }) => [wrapS, wrapT].map((wrap) => WRAPS.get(wrap) ?? "repeat");
+const wrapsOf = ({ wrapS, wrapT }) => [wrapS, wrapT].map((wrap) => WRAPS[wrap] ?? "repeat");
 
 /** Sets u and v, which the texture's offset, repeat and rotation move. @param {Attribute} uv @param {Texture}
  * texture */

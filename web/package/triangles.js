@@ -77,11 +77,8 @@ function runsOf({ geometry, material }, corners, warn) {
     warn("incomplete-triangle", "corners after the last whole triangle of a primitive were left out");
   if (!Array.isArray(material)) return [[0, whole, material]];
   if (!geometry.groups.length) return [[0, whole, material[0]]];
-  return geometry.groups.map(({ start, count, materialIndex = 0 }) => [
-    start,
-    Math.min(start + count, whole),
-    material[materialIndex],
-  ]);
+  const endOf = (/** @type {{ start: number, count: number }} */ group) => Math.min(group.start + group.count, whole);
+  return geometry.groups.map((group) => [group.start, endOf(group), material[group.materialIndex ?? 0]]);
 }
 
 /** The normals of all vertices, zeros where a mesh has none. @param {[number, Attribute][]} normals @param {number}

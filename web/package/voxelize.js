@@ -22,12 +22,8 @@ export function voxelize(voxrt, scene, { depth = 7, fill = "auto", colours = COL
     const fitted = budget ? fit(voxrt, budget) : null;
     if (baked && fitted) baked.colours = fitted.colours;
     const built = { ...read(voxrt), depth, baked, fitted };
-    if (transparent)
-      built.warnings.unshift({
-        kind: "transparent",
-        message: "fully transparent faces were left out",
-        count: transparent,
-      });
+    const left = { kind: "transparent", message: "fully transparent faces were left out", count: transparent };
+    if (transparent) built.warnings.unshift(left);
     wasm.vx_scene_begin();
     return built;
   });
@@ -40,28 +36,19 @@ function describe(voxrt, { materials, meshes, objects }, hasNormals) {
   wasm.vx_scene_begin();
   for (const { name, colour, mirror = false, authored = true } of materials) {
     const [red, green, blue] = colour;
-    voxrt.with([[Uint8Array, textBytes(name)]], (text) =>
+    voxrt.with([Uint8Array], [textBytes(name)], (text) =>
       voxrt.checked(wasm.vx_material(text, (red << 16) | (green << 8) | blue, mirror, authored)),
     );
   }
   /** @type {Map<Appearance, number>} */ const appearances = new Map();
   /** @type {Map<Image, number>} */ const images = new Map();
   for (const { positions, triangles, materials: ids, normals, surface } of meshes) {
-    voxrt.with(
-      [
-        [Float64Array, positions],
-        [Int32Array, triangles],
-        [Uint8Array, ids],
-      ],
-      (at, corners, list) => voxrt.checked(wasm.vx_mesh(at, positions.length / 3, corners, triangles.length / 3, list)),
+    voxrt.with([Float64Array, Int32Array, Uint8Array], [positions, triangles, ids], (at, corners, list) =>
+      voxrt.checked(wasm.vx_mesh(at, positions.length / 3, corners, triangles.length / 3, list)),
     );
     if (hasNormals && normals)
-      voxrt.with(
-        [
-          [Float64Array, normals.directions],
-          [Int32Array, normals.rows],
-        ],
-        (at, rows) => voxrt.checked(wasm.vx_normals(at, normals.directions.length / 3, rows)),
+      voxrt.with([Float64Array, Int32Array], [normals.directions, normals.rows], (at, rows) =>
+        voxrt.checked(wasm.vx_normals(at, normals.directions.length / 3, rows)),
       );
     if (!surface) continue;
     const { entries, rows, uv, colours } = surface;
@@ -70,23 +57,13 @@ function describe(voxrt, { materials, meshes, objects }, hasNormals) {
       appearances.set(entry, number);
       return number;
     });
-    voxrt.with(
-      [
-        [Int32Array, numbers],
-        [Int32Array, rows],
-        [Float64Array, uv],
-        [Float32Array, colours],
-      ],
-      (list, ...at) => voxrt.checked(wasm.vx_surface(list, numbers.length, ...at)),
+    voxrt.with([Int32Array, Int32Array, Float64Array, Float32Array], [numbers, rows, uv, colours], (list, ...at) =>
+      voxrt.checked(wasm.vx_surface(list, numbers.length, ...at)),
     );
   }
   for (const { name, mesh, transform } of objects)
-    voxrt.with(
-      [
-        [Float64Array, transform],
-        [Uint8Array, textBytes(name)],
-      ],
-      (at, text) => voxrt.checked(wasm.vx_object(mesh, at, text)),
+    voxrt.with([Float64Array, Uint8Array], [transform, textBytes(name)], (at, text) =>
+      voxrt.checked(wasm.vx_object(mesh, at, text)),
     );
   return voxrt.checked(wasm.vx_scene_end());
 }
@@ -98,27 +75,18 @@ function addAppearance(voxrt, { name, factor = [1, 1, 1, 1], texture = null, cut
   if (image && !images.has(image)) images.set(image, wasm.vx_image(voxrt.copy(Uint8Array, image.pixels)));
   const number = image ? (images.get(image) ?? 0) : 0;
   const [u, v] = wrap.map((one) => WRAPS.indexOf(one));
-  return voxrt.with(
-    [
-      [Uint8Array, textBytes(name)],
-      [Float64Array, factor],
-    ],
-    (text, light) =>
-      voxrt.checked(
-        wasm.vx_appearance(text, light, number, image?.width ?? 0, image?.height ?? 0, u, v, nearest, cutoff, mirror),
-      ),
+  return voxrt.with([Uint8Array, Float64Array], [textBytes(name), factor], (text, light) =>
+    voxrt.checked(
+      wasm.vx_appearance(text, light, number, image?.width ?? 0, image?.height ?? 0, u, v, nearest, cutoff, mirror),
+    ),
   );
 }
 
 /** Put light into the colours. @param {Voxrt} voxrt @param {Daylight} daylight @returns {Baked} */
 function bakeLight(voxrt, { sun, sky, samples }) {
   const wordsBefore = voxrt.wasm.vx_word_count();
-  const voxels = voxrt.with(
-    [
-      [Float64Array, sun],
-      [Float64Array, sky],
-    ],
-    (towards, light) => voxrt.checked(voxrt.wasm.vx_bake(towards, light, samples)),
+  const voxels = voxrt.with([Float64Array, Float64Array], [sun, sky], (towards, light) =>
+    voxrt.checked(voxrt.wasm.vx_bake(towards, light, samples)),
   );
   return { sun, sky, samples, voxels, colours: BAKED_COLOURS, wordsBefore, words: voxrt.wasm.vx_word_count() };
 }

@@ -16,7 +16,7 @@ import { voxelize } from "./voxelize.js";
 export * from "./scene_format.js";
 export { VoxrtError };
 
-/** @import { Arrays } from "./instance.js" @import { Built, Options, Scene, Triple } from "./scene_format.js" */
+/** @import { Built, Options, Scene, Triple } from "./scene_format.js" */
 
 /** The camera registers: direction(column, row) = look + right (column - W/2) + up (H/2 - row). `position`: in 1/16
  * voxel; `look`: whole numbers below 2^15, as those of right and up. @typedef {{ position: Triple, look: Triple,
@@ -59,12 +59,9 @@ export class Voxrt extends Instance {
    * places three whole numbers from 0 up to 2^depth each @param {ArrayLike<number>} materials 1 … 255 @param
    * {number} depth */
   fromPoints(places, materials, depth) {
-    /** @type {Arrays} */ const arrays = [
-      [Int32Array, places],
-      [Uint8Array, materials],
-    ];
+    const arrays = [places, materials];
     return this.guard(() =>
-      this.with(arrays, (at, ids) => {
+      this.with([Int32Array, Uint8Array], arrays, (at, ids) => {
         const count = this.checked(this.wasm.vx_points(at, ids, materials.length, depth));
         return this.view(Uint32Array, this.wasm.vx_points_words(), count).slice();
       }),
@@ -74,14 +71,14 @@ export class Voxrt extends Instance {
   /** Take the words of an octree memory, which are checked. @param {ArrayLike<number>} words @param {number} depth */
   setMemory(words, depth) {
     this.guard(() =>
-      this.with([[Uint32Array, words]], (at) => this.checked(this.wasm.vx_memory(at, words.length, depth))),
+      this.with([Uint32Array], [words], (at) => this.checked(this.wasm.vx_memory(at, words.length, depth))),
     );
   }
 
   /** The least depth of the world that words describe. @param {ArrayLike<number>} words */
   depthOf(words) {
     return this.guard(() =>
-      this.with([[Uint32Array, words]], (at) => this.checked(this.wasm.vx_depth(at, words.length))),
+      this.with([Uint32Array], [words], (at) => this.checked(this.wasm.vx_depth(at, words.length))),
     );
   }
 
@@ -95,14 +92,9 @@ export class Voxrt extends Instance {
   shade({ materials, mirrors = [], bounces = 0, flat = false, faces = FACES, light = null }) {
     const flags = new Uint8Array(256);
     for (const id of mirrors) flags[id] = 1;
-    /** @type {Arrays} */ const arrays = [
-      [Uint8Array, colourTable(materials)],
-      [Uint8Array, flags],
-      [Uint8Array, faces ?? []],
-      [Int32Array, light?.position ?? []],
-    ];
+    const arrays = [colourTable(materials), flags, faces ?? [], light?.position ?? []];
     this.guard(() =>
-      this.with(arrays, (colours, mirrored, brightness, place) => {
+      this.with([Uint8Array, Uint8Array, Uint8Array, Int32Array], arrays, (colours, mirrored, brightness, place) => {
         const lit = [faces && !flat ? brightness : 0, light ? place : 0, light?.ambient ?? 0];
         return this.wasm.vx_shading(colours, mirrored, bounces, flat, ...lit);
       }),
@@ -143,7 +135,7 @@ export class Voxrt extends Instance {
 
   /** @param {Camera} camera @param {number} width @param {number} height @param {number} first @param {number} end */
   #trace({ position, look, right, up }, width, height, first, end) {
-    return this.with([[Int32Array, [...position, ...look, ...right, ...up]]], (at) =>
+    return this.with([Int32Array], [[...position, ...look, ...right, ...up]], (at) =>
       this.checked(this.wasm.vx_render(at, width, height, first, end)),
     );
   }
@@ -156,12 +148,11 @@ export class Voxrt extends Instance {
   /** Follow one ray: each word that it reads, and what it hits. @param {ArrayLike<number>} origin in 1/16 voxel
    * @param {ArrayLike<number>} direction below 2^20 @returns {Followed} */
   follow(origin, direction) {
-    /** @type {Arrays} */ const arrays = [
-      [Int32Array, origin],
-      [Int32Array, direction],
-    ];
+    const arrays = [origin, direction];
     return this.guard(() => {
-      const count = this.with(arrays, (from, to) => this.checked(this.wasm.vx_follow(from, to)));
+      const count = this.with([Int32Array, Int32Array], arrays, (from, to) =>
+        this.checked(this.wasm.vx_follow(from, to)),
+      );
       const all = this.view(Int32Array, this.wasm.vx_readings(), 7 * count + 5).slice();
       const readings = Array.from({ length: count }, (_, i) => {
         const [address, word, level, x, y, z, axis] = all.subarray(7 * i, 7 * i + 7);

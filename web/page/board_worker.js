@@ -7,6 +7,8 @@ import { answerWith, count } from "./worker_answers.js";
 
 /** @import { Board, Content } from "./board_bits.js" @import { Lighting } from "./memory.js" */
 
+const OWN = "a shading of its own";
+
 /** @param {string} path */ async function load(path) {
   const answer = await fetch(path);
   if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
@@ -23,9 +25,7 @@ const calls = {
     refuse(voxrt, board, words, depth);
     const { flat, on, bounces, faces } = lighting;
     if (!flat && String(faces) !== String(FACES))
-      throw new Error(
-        "This memory names a shading of its own, which bitstreams of this page have not: voxrt bitstream makes one",
-      );
+      throw new Error(`This memory names ${OWN}, which bitstreams of this page have not: voxrt bitstream makes one`);
     const missing = [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])];
     const [base, hardware] = await Promise.all([
       load(`boards/${name}.bit`).then((answer) => answer.arrayBuffer()),

@@ -35,9 +35,9 @@ function sceneAmong(files) {
   const texts = scenes.map(({ name, bytes }) =>
     scenes.length > 1 && extension(name).startsWith("usd") ? new TextDecoder("latin1").decode(bytes) : "",
   );
-  return (
-    scenes.find(({ name }) => !texts.some((text, i) => scenes[i].name !== name && text.includes(name))) ?? scenes[0]
-  );
+  const isNamed = (/** @type {string} */ name) =>
+    texts.some((text, i) => scenes[i].name !== name && text.includes(name));
+  return scenes.find(({ name }) => !isNamed(name)) ?? scenes[0];
 }
 
 /** Read files, one of which is a scene or a memory. @param {DroppedFile[]} files @param {Voxrt} voxrt @returns

@@ -11,7 +11,7 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
 /** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */
 
-/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: string, extras?: {
+/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: "MASK" | "BLEND" | "OPAQUE", extras?: {
  * voxrt_material?: string, voxrt_reflect?: boolean }, pbrMetallicRoughness?: { baseColorFactor?: number[],
  * baseColorTexture?: TextureInfo }, extensions?: { [GLOSSY]?: { diffuseFactor?: number[], diffuseTexture?:
  * TextureInfo } } }} GltfMaterial */
@@ -28,11 +28,7 @@ import { Warnings } from "./voxrt/warnings.js";
 /** What is used of GLTFLoader's parser. @typedef {{ json: Gltf, associations: Map<Material | Object3D | Texture,
  * Association>, getDependency: (type: "bufferView", index: number) => Promise<ArrayBuffer> }} GltfParser */
 
-/** @type {Map<number, Wrap>} */ const WRAPS = new Map([
-  [10497, "repeat"],
-  [33648, "mirror"],
-  [33071, "clamp"],
-]);
+/** @type {Record<number, Wrap>} */ const WRAPS = { 10497: "repeat", 33648: "mirror", 33071: "clamp" };
 const NEAREST = 9728;
 const BLEND_CUTOFF = 0.5;
 const GLOSSY = "KHR_materials_pbrSpecularGlossiness";
@@ -79,18 +75,15 @@ export class GltfLooks {
     const factor = "its materials took the colour of their factor";
     if (source === undefined) {
       const kind = Object.keys(UNREADABLE).find((name) => name in (texture.extensions ?? {}));
-      this.warnings.warn(
-        "texture",
-        kind
-          ? `textures[${index}] has only a ${UNREADABLE[kind]} image: ${factor}; convert its images to PNG or JPEG`
-          : `textures[${index}] has no image: ${factor}`,
-      );
+      const advice = kind ? "; convert its images to PNG or JPEG" : "";
+      const image = kind ? `only a ${UNREADABLE[kind]} image` : "no image";
+      this.warnings.warn("texture", `textures[${index}] has ${image}: ${factor}${advice}`);
       return null;
     }
     if (!images.has(source)) images.set(source, await this.#image(parser, source, factor));
     const image = images.get(source);
     const { wrapS = 10497, wrapT = 10497, magFilter } = this.#json.samplers?.[texture.sampler ?? -1] ?? {};
-    const wrap = [wrapS, wrapT].map((code) => WRAPS.get(code) ?? "repeat");
+    const wrap = [wrapS, wrapT].map((code) => WRAPS[code] ?? "repeat");
     return image ? { image, wrap, nearest: magFilter === NEAREST } : null;
   }
 
@@ -102,11 +95,9 @@ export class GltfLooks {
     else if (uri.startsWith("data:")) bytes = await (await fetch(uri)).arrayBuffer();
     else {
       bytes = this.folder.find(uri)?.bytes;
+      const absent = `images[${index}]: no image '${uri.slice(0, 60)}' in the asset's folder; ${factor}`;
       if (!bytes) {
-        this.warnings.warn(
-          "texture",
-          `images[${index}]: no image '${uri.slice(0, 60)}' in the asset's folder; ${factor}`,
-        );
+        this.warnings.warn("texture", absent);
         return null;
       }
     }
@@ -119,16 +110,12 @@ export class GltfLooks {
     const glossy = material.extensions?.[GLOSSY];
     const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
     const extras = material.extras ?? {};
+    const cutoffs = { MASK: material.alphaCutoff ?? 0.5, BLEND: BLEND_CUTOFF, OPAQUE: 0 };
     return {
       name: extras.voxrt_material || material.name || `materials[${index}]`,
       factor: factor.map((part) => Math.min(Math.max(part, 0), 1)),
       texture: glossy ? glossy.diffuseTexture : base.baseColorTexture,
-      cutoff:
-        material.alphaMode === "MASK"
-          ? (material.alphaCutoff ?? 0.5)
-          : material.alphaMode === "BLEND"
-            ? BLEND_CUTOFF
-            : 0,
+      cutoff: cutoffs[material.alphaMode ?? "OPAQUE"] ?? 0,
       mirror: Boolean(extras.voxrt_reflect),
       isNamed: Boolean(extras.voxrt_material),
     };
@@ -181,10 +168,9 @@ export class GltfLooks {
     const number = moved?.texCoord ?? info.texCoord ?? 0;
     const attribute = geometry.getAttribute(number === 0 ? "uv" : number < 4 ? `uv${number}` : `texcoord_${number}`);
     if (!attribute) {
-      this.warnings.warn(
-        "texture",
-        `primitives without the TEXCOORD_${number} that their texture needs took the colour of their factor`,
-      );
+      const name = `TEXCOORD_${number}`;
+      const problem = `primitives without the ${name} that their texture needs took the colour of their factor`;
+      this.warnings.warn("texture", problem);
       return null;
     }
     if (!moved)

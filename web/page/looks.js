@@ -11,14 +11,9 @@ const BOUNCES = 3;
 const bright = matchMedia("(prefers-color-scheme: light)").matches;
 const AROUND = bright ? [228, 234, 244] : BACKGROUND;
 
-/** @type {Look} */ export const FIRST_LOOK = {
-  shading: "faces",
-  features: [],
-  ambient: PLAIN.ambient,
-  bounces: BOUNCES,
-  light: [0, 0, 0],
-  background: AROUND,
-};
+const START = { shading: "faces", features: [], light: [0, 0, 0] };
+/** @type {Look} */
+export const FIRST_LOOK = { ...START, ambient: PLAIN.ambient, bounces: BOUNCES, background: AROUND };
 
 /** The look of a memory that follows another one. A memory is shown as it says. What the user chooses then stays,
  * until a memory says something else. @param {Look} look that of the page now @param {Memory} memory @param {Memory
@@ -40,12 +35,8 @@ const same = (one, other) => JSON.stringify(one ?? null) === JSON.stringify(othe
 
 /** @param {Lighting | null | undefined} lighting @returns {Partial<Look>} */ function lookOf(lighting) {
   const { flat, faces, ambient, on, bounces } = lighting ?? PLAIN;
-  return {
-    shading: flat ? "flat" : faces ? "faces" : "report",
-    ambient,
-    bounces: bounces || BOUNCES,
-    features: [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])],
-  };
+  const features = [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])];
+  return { shading: flat ? "flat" : faces ? "faces" : "report", ambient, bounces: bounces || BOUNCES, features };
 }
 
 /** The background that a memory has of its own, or null. @param {Memory | null} memory */

@@ -66,14 +66,12 @@ export class MemoryPanel {
     if (fixed) $("depth").valueAsNumber = depth;
     this.#showDepth();
     this.budget.fits(fitted?.wordsShared ?? words.length);
+    const changed = fitted ? (100 * fitted.changed) / (fitted.surface || 1) : 0;
     showFacts($("facts"), {
       words: count(words.length),
       memory: size(words.length),
       "solid voxels": short.format(solid),
-      ...(fitted && {
-        "without budget": count(fitted.wordsShared),
-        "surface changed": `${((100 * fitted.changed) / (fitted.surface || 1)).toFixed(1)} %`,
-      }),
+      ...(fitted && { "without budget": count(fitted.wordsShared), "surface changed": `${changed.toFixed(1)} %` }),
     });
     const boards = Object.entries(this.site.boards);
     $("boards").replaceChildren(...boards.map(([board, limit]) => this.#board(board, limit, memory)));

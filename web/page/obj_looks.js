@@ -20,7 +20,7 @@ export async function objLooks(library, folder, voxrt) {
   /** @type {Warning[]} */ const warnings = [];
   /** @type {Map<string, Appearance>} */ const entries = new Map();
   /** @type {Map<string, Placed>} */ const textures = new Map();
-  for (const [name, { kd, map_kd: map, map_d: opacity }] of library) {
+  for (const [name, { map_kd: map, map_d: opacity }] of library) {
     if (opacity)
       warnings.push({ kind: "texture", message: `map_d of ${name} is not used here; voxrt build uses it`, count: 1 });
     if (!map) continue;

@@ -131,18 +131,9 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   #finish({ request, since, size: [width, height], bands, camera }, began) {
     this.sent.delete(request);
     this.emit("frame", {
-      viewer: this.hello.viewer,
-      request,
-      requested: since,
-      width,
-      height,
-      bands,
-      camera,
+      ...{ viewer: this.hello.viewer, request, requested: since, sequence: ++this.#sequence },
+      ...{ width, height, bands, camera, words: null, cycles: null, rays: width * height },
       seconds: (performance.now() - began) / 1000,
-      rays: width * height,
-      words: null,
-      cycles: null,
-      sequence: ++this.#sequence,
     });
     const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
     for (const length of this.#buffers.keys()) if (!lengths.has(length)) this.#buffers.delete(length);

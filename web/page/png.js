@@ -19,19 +19,20 @@ export const MOST_PIXELS = 1 << 26;
  * {Uint8Array<ArrayBuffer>} bytes @returns {Promise<Pixels>} */
 export async function decodePng(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  /** @param {number} at */ const wordAt = (at) => view.getUint32(at);
   const parts = [];
   /** @type {Head | null} */ let head = null;
   /** @type {Uint8Array | null} */ let palette = null;
   /** @type {Uint8Array | null} */ let clear = null;
   for (let at = 8; at + 12 <= bytes.length; ) {
-    const length = view.getUint32(at);
+    const length = wordAt(at);
     const kind = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
     const data = bytes.subarray(at + 8, at + 8 + length);
     if (data.length < length) throw new Error("the image is cut off");
     if (kind === "IHDR")
       head = {
-        width: view.getUint32(at + 8),
-        height: view.getUint32(at + 12),
+        width: wordAt(at + 8),
+        height: wordAt(at + 12),
         depth: data[8],
         type: data[9],
         interlaced: data[12] === 1,
@@ -50,14 +51,10 @@ export async function decodePng(bytes) {
   const { width, height } = head;
   const bits = CHANNELS[head.type] * head.depth;
   const passes = (head.interlaced ? PASSES : [[0, 0, 1, 1]])
-    .map(([x, y, across, down]) => ({
-      x,
-      y,
-      across,
-      down,
-      columns: Math.ceil((width - x) / across),
-      rows: Math.ceil((height - y) / down),
-    }))
+    .map(([x, y, across, down]) => {
+      const [columns, rows] = [Math.ceil((width - x) / across), Math.ceil((height - y) / down)];
+      return { x, y, across, down, columns, rows };
+    })
     .filter(({ columns, rows }) => columns > 0 && rows > 0);
   const size = passes.reduce((sum, { columns, rows }) => sum + rows * (1 + Math.ceil((columns * bits) / 8)), 0);
   const data = await inflated(parts, size);

@@ -2,7 +2,7 @@
 // for convex ones. A concave quadrilateral becomes a fan from its reflex corner, or from the one opposite to it; a concave
 // polygon of more corners is cut by its ears, in its plane.
 
-import { dot, subtract } from "./vectors.js";
+import { add, dot, subtract } from "./vectors.js";
 
 /** @import { Vector } from "./vectors.js" */
 
@@ -18,23 +18,20 @@ export function withoutConcave(text) {
   const lines = text.replace(/\\\r?\n/g, " ").split("\n");
   if (!lines.some((line) => /^\s*f\s/.test(line) && line.trim().split(/\s+/).length > 4)) return text;
   /** @type {number[][]} */ const places = [];
-  return lines
-    .map((line) => {
-      const words = line.split("#")[0].trim().split(/\s+/);
-      if (words[0] === "v") places.push(words.slice(1, 4).map(Number));
-      if (words[0] !== "f" || words.length < 5) return line;
-      const corners = words.slice(1);
-      const points = corners.flatMap((corner) => {
-        const point = places.at(Number.parseInt(corner, 10) - (corner.startsWith("-") ? 0 : 1));
-        return point?.every(Number.isFinite) ? [point] : [];
-      });
-      if (points.length < corners.length) return line;
-      const triangles = cutConcave(points);
-      return triangles
-        ? triangles.map((triangle) => `f ${triangle.map((at) => corners[at]).join(" ")}`).join("\n")
-        : line;
-    })
-    .join("\n");
+  const replaced = lines.map((line) => {
+    const words = line.split("#")[0].trim().split(/\s+/);
+    if (words[0] === "v") places.push(words.slice(1, 4).map(Number));
+    if (words[0] !== "f" || words.length < 5) return line;
+    const corners = words.slice(1);
+    const points = corners.flatMap((corner) => {
+      const point = places.at(Number.parseInt(corner, 10) - (corner.startsWith("-") ? 0 : 1));
+      return point?.every(Number.isFinite) ? [point] : [];
+    });
+    if (points.length < corners.length) return line;
+    const triangles = cutConcave(points);
+    return triangles?.map((triangle) => `f ${triangle.map((at) => corners[at]).join(" ")}`).join("\n") ?? line;
+  });
+  return replaced.join("\n");
 }
 
 /** Triangles of a concave polygon; null for a convex one, or one without area. @param {Vector[]} corners @param
@@ -44,23 +41,15 @@ export function cutConcave(corners, cut = ears) {
   const count = corners.length;
   const points = corners.map((corner) => subtract(corner, corners[0])); // near the origin, products keep their digits
   /** @param {number} i */ const next = (i) => points[(i + 1) % count];
-  const normal = points.reduce(
-    (sum, point, i) => cross(point, next(i)).map((part, axis) => part + sum[axis]),
-    [0, 0, 0],
-  );
+  const normal = points.map((point, i) => cross(point, next(i))).reduce((sum, part) => add(part, sum), [0, 0, 0]);
   const least = -STRAIGHT * dot(normal, normal);
-  const back = points.map(
-    (point, i) =>
-      dot(cross(subtract(point, points[(i + count - 1) % count]), subtract(next(i), point)), normal) < least,
-  );
+  const back = points.map((point, i) => {
+    const before = points[(i + count - 1) % count];
+    return dot(cross(subtract(point, before), subtract(next(i), point)), normal) < least;
+  });
   if (!back.some(Boolean)) return null;
-  if (count === 4)
-    return back[1] || back[3]
-      ? [
-          [1, 2, 3],
-          [1, 3, 0],
-        ]
-      : null;
+  const middle = [1, 2, 3];
+  if (count === 4) return back[1] || back[3] ? [middle, [1, 3, 0]] : null;
   return cut(flat(points, normal));
 }
 

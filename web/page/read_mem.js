@@ -20,29 +20,15 @@ export function readMem(mem, beside) {
   if (broken >= 0) throw new Error(`${name}: word ${broken} is ${shown}, which is not hexadecimal`);
   if (!parts.length) throw new Error(`${name}: has no words`);
   const words = Uint32Array.from(parts, (part) => Number.parseInt(part.replaceAll("_", ""), 16));
-  if (!beside)
-    return {
-      words,
-      depth: null,
-      materials: Array.from({ length: 256 }, tinted),
-      grid: null,
-      objects: [],
-      warnings: [],
-      manifest: null,
-      lighting: null,
-      view: null,
-    };
+  const plain = { words, depth: null, materials: Array.from({ length: 256 }, tinted), objects: [], warnings: [] };
+  if (!beside) return { ...plain, grid: null, manifest: null, lighting: null, view: null };
   const manifest = readManifest(beside, mem);
   if (manifest.words !== words.length)
     throw new Error(`${name}: has ${words.length} words, and its manifest says ${manifest.words}`);
   const { depth, materials, objects, world, lighting, view, animation } = manifest;
   const warnings = [...manifest.warnings];
-  if (animation && animation.frames.length > 1)
-    warnings.push({
-      kind: "frames",
-      message: `${name} has ${animation.frames.length} frames, and the first is used`,
-      count: 1,
-    });
+  const still = `${name} has ${animation?.frames.length} frames, and the first is used`;
+  if (animation && animation.frames.length > 1) warnings.push({ kind: "frames", message: still, count: 1 });
   return {
     words,
     depth,

@@ -92,11 +92,8 @@ function instancesOf(name, file) {
         continue;
       }
       if (node.frames > 1) animated++;
-      const local = rows.map((row) =>
-        [0, 1, 2].map(
-          (column) => row[0] * node.rows[0][column] + row[1] * node.rows[1][column] + row[2] * node.rows[2][column],
-        ),
-      );
+      const columns = [0, 1, 2].map((column) => node.rows.map((row) => row[column]));
+      const local = rows.map((row) => columns.map((column) => dot(row, column)));
       const moved = rows.map((row, axis) => dot(row, node.offset) + offset[axis]);
       waiting.push({ number: node.child, rows: local, offset: moved, above: here });
     } else if ("children" in node) {
@@ -111,11 +108,7 @@ function instancesOf(name, file) {
   }
   /** @type {Warning[]} */ const warnings = [];
   if (hidden) warnings.push({ kind: "vox-hidden", message: "nodes that the author hid are left out", count: hidden });
-  if (animated)
-    warnings.push({
-      kind: "vox-animation",
-      message: "only the first frame of animated nodes is shown",
-      count: animated,
-    });
+  const still = "only the first frame of animated nodes is shown";
+  if (animated) warnings.push({ kind: "vox-animation", message: still, count: animated });
   return { instances, warnings };
 }

@@ -103,14 +103,8 @@ class Reader {
     const [child, , layer] = [content.integer(), content.integer(), content.integer()];
     const frames = content.list(4, () => content.dictionary());
     const { _r: turn = "4", _t: move = "0 0 0" } = frames[0] ?? {};
-    file.nodes.set(node, {
-      child,
-      rows: rotation(content, turn),
-      offset: offsetOf(content, move),
-      hidden: attributes._hidden === "1",
-      layer,
-      frames: frames.length,
-    });
+    const [rows, offset, hidden] = [rotation(content, turn), offsetOf(content, move), attributes._hidden === "1"];
+    file.nodes.set(node, { child, rows, offset, hidden, layer, frames: frames.length });
   },
   nGRP(content, file) {
     const node = content.integer();

@@ -8,6 +8,9 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
 
 /** @typedef {(problem: string) => never} Refuse */
 
+const AGAIN = "export the instancer again";
+const OTHERS = "have other lengths";
+
 /** @param {Found} found @returns {MethodsOf<Composer>} */ export const instancerMethods = (found) => (kept) => ({
   _buildHierarchy(parent, path) {
     if (this.specsByPath[path]?.fields?.typeName === "PointInstancer") placeCopies(this, parent, path, found);
@@ -26,9 +29,7 @@ function placeCopies(composer, object, path, found) {
   const names = targetsOf(fieldsOf(composer, path, "prototypes")?.targetPaths, path);
   const wrong = protoIndices.findIndex((index) => !names[index]);
   if (wrong >= 0)
-    refuse(
-      `protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; export the instancer again`,
-    );
+    refuse(`protoIndices[${wrong}] is ${protoIndices[wrong]} and there are ${names.length} prototypes; ${AGAIN}`);
   const absent = names.find((name) => !composer.specsByPath[name]);
   if (absent) refuse(`prototype ${absent} does not exist; repair its prototypes`);
   if (found.open.has(path)) refuse("the point instancer copies itself; repair its prototypes");
@@ -41,16 +42,12 @@ function placeCopies(composer, object, path, found) {
   /** @param {ArrayLike<number>} values @param {number} size */
   const fits = (values, size) => values.length === 0 || values.length === size * count;
   if (positions.length !== 3 * count || !fits(turns, 4) || !fits(scales, 3))
-    refuse(
-      `protoIndices has ${count} entries and the positions, orientations or scales have other lengths; export the instancer again`,
-    );
+    refuse(`protoIndices has ${count} entries and the positions, orientations or scales ${OTHERS}; ${AGAIN}`);
   const hidden = hiddenOf(composer, path, attributes, count, refuse, found);
   found.warn("invisible", "masked copies of point instancers were left out", hidden.size);
   const sizes = prototypes.map(objectsOf);
-  found.charge(
-    path,
-    Array.from(protoIndices).reduce((sum, index) => sum + 1 + sizes[index], 0),
-  );
+  const objects = Array.from(protoIndices).reduce((sum, index) => sum + 1 + sizes[index], 0);
+  found.charge(path, objects);
   for (let i = 0; i < count; i++) {
     const prototype = prototypes[protoIndices[i]];
     if (hidden.has(i) || !prototype) continue;
@@ -112,7 +109,7 @@ function hiddenOf(composer, path, attributes, count, refuse, found) {
   if (has("invisibleIds") && !invisibleIds.length)
     found.warn("instancer", "masks of point instancers that cannot be read here were not used; voxrt build uses them");
   if (invisibleIds.length && has("ids") && ids.length !== count)
-    refuse(`ids has ${ids.length} entries and there are ${count} copies; export the instancer again`);
+    refuse(`ids has ${ids.length} entries and there are ${count} copies; ${AGAIN}`);
   const masked = new Set(Array.from(invisibleIds, Number));
   return new Set(Array.from({ length: count }, (_, i) => i).filter((i) => masked.has(Number(ids.length ? ids[i] : i))));
 }

@@ -23,19 +23,11 @@ import { MEMBERS, patch } from "./three_private.js";
 
 const MOST_PRIMS = 200_000; // of all layers and copies together
 
-/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, message and test of specs that are
+/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, subject and test of specs that are
  * not read */
 const OTHERS = [
-  [
-    "collider",
-    "colliders are not used here; voxrt build uses them",
-    ({ apiSchemas = [] }) => apiSchemas.includes("PhysicsCollisionAPI"),
-  ],
-  [
-    "collection",
-    "materials bound to collections are not used here; voxrt build uses them",
-    (_, path) => path.includes(".material:binding:collection:"),
-  ],
+  ["collider", "colliders are", ({ apiSchemas = [] }) => apiSchemas.includes("PhysicsCollisionAPI")],
+  ["collection", "materials bound to collections are", (_, path) => path.includes(".material:binding:collection:")],
 ];
 
 /** @type {Reader} */ export async function readUsd(main, folder, voxrt) {
@@ -106,7 +98,8 @@ const layerMethods = (found) => (kept) => ({
     const { startTimeCode, endTimeCode } = fields;
     found.moment = startTimeCode !== undefined && endTimeCode !== undefined ? startTimeCode : null;
     for (const [path, spec] of Object.entries(specsByPath))
-      for (const [kind, message, is] of OTHERS) if (spec.fields && is(spec.fields, path)) found.warn(kind, message);
+      for (const [kind, what, is] of OTHERS)
+        if (spec.fields && is(spec.fields, path)) found.warn(kind, `${what} not used here; voxrt build uses them`);
     if (Object.values(specsByPath).some(isAnimated))
       found.warn("animation", "animated layers are shown at the stage's start");
     return kept.compose.call(this, parsed, ...rest);

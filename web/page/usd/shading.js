@@ -44,9 +44,8 @@ const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clam
 /** @param {Composer} composer @param {string} material @param {Warn} warn @returns {Unnumbered} */
 export function readShading(composer, material, warn) {
   const plain = { ...noShading, name: material.slice(material.lastIndexOf("/") + 1) };
-  const shader = CONTEXTS.map((context) => producer(composer, material, `outputs:${context}surface`)).find(
-    (found) => found?.node,
-  )?.node;
+  const producers = CONTEXTS.map((context) => producer(composer, material, `outputs:${context}surface`));
+  const shader = producers.find((found) => found?.node)?.node;
   if (!shader) {
     warn("material-colour", "materials without a supported surface shader got the default colour");
     return plain;

@@ -61,9 +61,8 @@ const kindOf = (composer, path) => composer.specsByPath[path]?.fields.typeName;
 
 /** @param {Composer} composer @param {string} path @param {number} count of points @returns {Influences | null} */
 function influencesOf(composer, path, count) {
-  const [joints, weights] = ["Indices", "Weights"].map(
-    (name) => /** @type {Numbers | null} */ (valueAbove(composer, path, `primvars:skel:joint${name}`)),
-  );
+  const joints = valueAbove(composer, path, "primvars:skel:jointIndices");
+  const weights = valueAbove(composer, path, "primvars:skel:jointWeights");
   if (!joints?.length || !weights?.length) return null;
   const fields = [...upwards(path)]
     .map((above) => fieldsOf(composer, above, "primvars:skel:jointIndices"))
@@ -105,9 +104,8 @@ function animated(composer, animation) {
   /** @type {Map<string, Matrix>} */ const made = new Map();
   if (animation === null || kindOf(composer, animation) !== "SkelAnimation") return made;
   const names = namesOf(composer, animation, "joints");
-  const [places, turns, sizes] = ["translations", "rotations", "scales"].map(
-    (name) => numbersOf(composer, animation, name) ?? [],
-  );
+  const read = (/** @type {string} */ name) => numbersOf(composer, animation, name) ?? [];
+  const [places, turns, sizes] = ["translations", "rotations", "scales"].map(read);
   if (places.length !== 3 * names.length || turns.length !== 4 * names.length || sizes.length !== 3 * names.length)
     return made;
   for (const [i, name] of names.entries()) {

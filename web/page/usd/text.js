@@ -130,19 +130,14 @@ function withoutPrefixes(data) {
   );
 }
 
+/** @param {string[]} texts */ const trimmed = (texts) => texts.map((one) => one.trim()).filter(Boolean);
+
 /** The parser wants one statement per line, as USD itself writes them. @param {string} line @returns {string[]} */
 function statements(line) {
   const body = /^((?:def|over|class)\b[^{]*)\{\s*(\S.*)$/.exec(line);
   if (body) {
     const inside = body[2].endsWith("}") ? [...body[2].slice(0, -1).split(";"), "}"] : [body[2]];
-    return [
-      ...statements(body[1].trim()),
-      "{",
-      ...inside
-        .map((one) => one.trim())
-        .filter(Boolean)
-        .flatMap(statements),
-    ];
+    return [...statements(body[1].trim()), "{", ...trimmed(inside).flatMap(statements)];
   }
   if (/^[{)]\s*\S/.test(line)) return [line[0], ...statements(line.slice(1).trim())];
   if (/^[}\s]+$/.test(line)) return [...line.replace(/\s/g, "")];
@@ -153,12 +148,5 @@ function statements(line) {
   const inside = line.slice(at + 1, -1);
   const prim = /^(?:def|over|class)\b/.test(line);
   if (at < 1 || !/^\s*(?:\w+\s+)?\w+\s*=/.test(inside) || !(prim || line.slice(0, at).includes("="))) return [line];
-  return [
-    `${line.slice(0, at).trim()} (`,
-    ...inside
-      .split(";")
-      .map((one) => one.trim())
-      .filter(Boolean),
-    ")",
-  ];
+  return [`${line.slice(0, at).trim()} (`, ...trimmed(inside.split(";")), ")"];
 }
