@@ -37,7 +37,7 @@ export const focal = (fov, size) => measure(size) / (2 * Math.tan((fov * Math.PI
 /** @param {number} ahead @param {Size} size */
 export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead) * 360) / Math.PI;
 
-/** @param {Pose} view @param {Size} size @returns {Registers} */ export function toRegisters(view, size) {
+/** @param {Pose} view @param {Size} size */ export function toRegisters(view, size) {
   const { look, right, up } = axes(view);
   const halves = size.map((side) => Math.floor(side / 2));
   const ahead = scale(look, focal(view.fov, size));
@@ -58,7 +58,7 @@ export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead
 
 /** The pose of registers that were made for frames of `size`. The target is the point of the central ray that is
  * nearest to `centre`, the middle of the scene. For frames of another size, all that the registers show stays in
- * the picture. @param {Registers} registers @param {Size} size @param {Vector} centre @returns {Pose} */
+ * the picture. @param {Registers} registers @param {Size} size @param {Vector} centre */
 export function fromRegisters({ position, look, right, up }, size, centre, shownSize = size) {
   const eye = position.map((value) => value / 16);
   const ahead = scale(look, 1 / (length(look) || 1));
@@ -88,7 +88,7 @@ export const pixelDirection = ({ look, right, up }, [width, height], column, row
     (value, axis) => value + right[axis] * (column - Math.floor(width / 2)) + up[axis] * (Math.floor(height / 2) - row),
   );
 
-/** @param {Pose} view @param {Vector} direction @returns {Pose} */ export function lookAlong(view, direction) {
+/** @param {Pose} view @param {Vector} direction */ export function lookAlong(view, direction) {
   const size = length(direction);
   if (size < 1e-9) return view;
   const [x, y, z] = scale(direction, 1 / size);

@@ -161,7 +161,7 @@ export class Connection extends Events {
   }
 
   /** Send a request; resolves with its answer, rejects with the reason of a refusal. @param {string} type @param
-   * {object} [fields] @param {Pending["progress"]} [progress] @returns {Promise<Answer>} */
+   * {object} [fields] @param {Pending["progress"]} [progress] */
   request(type, fields = {}, progress = null) {
     if (!this.connected) return Promise.reject(new Error("there is no connection to the server"));
     const number = this.#send(type, fields);

@@ -28,8 +28,7 @@ export const pressed = (button, on) => button.setAttribute("aria-pressed", Strin
 /** @param {Element} button */ export const isPressed = (button) => button.getAttribute("aria-pressed") === "true";
 
 /** Make an element. Properties whose name has a dash are attributes. @template {keyof HTMLElementTagNameMap} T
- * @param {T} tag @param {Record<string, unknown>} [properties] @param {(Node | string)[]} children @returns
- * {HTMLElementTagNameMap[T]} */
+ * @param {T} tag @param {Record<string, unknown>} [properties] @param {(Node | string)[]} children */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {

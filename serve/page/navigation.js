@@ -18,7 +18,7 @@ export function orbit(view, right, down) {
   return { ...turned, eye: add(centre, axes(turned).look, -view.distance) };
 }
 
-/** Turn around the eye. @param {Pose} view @param {number} right @param {number} up @returns {Pose} */
+/** Turn around the eye. @param {Pose} view @param {number} right @param {number} up */
 export function look(view, right, up) {
   return { ...view, yaw: view.yaw + right, pitch: clamp(view.pitch + up, -UPRIGHT, UPRIGHT) };
 }
@@ -80,5 +80,5 @@ export function frame(view, [low, high], [width, height], limit) {
   return within({ ...view, distance: Math.max(NEAREST, dot(centre, ahead) - depth) }, eye, limit);
 }
 
-/** @param {Pose} view @param {Vector} eye @param {number} limit @returns {Pose} */
+/** @param {Pose} view @param {Vector} eye @param {number} limit */
 const within = (view, eye, limit) => ({ ...view, eye: eye.map((place) => clamp(place, -limit, limit)) });

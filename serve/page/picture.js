@@ -43,7 +43,7 @@ export class Picture {
     this.canvas.classList.toggle("pixels", sharp && this.canvas.clientWidth > 1.9 * columns);
   }
 
-  /** The column and row of the frame at a place of the page. @param {number} x @param {number} y @returns {Size} */
+  /** The column and row of the frame at a place of the page. @param {number} x @param {number} y */
   pixelAt(x, y) {
     const box = this.canvas.getBoundingClientRect();
     const { width, height } = this.canvas;

@@ -25,7 +25,7 @@ export class Resolution {
   /** @param {Size} size */ seconds = ([width, height]) => (this.cost === null ? 0 : this.cost * width * height);
 
   /** The frame of the stage at rest; with 2 samples a frame has twice the columns and rows. @param {HTMLElement}
-   * stage @param {Device} device @returns {Wanted} */
+   * stage @param {Device} device */
   finest(stage, device) {
     const ratio = Math.min(devicePixelRatio, RATIO);
     const wanted = this.fixed ?? [stage.clientWidth * ratio, stage.clientHeight * ratio];
@@ -41,7 +41,7 @@ export class Resolution {
     return { size, samples: smooth ? 2 : 1 };
   }
 
-  /** The frame while the camera moves. @param {HTMLElement} stage @param {Device} device @returns {Wanted} */
+  /** The frame while the camera moves. @param {HTMLElement} stage @param {Device} device */
   moving(stage, device) {
     const { size } = this.finest(stage, device);
     if (this.cost === null) return { size: fitting(size, COARSEST, device), samples: 1 };
@@ -50,7 +50,7 @@ export class Resolution {
   }
 
   /** The frame after one of `shown` columns and rows when the camera has come to rest. @param {HTMLElement} stage
-   * @param {Device} device @param {Size} shown @returns {Wanted} */
+   * @param {Device} device @param {Size} shown */
   next(stage, device, shown) {
     const { size, samples } = this.finest(stage, device);
     if (samples > 1) return { size, samples };

@@ -5,7 +5,7 @@ import { dismiss } from "./notices.js";
 
 /** @typedef {Record<string, () => void>} Commands functions by the code of a key */
 
-/** Connect the buttons; returns the commands that every page has. @returns {Commands} */
+/** Connect the buttons; returns the commands that every page has. */
 export function makeTools() {
   $("help").onclick = () => $("keys").showModal();
   $("close").onclick = dismiss;

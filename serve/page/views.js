@@ -30,7 +30,7 @@ export class Views {
     this.show();
   }
 
-  /** The keys of the presets. @returns {Commands} */
+  /** The keys of the presets. */
   commands = () => Object.fromEntries(PRESETS.map((_, i) => [`Digit${i + 1}`, () => this.choose(i)]));
 
   /** @param {number} i */ choose(i) {
@@ -40,7 +40,7 @@ export class Views {
     });
   }
 
-  /** @returns {Record<string, Pose>} */ saved() {
+  saved() {
     try {
       return JSON.parse(localStorage.getItem(SAVED) ?? "{}");
     } catch {

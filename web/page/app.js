@@ -80,7 +80,7 @@ export class App {
 
   side = () => 2 ** this.#shown().depth;
 
-  /** @returns {Box} */ bounds = () => this.#shown().bounds;
+  bounds = () => this.#shown().bounds;
 
   limit = () => 8 * this.side() + 512;
 
@@ -169,7 +169,7 @@ export class App {
     $("stage").dataset.scene = `${built.name} ${built.depth}`;
   }
 
-  /** The view of the memory's author, or one from a corner. @returns {Pose} */
+  /** The view of the memory's author, or one from a corner. */
   firstView() {
     const { view, bounds } = this.#shown();
     if (view?.look.some(Boolean)) return fromRegisters(view, MADE_FOR, scale(add(...bounds), 0.5), this.size());
@@ -207,7 +207,7 @@ export class App {
   }
 }
 
-/** The same view of a world of more or fewer levels. @param {Pose} pose @param {number} levels @returns {Pose} */
+/** The same view of a world of more or fewer levels. @param {Pose} pose @param {number} levels */
 function rescaled(pose, levels) {
   const factor = 2 ** levels;
   return { ...pose, eye: scale(pose.eye, factor), distance: pose.distance * factor };

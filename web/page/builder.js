@@ -22,7 +22,7 @@ export class Builder {
   }
 
   /** Rejects with the reason, or "cancelled". @param {DroppedFile[]} files @param {Required<Omit<Options,
-   * "colours">>} options @param {(stage: string) => void} onStage @returns {Promise<Memory>} */
+   * "colours">>} options @param {(stage: string) => void} onStage */
   async build(files, options, onStage) {
     if (this.#busy) this.cancel();
     if (files !== this.#files) this.#source++;

@@ -27,7 +27,7 @@ export class DaylightControl {
     return isPressed($("bake"));
   }
 
-  /** @returns {Daylight | null} */ get options() {
+  get options() {
     if (!this.on) return null;
     const [x, y, z, sky, samples] = FIELDS.map((field) => $(field).valueAsNumber);
     return { sun: [x, y, z], sky: [sky, sky, sky], samples };

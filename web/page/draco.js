@@ -50,7 +50,7 @@ export class DracoDecoder {
   asLoader = () => /** @type {DRACOLoader} */ (/** @type {unknown} */ (this));
 }
 
-/** @returns {Promise<Draco>} */ async function load() {
+async function load() {
   const [{ default: start }, answer] = await Promise.all([
     import(`${FOLDER}draco_decoder.js`),
     fetch(new URL(`${FOLDER}draco_decoder.wasm`, import.meta.url)),

@@ -40,8 +40,7 @@ function sceneAmong(files) {
   return scenes.find(({ name }) => !isNamed(name)) ?? scenes[0];
 }
 
-/** Read files, one of which is a scene or a memory. @param {DroppedFile[]} files @param {Voxrt} voxrt @returns
- * {Promise<ReadFile>} */
+/** Read files, one of which is a scene or a memory. @param {DroppedFile[]} files @param {Voxrt} voxrt */
 export async function readFiles(files, voxrt) {
   const main = sceneAmong(files);
   if (!main) {

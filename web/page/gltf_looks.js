@@ -11,10 +11,10 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
 /** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */
 
-/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: "MASK" | "BLEND" | "OPAQUE", extras?: {
- * voxrt_material?: string, voxrt_reflect?: boolean }, pbrMetallicRoughness?: { baseColorFactor?: number[],
- * baseColorTexture?: TextureInfo }, extensions?: { [GLOSSY]?: { diffuseFactor?: number[], diffuseTexture?:
- * TextureInfo } } }} GltfMaterial */
+/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: "MASK" | "BLEND" |
+ * "OPAQUE", extras?: { voxrt_material?: string, voxrt_reflect?: boolean }, pbrMetallicRoughness?: {
+ * baseColorFactor?: number[], baseColorTexture?: TextureInfo }, extensions?: { [GLOSSY]?: { diffuseFactor?:
+ * number[], diffuseTexture?: TextureInfo } } }} GltfMaterial */
 
 /** @typedef {{ source?: number, sampler?: number, extensions?: Record<string, { source: number }> }} GltfTexture */
 /** @typedef {{ wrapS?: number, wrapT?: number, magFilter?: number }} Sampler */
@@ -128,7 +128,7 @@ export class GltfLooks {
   }
 
   /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index of its material
-   * @param {BufferGeometry} geometry @returns {Look | null} */
+   * @param {BufferGeometry} geometry */
   appearance(index, geometry) {
     const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false };
     const { name, factor, texture: info, cutoff, mirror } = index === undefined ? plain : this.properties(index);

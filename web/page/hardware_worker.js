@@ -27,7 +27,7 @@ const calls = {
   },
 
   /** One frame by both. @param {{ words: Uint32Array, depth: number, camera: Camera, size: Size, look: Look }} job
-   * @param {(stage: { share: number }) => void} report @returns {Compared} */
+   * @param {(stage: { share: number }) => void} report */
   run({ words, depth, camera, size, look }, report) {
     if (!state.loaded) throw new Error("the worker has not started");
     const { voxrt, hardware } = state.loaded;

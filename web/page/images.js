@@ -5,8 +5,7 @@ import { decodePng, isPng, MOST_PIXELS } from "./png.js";
 
 /** @typedef {{ width: number, height: number, pixels: Uint8Array<ArrayBuffer> }} Pixels */
 
-/** @param {Uint8Array<ArrayBuffer>} bytes @param {string} place @returns {Promise<Pixels>} */
-export async function decodeImage(bytes, place) {
+/** @param {Uint8Array<ArrayBuffer>} bytes @param {string} place */ export async function decodeImage(bytes, place) {
   try {
     return isPng(bytes) ? await decodePng(bytes) : await byBrowser(bytes);
   } catch (error) {

@@ -17,7 +17,7 @@ export const FIRST_LOOK = { ...START, ambient: PLAIN.ambient, bounces: BOUNCES, 
 
 /** The look of a memory that follows another one. A memory is shown as it says. What the user chooses then stays,
  * until a memory says something else. @param {Look} look that of the page now @param {Memory} memory @param {Memory
- * | null} old @param {boolean} first whether the memory is of another file @returns {Look} */
+ * | null} old @param {boolean} first whether the memory is of another file */
 export function nextLook(look, memory, old, first) {
   const { lighting } = memory;
   const changes = (first && lighting) || !same(lighting, old?.lighting);
@@ -33,7 +33,7 @@ export function nextLook(look, memory, old, first) {
 /** @param {unknown} one @param {unknown} other */
 const same = (one, other) => JSON.stringify(one ?? null) === JSON.stringify(other ?? null);
 
-/** @param {Lighting | null | undefined} lighting @returns {Partial<Look>} */ function lookOf(lighting) {
+/** @param {Lighting | null | undefined} lighting */ function lookOf(lighting) {
   const { flat, faces, ambient, on, bounces } = lighting ?? PLAIN;
   const features = [...(on ? ["light"] : []), ...(bounces ? ["mirrors"] : [])];
   return { shading: flat ? "flat" : faces ? "faces" : "report", ambient, bounces: bounces || BOUNCES, features };
@@ -43,7 +43,7 @@ const same = (one, other) => JSON.stringify(one ?? null) === JSON.stringify(othe
 const ownBackground = (memory) =>
   memory?.manifest && !same(memory.materials[0].colour, BACKGROUND) ? [...memory.materials[0].colour] : null;
 
-/** How workers colour hits. @param {Memory} memory @param {Look} look @returns {Shading} */
+/** How workers colour hits. @param {Memory} memory @param {Look} look */
 export function shadingOf({ materials, lighting }, look) {
   return {
     materials: materials.map(({ colour }, id) => (id ? colour : look.background)),

@@ -74,7 +74,7 @@ const isView = (value) => isObject(value) && ["position", "look", "right", "up"]
   animation: isOptional(isAnimation),
 };
 
-/** Read the manifest that describes a memory. @param {DroppedFile} file @param {DroppedFile} mem @returns {Manifest} */
+/** Read the manifest that describes a memory. @param {DroppedFile} file @param {DroppedFile} mem */
 export function readManifest(file, mem) {
   /** @param {string} problem */ const fault = (problem) => new Error(`${mem.name}: ${file.name}: ${problem}`);
   /** @type {unknown} */ let known;

@@ -33,8 +33,7 @@ export function memBytes(words) {
   return bytes;
 }
 
-/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes
- * @returns {Box | null} */
+/** The box of cubes: x, y, z of the lowest corner and the side, each; null for none. @param {Int32Array} cubes */
 export function boundsOf(cubes) {
   if (!cubes.length) return null;
   const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];

@@ -89,8 +89,7 @@ export function code(part) {
 /** @param {MaterialInfo | undefined} material */
 const isClear = (material) => Number(material?.d ?? (material?.tr === undefined ? 1 : 1 - material.tr)) < OPAQUE_FROM;
 
-/** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text @returns
- * {Placed} */
+/** The arguments of map_Kd: options, then the name of a file, which may have blanks. @param {string} text */
 function placement(text) {
   const words = text.trim().split(/\s+/);
   const placed = { scale: [1, 1], offset: [0, 0], clamp: false };

@@ -35,7 +35,7 @@ function elementsOf(header) {
 }
 
 /** @param {Uint8Array} bytes @param {BufferGeometry} geometry of a PLYLoader that readsColours() @param {Folder}
- * folder @param {Voxrt} voxrt @returns {Promise<{ warnings: Warning[], rules: Partial<Rules> }>} */
+ * folder @param {Voxrt} voxrt */
 export async function plyLook(bytes, geometry, folder, voxrt) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16)).split("end_header")[0];
   const names = [...header.matchAll(/^comment\s+TextureFile\s+(.+?)\s*$/gm)].map(([, name]) => name);

@@ -10,7 +10,7 @@ import { BACKGROUND } from "./voxrt/voxrt.js";
  * nothing tells it */
 
 /** Read words of the report dialect, and what their manifest says. @param {DroppedFile} mem @param {DroppedFile |
- * undefined} beside the manifest @returns {ReadMemory} */
+ * undefined} beside the manifest */
 export function readMem(mem, beside) {
   const { name, bytes } = mem;
   const text = new TextDecoder().decode(bytes).replace(/\/\*[\s\S]*?\*\/|\/\/[^\n]*/g, " ");

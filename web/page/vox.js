@@ -16,8 +16,7 @@ const NESTING_LIMIT = 256;
 const DEPTH_LIMIT = 16;
 const IDENTITY = [0, 1, 2].map((row) => [0, 1, 2].map((column) => Number(row === column)));
 
-/** @param {string} name @param {Uint8Array} bytes @param {Voxrt} voxrt @returns {Omit<Memory, "name" | "file">} */
-export function readVox(name, bytes, voxrt) {
+/** @param {string} name @param {Uint8Array} bytes @param {Voxrt} voxrt */ export function readVox(name, bytes, voxrt) {
   const file = readChunks(name, bytes);
   const { instances, warnings } = instancesOf(name, file);
   const total = instances.reduce((sum, { model }) => sum + file.models[model].voxels.length / 4, 0);
@@ -67,7 +66,7 @@ export function readVox(name, bytes, voxrt) {
 }
 
 /** The instances of the scene graph; without one, every model is shown at the origin. @param {string} name @param
- * {VoxFile} file @returns {{ instances: Instance[], warnings: Warning[] }} */
+ * {VoxFile} file */
 function instancesOf(name, file) {
   if (!file.nodes.size)
     return { instances: file.models.map((_, model) => ({ model, rows: IDENTITY, offset: [0, 0, 0] })), warnings: [] };

@@ -33,7 +33,7 @@ const calls = {
   },
 
   /** @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job `source` numbers the
-   * files @param {(stage: string) => void} report @returns {Promise<Memory>} */
+   * files @param {(stage: string) => void} report */
   async build({ files, source, depth, fill, bake, budget }, report) {
     if (state.parsed?.source !== source) report("Reading");
     const { name, file, memory, scene } = await read(files, source);

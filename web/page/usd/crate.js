@@ -16,7 +16,8 @@ const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 /** @type {Read} */ const integer = ({ reader }) => reader.readInt32();
 /** @type {Read} */ const byte = ({ reader }) => reader.readUint8();
 
-/** Numbers per value, bytes per number, how to read one, the array for them. @type {[number, [number, number, Read, Kind]][]} */
+/** Numbers per value, bytes per number, how to read one, the array for them. @type {[number, [number, number, Read,
+ * Kind]][]} */
 const KNOWN = [
   [BOOL, [1, 1, ({ reader }) => reader.readUint8() !== 0, Array]],
   [UCHAR, [1, 1, byte, Uint8Array]],

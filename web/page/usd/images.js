@@ -41,7 +41,7 @@ export class UsdImages {
     return texture;
   }
 
-  /** @param {Shading} shading @returns {Appearance["texture"]} */ #combined({ image, alpha }) {
+  /** @param {Shading} shading */ #combined({ image, alpha }) {
     const colour = image && this.#images.get(image.file);
     const opacity = alpha && this.#images.get(alpha.file);
     const shape = image ? colour : opacity;

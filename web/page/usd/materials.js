@@ -104,7 +104,7 @@ export class UsdMaterials {
   }
 
   /** What faces of a shading show: null where they are left out. @param {Shading} shading @param {Composer} composer
-   * @param {string} path @param {FaceSurface} surface @param {number} faces @returns {Shows | null} */
+   * @param {string} path @param {FaceSurface} surface @param {number} faces */
   show(shading, composer, path, surface, faces) {
     if (!shading.alpha && shading.opacity < shading.cutoff) {
       this.warn("transparent", TRANSPARENT, faces);
@@ -176,7 +176,7 @@ export class UsdMaterials {
     return known[kind];
   }
 
-  /** @param {Shading} shading @param {number} faces @returns {Described} */ uniform({ name, colour }, faces) {
+  /** @param {Shading} shading @param {number} faces */ uniform({ name, colour }, faces) {
     if (name === null) this.warn("default-material", "faces without a material got the default one", faces);
     const srgb = name === null || !colour ? DEFAULT_COLOUR : this.srgb(colour);
     const key = name === null ? "" : `${name} ${srgb}`;

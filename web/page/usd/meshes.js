@@ -143,8 +143,7 @@ export class UsdMeshes {
     }
   }
 
-  /** @param {Composer} composer @param {string} path @param {Surface} surface @returns {SetCorner | null} */
-  #normalsOf(composer, path, surface) {
+  /** @param {Composer} composer @param {string} path @param {Surface} surface */ #normalsOf(composer, path, surface) {
     /** @param {Primvar | null} normals @returns {SetCorner | null} */ const setterOf = (normals) => {
       const place = normals?.size === 3 ? placesOf("normals", normals, surface, this.warn) : null;
       if (!normals || !place) return null;

@@ -73,7 +73,7 @@ class Layer {
     return this;
   }
 
-  /** Another file, with its references followed; null for none. @param {string} file @returns {Layer | null} */
+  /** Another file, with its references followed; null for none. @param {string} file */
   layer(file) {
     const path = this.resolved(file);
     const known = this.layers.get(path);
@@ -194,7 +194,7 @@ class Layer {
   }
 }
 
-/** What a prim refers to. @param {Fields | undefined} fields @param {string} path @returns {Arc[]} */
+/** What a prim refers to. @param {Fields | undefined} fields @param {string} path */
 function arcsOf(fields, path) {
   return ARCS.flatMap((name) =>
     [fields?.[name] ?? []].flat().flatMap((one) => {

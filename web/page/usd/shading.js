@@ -41,7 +41,7 @@ const WRAPS = { repeat: "repeat", mirror: "mirror", clamp: "clamp", black: "clam
   primvar: null,
 };
 
-/** @param {Composer} composer @param {string} material @param {Warn} warn @returns {Unnumbered} */
+/** @param {Composer} composer @param {string} material @param {Warn} warn */
 export function readShading(composer, material, warn) {
   const plain = { ...noShading, name: material.slice(material.lastIndexOf("/") + 1) };
   const producers = CONTEXTS.map((context) => producer(composer, material, `outputs:${context}surface`));
@@ -95,7 +95,7 @@ const constant = (composer, node, name) => input(composer, node, name)?.value ??
 const idOf = (composer, node) => attributeOf(composer, node, "info:id")?.toString();
 
 /** The first of some inputs that says anything. @param {Composer} composer @param {string} shader @param {string[]}
- * names @param {Warn} warn @returns {Input | null} */
+ * names @param {Warn} warn */
 function inputOf(composer, shader, names, warn) {
   for (const name of names) {
     const found = input(composer, shader, name);
@@ -117,7 +117,7 @@ function networkOf(composer, { node, output }, warn) {
   return {};
 }
 
-/** @param {Composer} composer @param {string} node @param {string} channel @param {Warn} warn @returns {Texture} */
+/** @param {Composer} composer @param {string} node @param {string} channel @param {Warn} warn */
 function textureOf(composer, node, channel, warn) {
   /** @param {string} name */ const read = (name) => constant(composer, node, name);
   const wraps = ["wrapS", "wrapT"].map((name) => String(read(name) ?? "repeat"));
@@ -135,8 +135,7 @@ function textureOf(composer, node, channel, warn) {
   };
 }
 
-/** @param {Composer} composer @param {string} node @param {Warn} warn @returns {Coordinates} */
-function coordinatesOf(composer, node, warn) {
+/** @param {Composer} composer @param {string} node @param {Warn} warn */ function coordinatesOf(composer, node, warn) {
   const made = { primvar: "st", turn: 0, scale: [1, 1], offset: [0, 0] };
   let source = input(composer, node, "st")?.node;
   if (source && idOf(composer, source) === "UsdTransform2d") {
@@ -154,7 +153,7 @@ function coordinatesOf(composer, node, warn) {
 }
 
 /** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param
- * {number} count @returns {number[] | null} */
+ * {number} count */
 function numbers(value, count) {
   const flat = /** @type {unknown[]} */ ([value ?? []].flat());
   const found = flat.flatMap((one) =>

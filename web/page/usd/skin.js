@@ -15,7 +15,7 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
  * Numbers, weights: Numbers, matrix: Matrix, wrong: boolean }} Influences */
 
 /** The points of a mesh that is deformed; null for meshes at rest. @param {Composer} composer @param {string} path
- * @param {Warn} warn @returns {Posed | null} */
+ * @param {Warn} warn */
 export function posedPoints(composer, path, warn) {
   const points = numbersOf(composer, path, "points");
   const skeleton = targetAbove(composer, path, "skel:skeleton");
@@ -59,7 +59,7 @@ const kindOf = (composer, path) => composer.specsByPath[path]?.fields.typeName;
   return null;
 }
 
-/** @param {Composer} composer @param {string} path @param {number} count of points @returns {Influences | null} */
+/** @param {Composer} composer @param {string} path @param {number} count of points */
 function influencesOf(composer, path, count) {
   const joints = valueAbove(composer, path, "primvars:skel:jointIndices");
   const weights = valueAbove(composer, path, "primvars:skel:jointWeights");

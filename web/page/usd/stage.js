@@ -38,7 +38,8 @@ export const fieldsOf = (composer, prim, name) => composer.specsByPath[`${prim}.
 /** @type {Ask} */
 export const attributeOf = (composer, prim, name) => composer._resolveAttributeValue(`${prim}.${name}`) ?? null;
 
-/** An attribute that has numbers; null for none. @type {(composer: Composer, prim: string, name: string) => Numbers | null} */
+/** An attribute that has numbers; null for none. @type {(composer: Composer, prim: string, name: string) => Numbers
+ * | null} */
 export const numbersOf = attributeOf;
 
 /** An attribute that has names; empty for none. @type {(composer: Composer, prim: string, name: string) => string[]} */
@@ -141,7 +142,7 @@ export function boundMaterial(composer, prim) {
 export const isMaterial = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Material";
 
 /** A primvar; null for none. Prims inherit those that are constant. @param {Composer} composer @param {string} prim
- * @param {string} name @returns {Primvar | null} */
+ * @param {string} name */
 export function primvarOf(composer, prim, name) {
   for (const above of name ? upwards(prim) : []) {
     const found = arrayOf(composer, above, `primvars:${name}`, "constant");
@@ -151,7 +152,7 @@ export function primvarOf(composer, prim, name) {
 }
 
 /** The same of an attribute. @param {Composer} composer @param {string} prim @param {string} name @param {string}
- * usual the interpolation where none is given @returns {Primvar | null} */
+ * usual the interpolation where none is given */
 export function arrayOf(composer, prim, name, usual) {
   const given = attributeOf(composer, prim, name);
   if (given === null || typeof given === "string") return null;

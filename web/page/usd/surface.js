@@ -20,7 +20,7 @@ const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
  * triangle */
 
 /** The surface of a prim; null for no faces. @param {Composer} composer @param {string} path @param {string} kind
- * @param {Warn} warn @param {Numbers} [posed] points instead of the mesh's own @returns {FaceSurface | null} */
+ * @param {Warn} warn @param {Numbers} [posed] points instead of the mesh's own */
 export function surfaceOf(composer, path, kind, warn, posed) {
   if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
   const dimensions = dimensionsOf(kind, path, (name) => attributeOf(composer, path, name));
@@ -35,8 +35,7 @@ export function surfaceOf(composer, path, kind, warn, posed) {
   };
 }
 
-/** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] @returns {FaceSurface
- * | null} */
+/** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] */
 function meshSurface(composer, path, warn, posed) {
   const positions = posed ?? numbersOf(composer, path, "points") ?? [];
   const [counts, corners, holes] = ["faceVertexCounts", "faceVertexIndices", "holeIndices"].map((name) =>
@@ -72,8 +71,7 @@ function meshSurface(composer, path, warn, posed) {
   return { positions, triangles, faces, faceCount: counts.length, corners: chosen, cornerCount: corners.length };
 }
 
-/** @param {Composer} composer @param {string} path @param {string} name @returns {Numbers} */
-function integers(composer, path, name) {
+/** @param {Composer} composer @param {string} path @param {string} name */ function integers(composer, path, name) {
   const values = numbersOf(composer, path, name) ?? [];
   if (typeof values === "string" || !Array.from(values).every(Number.isInteger))
     throw new Error(`${path}: ${name} holds values that are not integers; export it again`);

@@ -7,8 +7,7 @@ const VARIANT = 10; // a type of specs
 /** @import { Fields, Specs } from "./stage.js" */
 /** @import { Data, MethodsOf, SpecTypes, TextParser } from "./three_private.js" */
 
-/** @param {unknown} value @returns {value is Data} */
-const isData = (value) => typeof value === "object" && value !== null;
+/** @param {unknown} value */ const isData = (value) => typeof value === "object" && value !== null;
 
 /** The symbols of values that have notes in parentheses. @param {Data} data */
 const noteSymbols = (data) => Object.getOwnPropertySymbols(data).filter((symbol) => symbol !== SPECIFIER);
