@@ -3,7 +3,6 @@
 import { axes, FIELD_OF_VIEW, fieldOfView, focal, lookAlong } from "./camera.js";
 import { $, element, isPressed, makeSlider, part, pressed } from "./elements.js";
 import { clamp } from "./vectors.js";
-
 /** @import { App } from "./app.js" @import { Hello, State } from "./protocol.js" */
 /** @import { Limits, OnNumber } from "./elements.js" @import { Vector } from "./vectors.js" */
 

@@ -16,7 +16,6 @@ import { Scenes } from "./scenes.js";
 import { add, scale } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
-
 /** @import { Box, Registers, Size } from "./camera.js" @import { Away } from "./connection.js" */
 /** @import { Frame, Hello, State, View } from "./protocol.js" @import { Move } from "./viewpoint.js" */
 
@@ -51,7 +50,6 @@ export class App {
 
   /** The state of the server, which has told it when it can change. */
   state = () => /** @type {State} */ (this.connection.state);
-
   device = () => this.frames.device;
 
   hasControl() {
@@ -60,9 +58,7 @@ export class App {
   }
 
   view = () => this.viewpoint.pose;
-
   size = () => this.frames.size;
-
   side = () => 2 ** this.state().scene.depth;
 
   /** @returns {Box} what is solid */ bounds() {

@@ -28,7 +28,6 @@ export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
 }
 
 /** @param {Pose} view */ export const target = (view) => add(view.eye, axes(view).look, view.distance);
-
 /** @param {Size} size */ export const measure = ([width, height]) => Math.min(0.75 * width, height);
 
 /** @param {number} fov @param {Size} size */

@@ -3,7 +3,6 @@
 import { Events } from "./events.js";
 import { PROTOCOL, readFrame } from "./protocol.js";
 import { askForReason } from "./refusal.js";
-
 /** @import { Registers, Size } from "./camera.js" */
 /** @import { Frame, Hello, Progress, State, View } from "./protocol.js" @import { Refusal } from "./refusal.js" */
 /** @import { Vector } from "./vectors.js" */

@@ -24,7 +24,6 @@ export const all = (selector, parent = document) =>
 
 /** @param {Element} button @param {boolean} on */
 export const pressed = (button, on) => button.setAttribute("aria-pressed", String(on));
-
 /** @param {Element} button */ export const isPressed = (button) => button.getAttribute("aria-pressed") === "true";
 
 /** Make an element. Properties whose name has a dash are attributes. @template {keyof HTMLElementTagNameMap} T

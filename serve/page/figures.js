@@ -1,7 +1,6 @@
 // The figures of the newest frames, over the picture.
 
 import { element } from "./elements.js";
-
 /** @import { Frame } from "./protocol.js" */
 
 const WINDOW = 2000; // milliseconds over which frames are counted

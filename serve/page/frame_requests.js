@@ -3,7 +3,6 @@
 
 import { toRegisters } from "./camera.js";
 import { Resolution } from "./resolution.js";
-
 /** @import { Pose, Registers, Size } from "./camera.js" @import { Device, Frame, View } from "./protocol.js" */
 
 const REST = 180; // milliseconds without a change, until finer frames are asked for

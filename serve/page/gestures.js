@@ -5,7 +5,6 @@ const WHEEL = 0.001; // per pixel that the wheel scrolls
 const PINCH = 0.01; // a trackpad's pinch arrives as a wheel with Ctrl
 const LINE = 16; // pixels
 const TAP = { seconds: 0.4, pixels: 12 };
-
 /** @typedef {{ x: number, y: number }} Place of the page, in pixels */
 
 /** What gestures do; right and down are pixels of the page. @typedef {{ turn: (right: number, down: number) => void,

@@ -2,7 +2,6 @@
 
 import { axes, target } from "./camera.js";
 import { add, scale } from "./vectors.js";
-
 /** @import { Pose } from "./camera.js" */
 
 const SECONDS = 0.35;

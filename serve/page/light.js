@@ -2,7 +2,6 @@
 
 import { $, all, makeButton, makeSlider, makeToolbar, pressed } from "./elements.js";
 import { add, clamp, length, scale, subtract } from "./vectors.js";
-
 /** @import { Page } from "./pilot.js" @import { Device } from "./protocol.js" @import { Vector } from "./vectors.js" */
 
 /** How hits are coloured; `light`: the place of the lamp in 1/16 voxel. `shading`: faces, report or flat;

@@ -3,7 +3,6 @@
 
 import { axes, focal, target } from "./camera.js";
 import { add, clamp, dot, scale, subtract } from "./vectors.js";
-
 /** @import { Box, Pose, Size } from "./camera.js" @import { Vector } from "./vectors.js" */
 
 const UPRIGHT = Math.PI / 2;

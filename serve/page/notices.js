@@ -1,7 +1,6 @@
 // What the page says over the picture: notices with progress, and why there is no connection.
 
 import { $, part } from "./elements.js";
-
 /** @import { Refusal } from "./refusal.js" */
 
 const box = () => $("notice");

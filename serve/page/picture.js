@@ -1,7 +1,6 @@
 // The picture on the canvas. A frame with four rays per pixel is averaged in linear light.
 
 import { save } from "./save.js";
-
 /** @import { Size } from "./camera.js" */
 
 const STEPS = 4096; // of linear light

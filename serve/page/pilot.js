@@ -6,7 +6,6 @@ import { Flight } from "./flight.js";
 import { Gestures } from "./gestures.js";
 import { dolly, fly, look, orbit, pan } from "./navigation.js";
 import { scale } from "./vectors.js";
-
 /** @import { Box, Pose, Size } from "./camera.js" @import { Commands } from "./tools.js" */
 /** @import { Move } from "./viewpoint.js" */
 

@@ -4,7 +4,6 @@
 
 export const PROTOCOL = 2;
 const HEADER = 56;
-
 /** @typedef {{ name: string, size: Size, width_step: number, position_limit: number, features: string[] }} Device */
 
 /** @typedef {{ protocol: number, viewer: number, device: Device, scenes: string[], suffixes: string[], limits: {
@@ -23,7 +22,6 @@ const HEADER = 56;
  * cycles: number | null, words: number | null, requested?: number }} Frame */
 
 /** @typedef {{ stage: string, done: number, total: number }} Progress of a scene that is loaded */
-
 /** @param {bigint} count */ const counter = (count) => (count === 0xffffffffffffffffn ? null : Number(count));
 
 /** Read a frame with its pixels, RGB; null where the message is none. @param {ArrayBuffer} data */

@@ -2,7 +2,6 @@
 
 import { Glide } from "./glide.js";
 import { showBusy } from "./tools.js";
-
 /** @import { Pose } from "./camera.js" @import { Flight } from "./flight.js" */
 /** @import { FrameRequests } from "./frame_requests.js" @import { Gestures } from "./gestures.js" */
 

@@ -3,7 +3,6 @@
 import { FIELD_OF_VIEW, lookAlong } from "./camera.js";
 import { $, element, makeButton, makeToolbar, part } from "./elements.js";
 import { frame } from "./navigation.js";
-
 /** @import { Pose } from "./camera.js" @import { Page } from "./pilot.js" @import { Commands } from "./tools.js" */
 /** @import { Vector } from "./vectors.js" */
 

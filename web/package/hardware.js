@@ -7,7 +7,6 @@
 
 import { Instance, VoxrtError } from "./instance.js";
 import { colourTable, FACES } from "./voxrt.js";
-
 /** @import { Source } from "./instance.js" @import { Camera, Look, Size } from "./voxrt.js" */
 
 /** @typedef {{ colour: Uint8Array, material: Uint8Array, face: Uint8Array, clocks: number, wordsRead: number }}

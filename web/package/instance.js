@@ -11,7 +11,6 @@ const encoder = new TextEncoder();
 
 /** The bytes of a text, as the modules take it. @param {string} text */
 export const textBytes = (text) => encoder.encode(`${text}\0`);
-
 /** @typedef {(...values: (number | boolean)[]) => number} Call */
 /** @typedef {{ memory: WebAssembly.Memory, _initialize: Call } & { [name: `vx_${string}`]: Call }} Exports */
 /** @typedef {BufferSource | Response | WebAssembly.Module} Source of a module: its bytes, or itself */

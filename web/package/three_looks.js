@@ -22,7 +22,6 @@ const NEAREST = 1003;
 
 /** The sRGB of a material's own colour. @param {Material} material @param {Voxrt} voxrt */
 export const colourOf = (material, voxrt) => rgbOf(material).map((channel) => voxrt.srgb(channel));
-
 /** @type {WeakMap<Material, { textured?: Appearance, coloured?: Appearance }>} */ const looks = new WeakMap();
 
 /** The look of a material, apart from alpha; null where its colour is uniform. @param {Material} material @param
@@ -69,7 +68,6 @@ export const colours = (attribute) => (vertex, out) => {
 };
 
 /** @typedef {{ data?: Uint8Array, width: number, height: number }} Source the image of a texture */
-
 /** @type {WeakMap<Source, Image | null>} */ const read = new WeakMap();
 
 /** The pixels of a texture, row 0 at v = 0; null where they cannot be read. @param {Texture} texture @param {Warn}

@@ -2,7 +2,6 @@
 
 import { textBytes, VoxrtError } from "./instance.js";
 import { BAKED_COLOURS, COLOURS, DEPTH_LIMIT, FILLS, WRAPS } from "./scene_format.js";
-
 /** @import { Appearance, Baked, Built, Daylight, Fitted, Image, Options, Scene } from "./scene_format.js" */
 /** @import { Voxrt } from "./voxrt.js" */
 

@@ -17,7 +17,6 @@ import { Painter } from "./painter.js";
 import { scale, add } from "./vectors.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Views } from "./views.js";
-
 /** @import { Box, Pose, Size } from "./camera.js" @import { Look } from "./light.js" */
 /** @import { Memory, Shown } from "./memory.js" @import { Source } from "./sources.js" */
 /** @import { Move } from "./viewpoint.js" */
@@ -69,21 +68,13 @@ export class App {
   }
 
   view = () => this.viewpoint.pose;
-
   device = () => this.painter.hello.device;
-
   state = () => ({ view: this.#look, scene: { depth: this.#memory?.depth ?? 1 } });
-
   size = () => this.frames.size;
-
   #shownSize = () => [$("picture").width, $("picture").height];
-
   side = () => 2 ** this.#shown().depth;
-
   bounds = () => this.#shown().bounds;
-
   limit = () => 8 * this.side() + 512;
-
   #shading = () => shadingOf(this.#shown(), this.#look);
 
   /** How hits are coloured, without light and mirrors. */

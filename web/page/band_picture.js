@@ -1,7 +1,6 @@
 // The picture on the canvas, of frames that come in bands.
 
 import { average, Picture } from "./picture.js";
-
 /** @import { Registers } from "./camera.js" @import { Frame } from "./protocol.js" */
 
 /** @typedef {{ top: number, pixels: Uint8ClampedArray<ArrayBuffer> }} Band the first row, and RGBA */

@@ -4,7 +4,6 @@ import { $, element } from "./elements.js";
 import { Hand } from "./hand.js";
 import { PLAIN } from "./memory.js";
 import { save } from "./save.js";
-
 /** @import { App } from "./app.js" @import { BoardCalls } from "./board_worker.js" */
 
 export class BoardPanel {

@@ -4,7 +4,6 @@ import { bitstreamOf, fitBeam } from "./board_bits.js";
 import { Hardware } from "./voxrt/hardware.js";
 import { FACES, Voxrt } from "./voxrt/voxrt.js";
 import { answerWith, count } from "./worker_answers.js";
-
 /** @import { Board, Content } from "./board_bits.js" @import { Lighting } from "./memory.js" */
 
 const OWN = "a shading of its own";

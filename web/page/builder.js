@@ -1,7 +1,6 @@
 // Builds memories of dropped files and examples in a worker. A new build ends the one before.
 
 import { Hand } from "./hand.js";
-
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 /** @import { Options } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */
 

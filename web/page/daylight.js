@@ -2,7 +2,6 @@
 
 import { $, isPressed, pressed } from "./elements.js";
 import { DAYLIGHT } from "./voxrt/voxrt.js";
-
 /** @import { Daylight } from "./voxrt/voxrt.js" */
 
 const FIELDS = /** @type {const} */ (["sun-x", "sun-y", "sun-z", "sky", "samples"]);

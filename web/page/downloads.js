@@ -3,7 +3,6 @@
 import { crc32 } from "./crc32.js";
 import { memBytes } from "./memory.js";
 import { DIALECT, hex } from "./voxrt/words.js";
-
 /** @import { Pose } from "./camera.js" @import { Shown } from "./memory.js" */
 /** @import { Daylight } from "./voxrt/voxrt.js" */
 

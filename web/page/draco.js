@@ -1,7 +1,6 @@
 // Meshes that are compressed by Draco, for GLTFLoader: Google's decoder, loaded when a file needs it.
 
 import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
-
 /** @import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js" */
 
 /** @typedef {Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array} Values */

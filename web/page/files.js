@@ -1,7 +1,6 @@
 // Dropped files as a scene: three.js parses them. Nothing is fetched but the files themselves.
 
 import { FileError, Folder, stem } from "./folder.js";
-
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 /** @import { Scene, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
@@ -9,7 +8,6 @@ import { FileError, Folder, stem } from "./folder.js";
 /** @typedef {{ name: string, file: string } & ({ scene: ReadScene, memory?: undefined } | { memory: Omit<Memory,
  * "name" | "file">, scene?: undefined })} ReadFile */
 /** @typedef {(main: DroppedFile, folder: Folder, voxrt: Voxrt) => Promise<ReadScene>} Reader */
-
 /** @type {() => Promise<Reader>} */ const usd = async () => (await import("./usd/read.js")).readUsd;
 /** @type {() => Promise<Reader>} */ const gltf = async () => (await import("./read_gltf.js")).readGltf;
 
@@ -26,7 +24,6 @@ const READERS = new Map([
   ["usd", usd],
 ]);
 const FORMATS = [...READERS.keys(), "vox", "mem"];
-
 /** @param {string} name */ const extension = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 
 /** The first scene that no other one names: layers of USD refer to each other. @param {DroppedFile[]} files */

@@ -3,7 +3,6 @@
 import { decodeImage } from "./images.js";
 import { colours } from "./voxrt/scene.js";
 import { Warnings } from "./voxrt/warnings.js";
-
 /** @import { BufferGeometry, Material, Object3D, Texture } from "three" */
 /** @import { GLTFParser } from "three/addons/loaders/GLTFLoader.js" @import { Folder } from "./folder.js" */
 /** @import { Look, Setter } from "./voxrt/scene.js" @import { Appearance, Image, Wrap } from "./voxrt/voxrt.js" */

@@ -4,11 +4,9 @@
 import { toRegisters } from "./camera.js";
 import { $, showFacts } from "./elements.js";
 import { Hand } from "./hand.js";
-
 /** @import { App } from "./app.js" @import { Compared, HardwareCalls } from "./hardware_worker.js" */
 
 const [WIDTH, HEIGHT] = [320, 240];
-
 /** @param {number} number */ const count = (number) => number.toLocaleString("en");
 
 export class HardwarePanel {

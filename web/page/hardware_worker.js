@@ -3,7 +3,6 @@
 import { Hardware } from "./voxrt/hardware.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 import { answerWith, count } from "./worker_answers.js";
-
 /** @import { Rendered } from "./voxrt/hardware.js" @import { Camera, Look, Rows, Size } from "./voxrt/voxrt.js" */
 
 /** @typedef {Rendered & { seconds: number, wrong: number }} Compared `wrong`: pixels in which both differ */

@@ -3,7 +3,6 @@
 import { $, element } from "./elements.js";
 import { dot, subtract } from "./vectors.js";
 import { hex, isLeaf, material, octant } from "./voxrt/words.js";
-
 /** @import { App } from "./app.js" @import { Registers, Size } from "./camera.js" */
 /** @import { Vector } from "./vectors.js" @import { Followed, Reading } from "./voxrt/voxrt.js" */
 

@@ -2,7 +2,6 @@
 
 import { PLAIN } from "./memory.js";
 import { BACKGROUND, FACES } from "./voxrt/voxrt.js";
-
 /** @import { Look } from "./light.js" @import { Lighting, Memory } from "./memory.js" */
 /** @import { Look as Shading } from "./voxrt/voxrt.js" */
 
@@ -10,7 +9,6 @@ const LAMP = [1.4, 1.9, 1.1]; // sides of the world
 const BOUNCES = 3;
 const bright = matchMedia("(prefers-color-scheme: light)").matches;
 const AROUND = bright ? [228, 234, 244] : BACKGROUND;
-
 const START = { shading: "faces", features: [], light: [0, 0, 0] };
 /** @type {Look} */
 export const FIRST_LOOK = { ...START, ambient: PLAIN.ambient, bounces: BOUNCES, background: AROUND };

@@ -12,7 +12,6 @@ import { makePilot } from "./pilot.js";
 import { save } from "./save.js";
 import { sourceOfExample, sourceOfFiles } from "./sources.js";
 import { makeTools } from "./tools.js";
-
 /** @import { Site } from "./app.js" */
 
 const CLICK = 5; // pixels that a click may move

@@ -23,7 +23,6 @@ const HIGHEST = 2 ** 31 - 1;
 
 /** @param {unknown} value @returns {value is Record<string, unknown>} */
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
-
 const isByte = isWhole(0, 255);
 const isPlace = isList(isWhole(-HIGHEST, HIGHEST), 3);
 /** @type {Check} */ const isFlag = (value) => typeof value === "boolean";

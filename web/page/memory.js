@@ -2,7 +2,6 @@
 
 import { FACES } from "./voxrt/voxrt.js";
 import { hex } from "./voxrt/words.js";
-
 /** @import { Box, Registers } from "./camera.js" @import { Manifest } from "./manifest.js" */
 /** @import { Baked, Fitted, Material, Warning } from "./voxrt/voxrt.js" */
 
@@ -11,7 +10,6 @@ import { hex } from "./voxrt/words.js";
 
 /** @type {Lighting} the lighting of a memory that names no other */
 export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false, bounces: 0, faces: FACES };
-
 /** @type {Lighting} the lighting of a memory with baked light */ export const FLAT = { ...PLAIN, flat: true };
 
 /** A memory that was built or read. `fixed`: it was read, and cannot be built otherwise. `view`: the camera of its

@@ -4,14 +4,12 @@ import { BoardPanel } from "./board_panel.js";
 import { Budget } from "./budget.js";
 import { DaylightControl } from "./daylight.js";
 import { $, all, element, pressed, showFacts } from "./elements.js";
-
 /** @import { App, Site } from "./app.js" @import { Shown } from "./memory.js" */
 
 const SOON = 150; // milliseconds after the last change of the slider
 const KIB = 256; // words
 const MIB = 1024 * KIB;
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
-
 /** @param {number} number */ const count = (number) => number.toLocaleString("en");
 
 /** @param {number} words */ function size(words) {

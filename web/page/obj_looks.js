@@ -2,7 +2,6 @@
 
 import { decodeImage } from "./images.js";
 import { colours } from "./voxrt/scene.js";
-
 /** @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" @import { Folder } from "./folder.js" */
 /** @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
 /** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */

@@ -5,7 +5,6 @@
 
 import { Events } from "./events.js";
 import { Hand } from "./hand.js";
-
 /** @import { Band, BandFrame } from "./band_picture.js" @import { Registers, Size } from "./camera.js" */
 /** @import { Memory } from "./memory.js" @import { Vector } from "./vectors.js" */
 /** @import { Look } from "./voxrt/voxrt.js" @import { WorkerCalls } from "./worker.js" */

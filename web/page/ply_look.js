@@ -3,13 +3,11 @@
 
 import { decodeImage } from "./images.js";
 import { Warnings } from "./voxrt/warnings.js";
-
 /** @import { BufferGeometry } from "three" @import { PLYLoader } from "three/addons/loaders/PLYLoader.js" */
 /** @import { Folder } from "./folder.js" @import { Rules, Setter } from "./voxrt/scene.js" */
 /** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {Record<string, string>} Properties their types by name */
-
 const STORED = "stored_colour";
 const BYTES = { char: 127, int8: 127, uchar: 255, uint8: 255 };
 /** @type {Record<string, number>} */

@@ -7,12 +7,10 @@ const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 /** @typedef {{ width: number, height: number, depth: number, type: number, interlaced: boolean }} Head */
 /** @typedef {(line: Uint8Array, i: number) => number} Read a value of a line */
 /** @typedef {(line: Uint8Array, column: number, out: Uint8Array, at: number) => void} Write a pixel of a line */
-
 /** @type {Record<number, number>} by the type of the image */ const CHANNELS = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 // biome-ignore format: x, y, steps
 const PASSES = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
 export const MOST_PIXELS = 1 << 26;
-
 /** @param {Uint8Array} bytes */ export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
 
 /** The pixels have 4 bytes, of 16 bits the upper 8. Throws an Error where the file is broken. @param

@@ -3,7 +3,6 @@
 // polygon of more corners is cut by its ears, in its plane.
 
 import { add, dot, subtract } from "./vectors.js";
-
 /** @import { Vector } from "./vectors.js" */
 
 /** @typedef {number[]} Triangle three indices of corners */

@@ -6,7 +6,6 @@ import { PLYLoader } from "./three/addons/loaders/PLYLoader.js";
 import { STLLoader } from "./three/addons/loaders/STLLoader.js";
 import { Mesh } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
-
 /** @import { BufferGeometry } from "three" @import { Reader } from "./files.js" */
 /** @import { DroppedFile } from "./folder.js" @import { Rules } from "./voxrt/scene.js" */
 /** @import { Voxrt } from "./voxrt/voxrt.js" */

@@ -7,7 +7,6 @@ import { MeshoptDecoder } from "./three/addons/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "./three/addons/loaders/GLTFLoader.js";
 import { LoadingManager, Texture } from "./three/three.core.js";
 import { sceneOf } from "./voxrt/scene.js";
-
 /** @import { Material, Object3D } from "three" @import { Reader } from "./files.js" */
 /** @import { DroppedFile, Folder } from "./folder.js" @import { GltfParser } from "./gltf_looks.js" */
 

@@ -3,7 +3,6 @@
 import { readManifest } from "./manifest.js";
 import { PLAIN } from "./memory.js";
 import { BACKGROUND } from "./voxrt/voxrt.js";
-
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 
 /** @typedef {Omit<Memory, "name" | "file" | "depth"> & { depth: number | null }} ReadMemory `depth`: null where

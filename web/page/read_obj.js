@@ -6,7 +6,6 @@ import { withoutConcave } from "./polygons.js";
 import { MTLLoader } from "./three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "./three/addons/loaders/OBJLoader.js";
 import { sceneOf } from "./voxrt/scene.js";
-
 /** @import { Reader } from "./files.js" @import { MaterialInfo } from "three/addons/loaders/MTLLoader.js" */
 
 /** @type {Map<number, string>} encodings by their mark */ const MARKS = new Map([

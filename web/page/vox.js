@@ -4,12 +4,10 @@
 import { dot } from "./vectors.js";
 import { BACKGROUND } from "./voxrt/voxrt.js";
 import { DAMAGED, readChunks } from "./vox_chunks.js";
-
 /** @import { Memory } from "./memory.js" @import { VoxFile } from "./vox_chunks.js" */
 /** @import { Voxrt, Warning } from "./voxrt/voxrt.js" */
 
 /** @typedef {{ model: number, rows: number[][], offset: number[] }} Instance */
-
 const VOXEL_LIMIT = 1 << 25;
 const INSTANCE_LIMIT = 1 << 16;
 const NESTING_LIMIT = 256;

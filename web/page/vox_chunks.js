@@ -1,7 +1,6 @@
 // The chunks of MagicaVoxel files.
 
 export const DAMAGED = "the file is damaged; save it again";
-
 /** @typedef {{ size: number[], voxels: Uint8Array }} Model `voxels`: x, y, z and colour of each */
 
 /** A node of the scene graph: a transform with its child, a group with its children, or a shape with its models.

@@ -3,7 +3,6 @@
 import { FLAT } from "./memory.js";
 import { Voxrt } from "./voxrt/voxrt.js";
 import { answerWith } from "./worker_answers.js";
-
 /** @import { DroppedFile } from "./folder.js" @import { ReadFile } from "./files.js" */
 /** @import { Memory } from "./memory.js" @import { Camera, Look, Options, Size, Triple } from "./voxrt/voxrt.js" */
 

@@ -3,7 +3,6 @@
 /** @import { Calls } from "./hand.js" */
 
 /** @typedef {{ id: number, result: never, problem?: string, stage?: never }} Reply */
-
 /** @param {number} number */ export const count = (number) => number.toLocaleString("en");
 
 /** Answer calls. Pixels and colours of a result are moved, not copied. @param {Calls} calls */

@@ -10,7 +10,6 @@ const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 
 /** @typedef {(parser: CrateParser) => any} Read a number or a truth value */
 /** @typedef {new (length: number) => { [index: number]: number }} Kind of array */
-
 /** @type {Read} */ const half = (parser) => parser._readHalf();
 /** @type {Read} */ const double = ({ reader }) => reader.readFloat64();
 /** @type {Read} */ const integer = ({ reader }) => reader.readInt32();

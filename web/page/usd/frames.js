@@ -2,7 +2,6 @@
 // would lose.
 
 import { Matrix4, Quaternion, Vector3 } from "../three/three.core.js";
-
 /** @import { Attributes, Fields, Found, Numbers } from "./stage.js" */
 /** @import { Composer, MethodsOf } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 

@@ -1,7 +1,6 @@
 // The textures of a USD stage: images graded by their colour space, scale and bias, with the alpha of opacity textures.
 
 import { decodeImage } from "../images.js";
-
 /** @import { Folder } from "../folder.js" @import { Pixels } from "../images.js" */
 /** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" */
 /** @import { Coordinates, Shading, Texture } from "./shading.js" @import { Composer } from "./three_private.js" */

@@ -2,12 +2,10 @@
 
 import { fieldsOf, isShown, targetsOf } from "./stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
-
 /** @import { Attributes, Found, Numbers } from "./stage.js" */
 /** @import { Composer, MethodsOf } from "./three_private.js" */
 
 /** @typedef {(problem: string) => never} Refuse */
-
 const AGAIN = "export the instancer again";
 const OTHERS = "have other lengths";
 

@@ -5,7 +5,6 @@ import { coordinates } from "./images.js";
 import { noShading, readShading } from "./shading.js";
 import { attributeOf, boundMaterial, fieldsOf, isMaterial, numbersOf, primvarOf, targetsOf } from "./stage.js";
 import { placesOf } from "./surface.js";
-
 /** @import { UsdImages } from "./images.js" @import { Described } from "../voxrt/scene.js" */
 /** @import { Appearance, Voxrt } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
 /** @import { Shading, Unnumbered } from "./shading.js" @import { Primvar } from "./stage.js" */

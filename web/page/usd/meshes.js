@@ -8,7 +8,6 @@ import { posedPoints } from "./skin.js";
 import { dimensionsOf, isNewSolid, isSolid } from "./solids.js";
 import { arrayOf, attributeOf, primvarOf } from "./stage.js";
 import { placesOf, surfaceOf } from "./surface.js";
-
 /** @import { Material, Matrix4, Mesh as ThreeMesh } from "three" */
 /** @import { Described, Look, Rules } from "../voxrt/scene.js" @import { Warn } from "../voxrt/warnings.js" */
 /** @import { CornerLook, SetCorner, UsdMaterials } from "./materials.js" @import { Shading } from "./shading.js" */

@@ -16,7 +16,6 @@ import { ELSEWHERE, referenceMethods } from "./references.js";
 import { stageMethods } from "./stage.js";
 import { textMethods } from "./text.js";
 import { MEMBERS, patch } from "./three_private.js";
-
 /** @import { Reader } from "../files.js" @import { DroppedFile, Folder } from "../folder.js" */
 /** @import { Warn } from "../voxrt/warnings.js" @import { Fields, Found, Spec } from "./stage.js" */
 /** @import { Composer, MethodsOf } from "./three_private.js" */

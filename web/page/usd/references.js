@@ -2,13 +2,11 @@
 // inherit from others, and sublayers: their specs are put in place of the reference, below what the prim itself says.
 
 import { targetsOf } from "./stage.js";
-
 /** @import { Fields, Found, List, Specs } from "./stage.js" */
 /** @import { Composer, MethodsOf } from "./three_private.js" */
 
 const ARCS = /** @type {const} */ (["references", "payload", "inheritPaths", "specializes"]);
 export const ELSEWHERE = [...ARCS, "subLayers"];
-
 /** @typedef {{ file: string, prim: string, text: string }} Arc what a prim refers to; file or prim may be empty */
 /** @typedef {(file: string) => Specs | null} LayerOf the specs of a file; null for none */
 

@@ -1,7 +1,6 @@
 // The colour and opacity of USD materials, as voxrt build reads them (voxelize/formats/usd/shading.py).
 
 import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
-
 /** @import { Wrap } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
 /** @import { Numbers, Value } from "./stage.js" @import { Composer } from "./three_private.js" */
 

@@ -3,7 +3,6 @@
 
 import { attributeOf, fieldsOf, namesOf, numbersOf, targetsOf, upwards } from "./stage.js";
 import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
-
 /** @import { Matrix4 as Matrix } from "three" @import { Numbers, Value } from "./stage.js" */
 /** @import { Composer } from "./three_private.js" @import { Warn } from "../voxrt/warnings.js" */
 

@@ -6,7 +6,6 @@ const SEGMENTS = 128;
 /** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex, three vertices per
  * triangle */
 /** @typedef {[number, number]} Place of a profile: radius and height */
-
 /** @type {Record<string, number>} */ const AXES = { X: 0, Y: 1, Z: 2 };
 
 /** Lengths, each of some solids, and the axis of those that are not alike along all. @typedef {{ size: number,

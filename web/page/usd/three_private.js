@@ -4,7 +4,6 @@
 import { USDAParser } from "../three/addons/loaders/usd/USDAParser.js";
 import { USDComposer } from "../three/addons/loaders/usd/USDComposer.js";
 import { USDCParser } from "../three/addons/loaders/usd/USDCParser.js";
-
 /** @import { Group, Object3D } from "three" @import { Attributes, Fields, Specs, Value } from "./stage.js" */
 
 /** The REVISION of three.js with which the members were checked. */
@@ -47,7 +46,6 @@ export const MEMBERS = {
 
 /** The methods of USDCParser's `reader` that are called. */
 export const READER = "readUint8 readInt32 readUint32 readInt64 readUint64 readFloat64 seek tell".split(" ");
-
 /** @typedef {{ specsByPath: Specs }} Parsed */
 
 /** @typedef {{ specsByPath: Specs, childrenByPath: Map<string, { name: string, path: string }[]>,
