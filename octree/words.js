@@ -13,8 +13,7 @@ export const material = (word) => word & 0xff;
 /** The leaf of a material id. @param {number} id */
 export const leaf = (id) => 0xffffff00 + id;
 
-/** The octant of the block to which a pointer leads that stands at an address. @param {number} pointer @param
- * {number} address */
+/** The octant of a pointer's block that an address has. @param {number} pointer @param {number} address */
 export const octant = (pointer, address) => (address - pointer) & 7;
 
 /** Eight hexadecimal digits. @param {number} word */

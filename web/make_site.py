@@ -33,6 +33,7 @@ MODULES = ROOT / "web" / "node_modules"
 LOADERS = ("GLTFLoader", "OBJLoader", "MTLLoader", "STLLoader", "PLYLoader", "USDLoader")
 ADDONS = (*(f"loaders/{name}.js" for name in LOADERS), "libs/meshopt_decoder.module.js")
 MANUAL = re.compile(r"^[ \t]*/\*\*\n(?:[ \t]*\*(?!/).*\n)*[ \t]*\*/\n", re.MULTILINE)
+TYPES = re.compile(r"^[ \t]*/\*\*(?:(?!\*/)[\s\S])*\*/\n|/\*\*(?:(?!\*/)[\s\S])*\*/ ?", re.MULTILINE)
 IMPORT = re.compile(r"""(from\s+)(['"])([^'"]+)\2""")
 
 SHARED = (
@@ -72,6 +73,10 @@ def make_site(*modules: Path) -> None:
     (made / "voxrt").mkdir()
     for script in (*PACKAGE.glob("*.js"), ROOT / "octree" / "words.js", *modules):
         shutil.copyfile(script, made / "voxrt" / script.name)
+    for script in made.rglob("*.js"):
+        script.write_text(
+            TYPES.sub("", script.read_text(encoding="utf-8")), encoding="utf-8"
+        )  # no types, as for three.js
     shutil.copyfile(ROOT / "LICENSE", made / "LICENSE")
     (made / "package.json").write_text('{"private": true, "type": "module"}\n')  # for Node
     add_three(made / "three")

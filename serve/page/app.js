@@ -170,8 +170,7 @@ export class App {
     if (trouble) notice("error", "There are no frames", trouble);
   }
 
-  /** Forget the fields that the server has, and keep the others in its view. @param {View} view @param {boolean}
-   * mine */
+  /** Forget the fields that the server has; keep the others in its view. @param {View} view @param {boolean} mine */
   #confirm(view, mine) {
     const missing = Object.entries(this.#unconfirmed).filter(
       ([name, value]) =>

@@ -19,8 +19,7 @@ export const FIELD_OF_VIEW = { min: 5, max: 140, usual: 35 };
  * the picture. @typedef {{ eye: Vector, yaw: number, pitch: number, fov: number, distance: number, flipX: boolean,
  * flipY: boolean }} Pose */
 
-/** The camera registers: the position is in 1/16 voxel. @typedef {{ position: Vector, look: Vector, right: Vector,
- * up: Vector }} Registers */
+/** `position`: in 1/16 voxel. @typedef {{ position: Vector, look: Vector, right: Vector, up: Vector }} Registers */
 
 /** @param {Pick<Pose, "yaw" | "pitch">} angles */ export function axes({ yaw, pitch }) {
   const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];

@@ -150,8 +150,8 @@ export class Connection extends Events {
     this.emit("frame", frame);
   }
 
-  /** Change the view; a frame with this request follows. Returns the request's number. @param {Partial<View> & {
-   * camera: Registers, size: Size }} fields */
+  /** Change the view; returns the number of the request. @param {Partial<View> & { camera: Registers, size: Size }}
+   * fields */
   changeView(fields) {
     if (!this.connected) return 0;
     const number = this.#send("view", fields);

@@ -45,8 +45,7 @@ export function makeButton(parent, label, onclick, title = "") {
   return made;
 }
 
-/** Show the terms and values of a list, each pair in a box of its own. @param {HTMLElement} list @param
- * {Record<string, string>} facts */
+/** Show terms and values, each pair in a box. @param {HTMLElement} list @param {Record<string, string>} facts */
 export function showFacts(list, facts) {
   const boxes = Object.entries(facts).map(([term, value]) =>
     element("div", {}, element("dt", {}, term), element("dd", {}, value)),
@@ -66,8 +65,8 @@ function makeInput(label, type, limits, onInput) {
   return input;
 }
 
-/** A slider with its name; `numbered` adds a field for the number. @param {HTMLElement} parent @param {string} label
- * @param {Limits} limits @param {OnNumber} onInput */
+/** A slider; `numbered` adds a field. @param {HTMLElement} parent @param {string} label @param {Limits} limits
+ * @param {OnNumber} onInput */
 export function makeSlider(parent, label, limits, onInput, numbered = false) {
   const inputs = (numbered ? ["range", "number"] : ["range"]).map((type) => makeInput(label, type, limits, onInput));
   parent.append(

@@ -38,15 +38,13 @@ export function dolly(view, factor, limit) {
   return within({ ...view, distance }, add(centre, axes(view).look, -distance), limit);
 }
 
-/** Make a point the target, in the middle of the picture, and come closer. @param {Pose} view @param {Vector} point
- * @param {number} limit */
+/** Make a point the target, and come closer. @param {Pose} view @param {Vector} point @param {number} limit */
 export function focus(view, point, limit) {
   const distance = Math.max(NEAREST, Math.min(view.distance, dot(subtract(point, view.eye), axes(view).look)) * 0.6);
   return within({ ...view, distance }, add(point, axes(view).look, -distance), limit);
 }
 
-/** Move in voxels: to the right of the view, up in the world, forward in the view. @param {Pose} view @param
- * {Vector} way @param {number} limit */
+/** Move in voxels: right, up in the world, forward. @param {Pose} view @param {Vector} way @param {number} limit */
 export function fly(view, [sideways, upwards, forwards], limit) {
   const { look: ahead, right } = axes(view);
   return within(view, add(add(add(view.eye, right, sideways), [0, 1, 0], upwards), ahead, forwards), limit);

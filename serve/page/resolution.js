@@ -24,8 +24,8 @@ export class Resolution {
 
   /** @param {Size} size */ seconds = ([width, height]) => (this.cost === null ? 0 : this.cost * width * height);
 
-  /** The frame of the stage at rest; with 2 samples a frame has twice the columns and rows. @param {HTMLElement}
-   * stage @param {Device} device */
+  /** The frame of the stage at rest; 2 samples double columns and rows. @param {HTMLElement} stage @param {Device}
+   * device */
   finest(stage, device) {
     const ratio = Math.min(devicePixelRatio, RATIO);
     const wanted = this.fixed ?? [stage.clientWidth * ratio, stage.clientHeight * ratio];
@@ -64,8 +64,7 @@ export class Resolution {
   }
 }
 
-/** A size of the same shape, divided by `part`, that the device can render. @param {Size} size @param {number} part
- * @param {Device} device */
+/** A part of a size that the device can render. @param {Size} size @param {number} part @param {Device} device */
 function fitting([width, height], part, device) {
   const [widest, highest] = device.size;
   const factor = Math.min(1 / part, widest / width, highest / height, Math.sqrt(PIXELS / (width * height)));

@@ -20,8 +20,7 @@ export const textBytes = (text) => encoder.encode(`${text}\0`);
 
 /** @typedef {{ readonly length: number, set(values: ArrayLike<number>): void }} NumberArray */
 
-/** What Voxrt and Hardware have in common. Buffers of a module move when its memory grows: views are made anew each
- * time. */
+/** What Voxrt and Hardware have in common. Buffers move when the memory grows: views are made anew. */
 export class Instance {
   /** @type {Exports} */ wasm;
 
@@ -81,8 +80,7 @@ export class Instance {
     return result;
   }
 
-  /** Replace what the machine throws instead of the library: out of memory, out of stack. @template T @param {() =>
-   * T} work @returns {T} */
+  /** Replace errors of the machine: out of memory, out of stack. @template T @param {() => T} work @returns {T} */
   guard(work) {
     try {
       return work();

@@ -47,8 +47,7 @@ export function appearanceOfThree(material, geometry, warn) {
 /** @param {Texture} texture */
 const wrapsOf = ({ wrapS, wrapT }) => [wrapS, wrapT].map((wrap) => WRAPS[wrap] ?? "repeat");
 
-/** Sets u and v, which the texture's offset, repeat and rotation move. @param {Attribute} uv @param {Texture}
- * texture */
+/** Sets u and v, moved as the texture says. @param {Attribute} uv @param {Texture} texture */
 function coordinatesOf(uv, texture) {
   texture.updateMatrix();
   const [a, b, , c, d, , e, f] = texture.matrix.elements;
@@ -70,8 +69,7 @@ export const colours = (attribute) => (vertex, out) => {
 /** @typedef {{ data?: Uint8Array, width: number, height: number }} Source the image of a texture */
 /** @type {WeakMap<Source, Image | null>} */ const read = new WeakMap();
 
-/** The pixels of a texture, row 0 at v = 0; null where they cannot be read. @param {Texture} texture @param {Warn}
- * warn */
+/** The pixels of a texture, row 0 at v = 0; null if unreadable. @param {Texture} texture @param {Warn} warn */
 function pixelsOf(texture, warn) {
   const image = /** @type {Source | null} */ (texture.image);
   if (image && !read.has(image)) read.set(image, pixelsOfImage(image));

@@ -69,8 +69,8 @@ export function joined(parts, rules, keyOf, warn) {
 const cornersOf = ({ index }, count) =>
   index ? index.array.subarray(0, index.count) : Uint32Array.from({ length: count }, (_, i) => i);
 
-/** The runs of corners of one material: start, end, material. @param {ThreeMesh} mesh @param {number} corners @param
- * {Warn} warn @returns {[number, number, Material][]} */
+/** Runs of one material: start, end, material. @param {ThreeMesh} mesh @param {number} corners @param {Warn} warn
+ * @returns {[number, number, Material][]} */
 function runsOf({ geometry, material }, corners, warn) {
   const whole = corners - (corners % 3);
   if (whole < corners)
@@ -81,8 +81,7 @@ function runsOf({ geometry, material }, corners, warn) {
   return geometry.groups.map((group) => [group.start, endOf(group), material[group.materialIndex ?? 0]]);
 }
 
-/** The normals of all vertices, zeros where a mesh has none. @param {[number, Attribute][]} normals @param {number}
- * count */
+/** The normals of all vertices, or zeros. @param {[number, Attribute][]} normals @param {number} count */
 function joinedNormals(normals, count) {
   const single = normals.every(([, { array }]) => array instanceof Float32Array);
   const all = single ? new Float32Array(3 * count) : new Float64Array(3 * count);

@@ -82,8 +82,7 @@ export class Voxrt extends Instance {
     );
   }
 
-  /** The least number of levels by which the memory must be coarser to have at most so many words. @param {number}
-   * words */
+  /** The fewest levels by which the memory must be coarser to have so many words. @param {number} words */
   levelThatFits(words) {
     return this.guard(() => this.checked(this.wasm.vx_level_that_fits(words)));
   }
@@ -168,8 +167,7 @@ export class Voxrt extends Instance {
     return this.guard(() => [...this.view(Float64Array, this.wasm.vx_voxel_counts(), 256)]);
   }
 
-  /** Cubes that hold all that is solid, no finer than 1/64 of the world: x, y, z of the lowest corner and the side,
-   * each. */
+  /** Cubes around all that is solid, 1/64 of the world or more: x, y, z of the lowest corner and the side. */
   outline() {
     return this.guard(() => {
       const count = this.checked(this.wasm.vx_outline());

@@ -6,8 +6,7 @@ import { DIALECT, hex } from "./voxrt/words.js";
 /** @import { Pose } from "./camera.js" @import { Shown } from "./memory.js" */
 /** @import { Daylight } from "./voxrt/voxrt.js" */
 
-/** The manifest of a memory, as voxrt build writes it (export/manifest.py): its own, if it came with one. @param
- * {Shown} memory */
+/** The manifest as voxrt build writes it (export/manifest.py), or that of the memory. @param {Shown} memory */
 export function manifestOf(memory) {
   const { name, file, words, depth, materials, grid, objects, warnings, seconds, fill, lighting, baked, voxels } =
     memory;

@@ -4,8 +4,7 @@ import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
 /** @import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js" */
 
 /** @typedef {Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array} Values */
-/** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind
- * of array */
+/** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind */
 /** @typedef {"DT_FLOAT32" | "DT_INT8" | "DT_UINT8" | "DT_INT16" | "DT_UINT16" | "DT_UINT32"} Code of a kind */
 
 /** What is used of the decoder. @typedef {Record<Code, number> & Library} Draco */

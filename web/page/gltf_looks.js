@@ -126,8 +126,8 @@ export class GltfLooks {
     return factor[3] < cutoff;
   }
 
-  /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index of its material
-   * @param {BufferGeometry} geometry */
+  /** The look of a primitive; null where its colour is uniform. @param {number | undefined} index @param
+   * {BufferGeometry} geometry */
   appearance(index, geometry) {
     const plain = { name: "default", factor: [1, 1, 1, 1], texture: undefined, cutoff: 0, mirror: false };
     const { name, factor, texture: info, cutoff, mirror } = index === undefined ? plain : this.properties(index);

@@ -28,8 +28,7 @@ import { decodePng, isPng, MOST_PIXELS } from "./png.js";
   return { width, height, pixels: new Uint8Array(context.getImageData(0, 0, width, height).data.buffer) };
 }
 
-/** A JPEG file without its colour profile and its orientation (APP1 and APP2). @param {Uint8Array<ArrayBuffer>}
- * bytes */
+/** A JPEG file without colour profile and orientation (APP1, APP2). @param {Uint8Array<ArrayBuffer>} bytes */
 function bareJpeg(bytes) {
   if (bytes[0] !== 0xff || bytes[1] !== 0xd8) return bytes;
   const kept = [bytes.subarray(0, 2)];

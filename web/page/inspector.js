@@ -9,9 +9,7 @@ import { hex, isLeaf, material, octant } from "./voxrt/words.js";
 const AXES = "xyz";
 const EDGES = ["01", "23", "45", "67", "02", "13", "46", "57", "04", "15", "26", "37"]; // corners
 const SVG = "http://www.w3.org/2000/svg";
-
-/** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of the ray of a pixel, at column and
- * row */
+/** @typedef {Followed & { registers: Registers, size: Size, pixel: Size }} Way of a pixel's ray */
 
 export class Inspector {
   /** @type {Way | null} */ #way = null;
@@ -85,8 +83,8 @@ export class Inspector {
   return made;
 }
 
-/** The edges of an octant in the picture; null where a corner is behind the eye. @param {Reading} reading @param
- * {Registers} registers @param {Size} size */
+/** The edges of an octant; null behind the eye. @param {Reading} reading @param {Registers} registers @param {Size}
+ * size */
 function edgesOf({ corner, level }, { position, look, right, up }, [width, height]) {
   const side = 2 ** level;
   const eye = position.map((value) => value / 16);

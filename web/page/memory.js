@@ -18,8 +18,7 @@ export const PLAIN = { position: [0, 0, 0], ambient: 90, on: false, flat: false,
  * object[], warnings: Warning[], lighting?: Lighting | null, view?: Registers | null, manifest?: Manifest | null,
  * baked?: Baked | null, fitted?: Fitted | null, fill?: string, seconds?: number, fixed?: boolean }} Memory */
 
-/** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with the voxels by material, and the box that holds
- * what is solid */
+/** @typedef {Memory & { voxels: number[], bounds: Box }} Shown with voxels by material */
 
 /** The text of a .mem file: one word per line. @param {Uint32Array} words */
 export function memBytes(words) {

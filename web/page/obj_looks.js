@@ -6,9 +6,7 @@ import { colours } from "./voxrt/scene.js";
 /** @import { Attribute, Rules, Setter } from "./voxrt/scene.js" */
 /** @import { Appearance, Voxrt, Warning } from "./voxrt/voxrt.js" */
 
-/** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image and its
- * coordinates */
-
+/** @typedef {{ file: string, scale: number[], offset: number[], clamp: boolean }} Placed an image */
 const OPAQUE_FROM = 0.5;
 /** @type {Record<string, number>} */
 const VALUES = { "-s": 3, "-o": 3, "-t": 3, "-mm": 2 }; // the most numbers of an option; others have one word

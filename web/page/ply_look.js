@@ -32,8 +32,7 @@ function elementsOf(header) {
   return elements;
 }
 
-/** @param {Uint8Array} bytes @param {BufferGeometry} geometry of a PLYLoader that readsColours() @param {Folder}
- * folder @param {Voxrt} voxrt */
+/** @param {Uint8Array} bytes @param {BufferGeometry} geometry @param {Folder} folder @param {Voxrt} voxrt */
 export async function plyLook(bytes, geometry, folder, voxrt) {
   const header = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 16)).split("end_header")[0];
   const names = [...header.matchAll(/^comment\s+TextureFile\s+(.+?)\s*$/gm)].map(([, name]) => name);
@@ -43,8 +42,7 @@ export async function plyLook(bytes, geometry, folder, voxrt) {
   return { warnings: warnings.list(), rules: { appearanceOf: () => look } };
 }
 
-/** @param {string[]} names of images @param {BufferGeometry} geometry @param {Folder} folder @param {Warnings}
- * warnings */
+/** @param {string[]} names @param {BufferGeometry} geometry @param {Folder} folder @param {Warnings} warnings */
 async function textured(names, geometry, folder, { warn }) {
   const uv = geometry.getAttribute("uv");
   if (names.length > 1) warn("texture", "several textures of one PLY file are not shown here; voxrt build shows them");

@@ -13,8 +13,7 @@ const PASSES = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2
 export const MOST_PIXELS = 1 << 26;
 /** @param {Uint8Array} bytes */ export const isPng = (bytes) => SIGNATURE.every((byte, i) => bytes[i] === byte);
 
-/** The pixels have 4 bytes, of 16 bits the upper 8. Throws an Error where the file is broken. @param
- * {Uint8Array<ArrayBuffer>} bytes */
+/** Pixels have 4 bytes, of 16 bits the upper 8. Throws an Error if broken. @param {Uint8Array<ArrayBuffer>} bytes */
 export async function decodePng(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   /** @param {number} at */ const wordAt = (at) => view.getUint32(at);

@@ -52,8 +52,7 @@ export function cutConcave(corners, cut = ears) {
   return cut(flat(points, normal));
 }
 
-/** Without the axis along which the normal is longest, counter-clockwise. @param {Vector[]} points @param {Vector}
- * normal */
+/** Without the normal's longest axis, counter-clockwise. @param {Vector[]} points @param {Vector} normal */
 function flat(points, normal) {
   const sizes = normal.map(Math.abs);
   const axis = sizes.indexOf(Math.max(...sizes));
@@ -64,8 +63,7 @@ function flat(points, normal) {
 /** @param {Point} a @param {Point} b @param {Point} c */
 const side = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
 
-/** Cuts off corners that hold no other one; null where none is left to cut, as in polygons that cross themselves.
- * @param {Point[]} points */
+/** Cuts off corners that hold no other one; null where a polygon crosses itself. @param {Point[]} points */
 export function ears(points) {
   const left = points.map((_, i) => i);
   /** @type {Triangle[]} */ const triangles = [];

@@ -5,11 +5,10 @@ import { PLAIN } from "./memory.js";
 import { BACKGROUND } from "./voxrt/voxrt.js";
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 
-/** @typedef {Omit<Memory, "name" | "file" | "depth"> & { depth: number | null }} ReadMemory `depth`: null where
- * nothing tells it */
+/** @typedef {Omit<Memory, "name" | "file" | "depth"> & { depth: number | null }} ReadMemory */
 
-/** Read words of the report dialect, and what their manifest says. @param {DroppedFile} mem @param {DroppedFile |
- * undefined} beside the manifest */
+/** Read words, and what their manifest says. @param {DroppedFile} mem @param {DroppedFile | undefined} beside the
+ * manifest */
 export function readMem(mem, beside) {
   const { name, bytes } = mem;
   const text = new TextDecoder().decode(bytes).replace(/\/\*[\s\S]*?\*\/|\/\/[^\n]*/g, " ");

@@ -13,8 +13,7 @@ import { sceneOf } from "./voxrt/scene.js";
   [0xfffe, "utf-16le"],
 ]);
 
-/** Text of UTF-16 where it begins with its mark, else of UTF-8, else of Windows-1252, which old exporters wrote.
- * @param {Uint8Array} bytes */
+/** Text of UTF-16 with its mark, else of UTF-8, else of Windows-1252. @param {Uint8Array} bytes */
 function textOf(bytes) {
   const mark = MARKS.get(256 * bytes[0] + bytes[1]);
   try {

@@ -63,8 +63,7 @@ const IDENTITY = [0, 1, 2].map((row) => [0, 1, 2].map((column) => Number(row ===
   return { words, depth, materials, objects: [], grid: null, warnings };
 }
 
-/** The instances of the scene graph; without one, every model is shown at the origin. @param {string} name @param
- * {VoxFile} file */
+/** The instances of the scene graph, or every model at the origin. @param {string} name @param {VoxFile} file */
 function instancesOf(name, file) {
   if (!file.nodes.size)
     return { instances: file.models.map((_, model) => ({ model, rows: IDENTITY, offset: [0, 0, 0] })), warnings: [] };

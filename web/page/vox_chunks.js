@@ -132,8 +132,7 @@ class Reader {
   },
 };
 
-/** Two bits per row give the column of the first two rows, one bit per row gives its sign. @param {Reader} content
- * @param {string} text */
+/** Two bits give the column of each of two rows, one bit a sign. @param {Reader} content @param {string} text */
 function rotation(content, text) {
   const bits = /^\d{1,3}$/.test(text) ? Number(text) : 3;
   const [first, second] = [bits & 3, (bits >> 2) & 3];
@@ -151,8 +150,7 @@ function rotation(content, text) {
   return parts.map(Number);
 }
 
-/** Files without a palette have a 6x6x6 cube from white down (black left out), then four ramps of ten. @param
- * {number} colour */
+/** Without a palette: a 6x6x6 cube from white down, without black, then four ramps. @param {number} colour */
 function defaultColour(colour) {
   const at = colour - 1;
   if (at < 215) return [Math.floor(at / 36), Math.floor(at / 6) % 6, at % 6].map((step) => 255 - 51 * step);

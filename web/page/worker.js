@@ -31,8 +31,8 @@ const calls = {
     state.voxrt = await Voxrt.load(module);
   },
 
-  /** @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job `source` numbers the
-   * files @param {(stage: string) => void} report */
+  /** @param {Required<Omit<Options, "colours">> & { files: DroppedFile[], source: number }} job @param {(stage:
+   * string) => void} report */
   async build({ files, source, depth, fill, bake, budget }, report) {
     if (state.parsed?.source !== source) report("Reading");
     const { name, file, memory, scene } = await read(files, source);

@@ -9,14 +9,13 @@ const [REFERENCES, PAYLOAD, STRINGS, PAYLOADS] = [35, 47, 50, 55];
 /** @import { CrateParser, MethodsOf } from "./three_private.js" */
 
 /** @typedef {(parser: CrateParser) => any} Read a number or a truth value */
-/** @typedef {new (length: number) => { [index: number]: number }} Kind of array */
+/** @typedef {new (length: number) => { [index: number]: number }} Kind */
 /** @type {Read} */ const half = (parser) => parser._readHalf();
 /** @type {Read} */ const double = ({ reader }) => reader.readFloat64();
 /** @type {Read} */ const integer = ({ reader }) => reader.readInt32();
 /** @type {Read} */ const byte = ({ reader }) => reader.readUint8();
 
-/** Numbers per value, bytes per number, how to read one, the array for them. @type {[number, [number, number, Read,
- * Kind]][]} */
+/** Numbers per value, bytes per number, reader, array. @type {[number, [number, number, Read, Kind]][]} */
 const KNOWN = [
   [BOOL, [1, 1, ({ reader }) => reader.readUint8() !== 0, Array]],
   [UCHAR, [1, 1, byte, Uint8Array]],
@@ -79,8 +78,7 @@ function countOf({ reader, buffer }) {
   return count;
 }
 
-/** A list with its edits; those that it deletes are left out. @template T @param {CrateParser} parser @param
- * {(parser: CrateParser) => T} read */
+/** A list without deleted entries. @template T @param {CrateParser} parser @param {(parser: CrateParser) => T} read */
 function listed(parser, read) {
   const { reader } = parser;
   const flags = reader.readUint8();

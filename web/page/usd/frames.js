@@ -55,8 +55,7 @@ const UNRELATED = "transforms that do not follow those above them are not read h
 /** @param {string} axis @param {number} degrees */ const turnAbout = (axis, degrees) =>
   turn(new Quaternion().setFromAxisAngle(new Vector3(...AXES[axis]), (degrees * Math.PI) / 180).normalize());
 
-/** A turn by the angle that the real part gives, about the axis of the others, whatever the length of the
- * quaternion. @param {Numbers} parts */
+/** A turn by the angle of the real part about the axis of the others, of any length. @param {Numbers} parts */
 function turnBy([x, y, z, w]) {
   const axis = new Vector3(x, y, z);
   if (axis.length() < 1e-6) return new Matrix4();
@@ -78,8 +77,7 @@ function turn({ x, y, z, w }) {
 /** @type {Record<string, number[]>} */
 const UPWARDS = { X: [0, -1, 0, 1, 0, 0, 0, 0, 1], Y: [1, 0, 0, 0, 1, 0, 0, 0, 1], Z: [1, 0, 0, 0, 0, 1, 0, -1, 0] };
 
-/** The rotation to y up and metres, 9 numbers by rows, of a stage with these root fields. @param {Fields} fields
- * @param {Warn} warn */
+/** The rotation of a stage to y up and metres, 9 numbers by rows. @param {Fields} fields @param {Warn} warn */
 export function sceneFrame({ upAxis = "Y", metersPerUnit = 0.01 }, warn) {
   const axis = String(upAxis).toUpperCase();
   if (!(axis in UPWARDS)) warn("up-axis", `upAxis '${upAxis}' is not X, Y or Z; Y was used`);

@@ -69,8 +69,7 @@ export class UsdImages {
   }
 }
 
-/** Sets u and v from coordinates: scale, rotation, offset; v from the top, as rows of images go. @param
- * {Coordinates} moved */
+/** Sets u and v: scale, rotation, offset; v from the top. @param {Coordinates} moved */
 export function coordinates({ turn, scale, offset }) {
   const angle = (turn * Math.PI) / 180;
   const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];

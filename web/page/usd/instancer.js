@@ -61,8 +61,7 @@ function placeCopies(composer, object, path, found) {
   }
 }
 
-/** The object of one prim, wherever it is; null where it is not shown. @param {Composer} composer @param {string}
- * path @param {Found} found */
+/** The object of a prim; null if it is hidden. @param {Composer} composer @param {string} path @param {Found} found */
 function built(composer, path, found) {
   if (!isShown(composer, path, found, true)) return null;
   const parent = new Object3D();

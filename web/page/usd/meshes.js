@@ -162,8 +162,7 @@ export class UsdMeshes {
   };
 }
 
-/** A mesh whose points are in another frame than those below it: the frame of the prim itself holds both. @param
- * {Object3D} mesh @param {Matrix4} frame */
+/** A mesh whose points have another frame than those below it. @param {Object3D} mesh @param {Matrix4} frame */
 function inFrame(mesh, frame) {
   const prim = new Object3D();
   prim.matrixAutoUpdate = false;

@@ -22,9 +22,7 @@ import { MEMBERS, patch } from "./three_private.js";
 
 const MOST_PRIMS = 200_000; // of all layers and copies together
 
-/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, subject and test of specs that are
- * not read */
-const OTHERS = [
+/** @type {[string, string, (fields: Fields, path: string) => boolean][]} kind, subject and test */ const OTHERS = [
   ["collider", "colliders are", ({ apiSchemas = [] }) => apiSchemas.includes("PhysicsCollisionAPI")],
   ["collection", "materials bound to collections are", (_, path) => path.includes(".material:binding:collection:")],
 ];
@@ -74,8 +72,7 @@ const OTHERS = [
   };
 }
 
-/** The specs of a layer that was dropped together with the scene; null for none. @param {DroppedFile | undefined}
- * file */
+/** The specs of a layer that was dropped too; null for none. @param {DroppedFile | undefined} file */
 function layerOf(file) {
   if (!file) return null;
   const isCrate = new TextDecoder("latin1").decode(file.bytes.subarray(0, 8)) === "PXR-USDC";
@@ -87,8 +84,7 @@ function layerOf(file) {
 
 /** @param {Spec} spec */ const isAnimated = ({ fields }) => (fields?.timeSamples?.times?.length ?? 0) > 1;
 
-/** The outermost methods of a composer: they count, and see what it leaves out. @param {Found} found @returns
- * {MethodsOf<Composer>} */
+/** The outermost methods: they count, and see what is left out. @param {Found} found @returns {MethodsOf<Composer>} */
 const layerMethods = (found) => (kept) => ({
   compose(parsed, ...rest) {
     const { specsByPath } = parsed;

@@ -133,8 +133,7 @@ class Layer {
     for (const part of this.below.get(path) ?? []) if (/^\/?[^/.{]+$/.test(part.slice(path.length))) this.choose(part);
   }
 
-  /** The chosen variants of a prim say what it does not say itself. They may bring more sets of variants. @param
-   * {string} path */
+  /** The chosen variants say what a prim does not say itself. They may bring more. @param {string} path */
   takeVariants(path) {
     const { fields } = this.specs[path];
     const taken = new Set();

@@ -4,8 +4,7 @@ import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 /** @import { Wrap } from "../voxrt/voxrt.js" @import { Warn } from "../voxrt/warnings.js" */
 /** @import { Numbers, Value } from "./stage.js" @import { Composer } from "./three_private.js" */
 
-/** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates the primvar, and how
- * it is moved */
+/** @typedef {{ primvar: string, turn: number, scale: number[], offset: number[] }} Coordinates */
 
 /** A texture; `point` are the coordinates where none are connected. @typedef {{ file: string, channel: string, raw:
  * boolean, wrap: Wrap[], factor: number[], bias: number[], point: number[] | null }} Image */
@@ -19,9 +18,7 @@ import { attributeOf, fieldsOf, targetsOf } from "./stage.js";
 
 /** @typedef {Omit<Shading, "id">} Unnumbered */
 /** @typedef {{ value?: number[] | null, image?: Texture, primvar?: string }} Input */
-/** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer a
- * shader and its output, or a value */
-
+/** @typedef {{ node: string, output: string, value?: undefined } | { node?: undefined, value: Value }} Producer */
 export const BLEND_CUTOFF = 0.5;
 const FALLBACK_DIFFUSE = [0.18, 0.18, 0.18]; // UsdPreviewSurface's own
 const COLOUR_INPUTS =
@@ -151,8 +148,7 @@ function textureOf(composer, node, channel, warn) {
   return made;
 }
 
-/** The first numbers of a value, in single precision; null where it has fewer. @param {Value | null} value @param
- * {number} count */
+/** The first numbers of a value; null where it has fewer. @param {Value | null} value @param {number} count */
 function numbers(value, count) {
   const flat = /** @type {unknown[]} */ ([value ?? []].flat());
   const found = flat.flatMap((one) =>

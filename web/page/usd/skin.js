@@ -13,8 +13,7 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "../three/three.core.js";
  * points' frame; `wrong`: whether their counts do not fit. @typedef {{ each: number, rigid: boolean, joints:
  * Numbers, weights: Numbers, matrix: Matrix, wrong: boolean }} Influences */
 
-/** The points of a mesh that is deformed; null for meshes at rest. @param {Composer} composer @param {string} path
- * @param {Warn} warn */
+/** The points of a deformed mesh, or null. @param {Composer} composer @param {string} path @param {Warn} warn */
 export function posedPoints(composer, path, warn) {
   const points = numbersOf(composer, path, "points");
   const skeleton = targetAbove(composer, path, "skel:skeleton");
@@ -97,8 +96,7 @@ function posedJoints(composer, skeleton, animation) {
   return made;
 }
 
-/** The transforms of joints below their parents that an animation gives, by name. @param {Composer} composer @param
- * {string | null} animation */
+/** The joints' transforms below their parents, by name. @param {Composer} composer @param {string | null} animation */
 function animated(composer, animation) {
   /** @type {Map<string, Matrix>} */ const made = new Map();
   if (animation === null || kindOf(composer, animation) !== "SkelAnimation") return made;
@@ -122,8 +120,7 @@ function matrices(composer, values, count) {
   return Array.from({ length: count }, (_, i) => new Matrix4().fromArray(flat, 16 * i));
 }
 
-/** Move points by a matrix for each influence. @param {Float32Array} points @param {Matrix[]} moves @param
- * {Influences} influences */
+/** Move points. @param {Float32Array} points @param {Matrix[]} moves @param {Influences} influences */
 function skinned(points, moves, { each, rigid, weights, matrix }) {
   const made = new Float32Array(points.length);
   const [point, part] = [new Vector3(), new Vector3()];
@@ -166,8 +163,7 @@ function blend(composer, path, animation, points, warn) {
   return true;
 }
 
-/** From the frame of a skeleton to that of a prim's parent. @param {Composer} composer @param {string} path @param
- * {string} skeleton */
+/** From a skeleton to a prim's parent. @param {Composer} composer @param {string} path @param {string} skeleton */
 function between(composer, path, skeleton) {
   const [from, to] = [[...upwards(skeleton)].reverse(), [...upwards(path)].slice(1).reverse()];
   let shared = 0;

@@ -3,8 +3,7 @@
 const SEGMENTS = 128;
 /** @import { Value } from "./stage.js" */
 
-/** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex, three vertices per
- * triangle */
+/** @typedef {{ positions: number[], triangles: number[] }} Solid three numbers per vertex */
 /** @typedef {[number, number]} Place of a profile: radius and height */
 /** @type {Record<string, number>} */ const AXES = { X: 0, Y: 1, Z: 2 };
 
@@ -15,8 +14,8 @@ const SEGMENTS = 128;
 /** @type {Record<string, number[]>} the axes of a plane */ const ACROSS = { X: [2, 1], Y: [0, 2], Z: [0, 1] };
 const Z = { axis: "Z" };
 
-/** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} dimensions where
- * the file has none */
+/** @type {Record<string, { usual: Partial<Dimensions>, make: (dimensions: Dimensions) => Solid }>} the usual
+ * dimensions */
 const SOLIDS = {
   Cube: { usual: { size: 2 }, make: ({ size }) => cube(size) },
   Sphere: { usual: { radius: 1 }, make: ({ radius }) => revolved(arc(radius, -Math.PI / 2, Math.PI / 2, 0), Z.axis) },
@@ -132,8 +131,7 @@ function arc(radius, start, stop, centre) {
 /** @param {number} value */
 const rounded = (value) => Math.round(value * 1e15) / 1e15; // exact zeros and ones on the axes
 
-/** A closed surface of revolution of a profile from bottom to top, whose ends have radius 0. @param {Place[]}
- * profile @param {string} axis */
+/** A surface of revolution; the ends of the profile have radius 0. @param {Place[]} profile @param {string} axis */
 function revolved(profile, axis) {
   const turn = (AXES[axis] + 1) % 3;
   /** @type {number[]} */ const positions = [];

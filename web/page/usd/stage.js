@@ -45,8 +45,7 @@ export const numbersOf = attributeOf;
 /** An attribute that has names; empty for none. @type {(composer: Composer, prim: string, name: string) => string[]} */
 export const namesOf = (composer, prim, name) => Array.from(attributeOf(composer, prim, name) ?? []);
 
-/** What a relationship or a connection points to. Text has lists as one: "[/a/b, /a/c]". @param {List | undefined}
- * paths @param {string} prim */
+/** The targets of a list. Text has it as one: "[/a/b, /a/c]". @param {List | undefined} paths @param {string} prim */
 export function targetsOf(paths, prim) {
   const names = [paths ?? []]
     .flat()
@@ -123,8 +122,8 @@ export function isShown(composer, path, found, isPrototype = false) {
 
 const BINDINGS = ["material:binding:preview", "material:binding", "material:binding:full"];
 
-/** The path of the material of a prim: of the nearest binding above it, unless one further up is stronger. @param
- * {Composer} composer @param {string} prim */
+/** The material of the nearest binding, unless one further up is stronger. @param {Composer} composer @param
+ * {string} prim */
 export function boundMaterial(composer, prim) {
   for (const name of BINDINGS) {
     let winner = null;
@@ -141,8 +140,8 @@ export function boundMaterial(composer, prim) {
 /** @param {Composer} composer @param {string} path */
 export const isMaterial = (composer, path) => composer.specsByPath[path]?.fields.typeName === "Material";
 
-/** A primvar; null for none. Prims inherit those that are constant. @param {Composer} composer @param {string} prim
- * @param {string} name */
+/** A primvar or null. Constant ones are inherited. @param {Composer} composer @param {string} prim @param {string}
+ * name */
 export function primvarOf(composer, prim, name) {
   for (const above of name ? upwards(prim) : []) {
     const found = arrayOf(composer, above, `primvars:${name}`, "constant");

@@ -16,8 +16,7 @@ const [FEW_CORNERS, MOST_CORNERS] = [64, 20_000]; // of a concave polygon
  * @typedef {{ positions: Numbers, triangles: number[], faces: number[], faceCount: number, corners: number[],
  * cornerCount: number }} FaceSurface */
 
-/** @typedef {(triangle: number, corner: number) => number} PlaceOf the first number of a corner, 0 … 2, of a
- * triangle */
+/** @typedef {(triangle: number, corner: number) => number} PlaceOf the first number of a corner */
 
 /** The surface of a prim; null for no faces. @param {Composer} composer @param {string} path @param {string} kind
  * @param {Warn} warn @param {Numbers} [posed] points instead of the mesh's own */

@@ -76,8 +76,7 @@ function readLists(data, fields) {
   if (schemas.length) fields.apiSchemas = schemas;
 }
 
-/** Read the notes of attributes, in parentheses behind them. @param {Data} data @param {string} path @param {Specs}
- * specs */
+/** Read the notes behind attributes. @param {Data} data @param {string} path @param {Specs} specs */
 function readNotes(data, path, specs) {
   const [symbol] = noteSymbols(data);
   const notes = symbol ? withoutPrefixes(/** @type {Data} */ (data[symbol])) : {};

@@ -9,43 +9,28 @@ import { USDCParser } from "../three/addons/loaders/usd/USDCParser.js";
 /** The REVISION of three.js with which the members were checked. */
 export const CHECKED_RELEASE = "187";
 
-/** By class: methods that are replaced, others that are called, and properties that are read. */
+/** @param {string} text */ const named = (text) => text.split(" ");
+
+/** By class: methods that are replaced, methods that are called, and properties that are read. */
 export const MEMBERS = {
   USDComposer: {
     class: USDComposer,
     replaced: [
-      "compose",
-      "applyTransform",
-      "_buildIndexes",
-      "_buildHierarchy",
-      "_buildMesh",
-      "_buildGeomPrimitive",
-      "_buildSkeleton",
-      "_buildAnimations",
-      "_findSingleMesh",
-      "_getVariantPaths",
-      "_resolveAttributeValue",
-      "_resolveReference",
+      ...named("compose applyTransform _buildIndexes _buildHierarchy _buildMesh _buildGeomPrimitive _buildSkeleton"),
+      ...named("_buildAnimations _findSingleMesh _getVariantPaths _resolveAttributeValue _resolveReference"),
     ],
-    called: ["_flattenMatrixArray", "_getAttributes", "_resolveFilePath"],
-    read: ["specsByPath", "childrenByPath", "attributesByPrimPath", "assets", "basePath"],
+    called: named("_flattenMatrixArray _getAttributes _resolveFilePath"),
+    read: named("specsByPath childrenByPath attributesByPrimPath assets basePath"),
   },
-  USDAParser: {
-    class: USDAParser,
-    replaced: ["parseText", "parseData", "_preprocess", "_extractPrimData"],
-    called: [],
-    read: [],
-  },
+  USDAParser: { class: USDAParser, replaced: named("parseText parseData _preprocess _extractPrimData") },
   USDCParser: {
     class: USDCParser,
-    replaced: ["_readInlinedValue", "_readScalarValue", "_readArrayValue"],
-    called: ["parseData", "_readHalf"],
-    read: ["reader", "tokens", "strings", "paths", "version", "buffer"],
+    replaced: named("_readInlinedValue _readScalarValue _readArrayValue"),
+    called: named("parseData _readHalf readUint8 readInt32 readUint32 readInt64 readUint64 readFloat64 seek tell"),
+    read: named("reader tokens strings paths version buffer"),
   },
 };
 
-/** The methods of USDCParser's `reader` that are called. */
-export const READER = "readUint8 readInt32 readUint32 readInt64 readUint64 readFloat64 seek tell".split(" ");
 /** @typedef {{ specsByPath: Specs }} Parsed */
 
 /** @typedef {{ specsByPath: Specs, childrenByPath: Map<string, { name: string, path: string }[]>,
@@ -60,8 +45,7 @@ export const READER = "readUint8 readInt32 readUint32 readInt64 readUint64 readF
  * number) => number[] | null, _getAttributes: (path: string) => Attributes, _resolveFilePath: (file: string) =>
  * string }} Composer */
 
-/** Text as the parser has it: values by what stands before "=" or "{". @typedef {{ [key: string | symbol]: Data |
- * string }} Data */
+/** Parsed text. @typedef {{ [key: string | symbol]: Data | string }} Data */
 /** @typedef {Record<string, number>} SpecTypes */
 
 /** @typedef {{ parseText: (text: string) => Data, parseData: (text: string) => Parsed, _preprocess: (text: string)
