@@ -1,13 +1,11 @@
 // Elements of the page: found by their id, made, and switched.
 
-/** The elements that are more than an HTMLElement. @typedef {{ picture: HTMLCanvasElement, "hardware-picture":
- * HTMLCanvasElement, octants: SVGSVGElement, files: HTMLInputElement, depth: HTMLInputElement, budget:
- * HTMLInputElement, "budget-words": HTMLInputElement, "sun-x": HTMLInputElement, "sun-y": HTMLInputElement,
- * "sun-z": HTMLInputElement, sky: HTMLInputElement, samples: HTMLInputElement, frames: HTMLInputElement, bounces:
- * HTMLInputElement, background: HTMLInputElement, size: HTMLSelectElement, take: HTMLButtonElement, bake:
- * HTMLButtonElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement, "token-form": HTMLFormElement,
- * "save-view": HTMLFormElement, "hardware-progress": HTMLProgressElement, "bitstream-progress":
- * HTMLProgressElement, }} Elements */
+/** The elements that are more than an HTMLElement. @typedef {"files" | "depth" | "budget" | "budget-words" | "sun-x"
+ * | "sun-y" | "sun-z" | "sky" | "samples" | "frames" | "bounces" | "background"} Inputs */
+/** @typedef {{ picture: HTMLCanvasElement, "hardware-picture": HTMLCanvasElement, octants: SVGSVGElement, size:
+ * HTMLSelectElement, keys: HTMLDialogElement, advanced: HTMLDetailsElement } & Record<Inputs, HTMLInputElement> &
+ * Record<"take" | "bake", HTMLButtonElement> & Record<"token-form" | "save-view", HTMLFormElement> &
+ * Record<"hardware-progress" | "bitstream-progress", HTMLProgressElement>} Elements */
 
 /** The element of the page with an id. @template {string} I @param {I} id */
 export const $ = (id) => {

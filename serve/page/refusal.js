@@ -3,12 +3,7 @@
 /** @typedef {"token" | "origin" | "version" | "full" | "gone" | "lost"} Reason */
 /** @typedef {{ reason: Reason, text?: string }} Refusal */
 
-/** @type {Map<number, Reason>} */ const REASONS = new Map([
-  [401, "token"],
-  [403, "origin"],
-  [404, "version"],
-  [503, "full"],
-]);
+/** @type {Record<number, Reason>} */ const REASONS = { 401: "token", 403: "origin", 404: "version", 503: "full" };
 
 /** The reason is "gone" when no server answers, and "lost" where there is no other. @param {string} path @param
  * {Record<string, string>} query @returns {Promise<Refusal>} */
@@ -17,7 +12,7 @@ export async function askForReason(path, query) {
   fields.set("origin", location.origin);
   try {
     const answer = await fetch(`${path}?${fields}`, { cache: "no-store", signal: AbortSignal.timeout(5000) });
-    return { reason: REASONS.get(answer.status) ?? "lost", text: (await answer.text()).trim() };
+    return { reason: REASONS[answer.status] ?? "lost", text: (await answer.text()).trim() };
   } catch {
     return { reason: "gone" };
   }

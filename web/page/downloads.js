@@ -8,12 +8,11 @@ import { DIALECT, hex } from "./voxrt/words.js";
 
 /** The manifest as voxrt build writes it (export/manifest.py), or that of the memory. @param {Shown} memory */
 export function manifestOf(memory) {
-  const { name, file, words, depth, materials, grid, objects, warnings, seconds, fill, lighting, baked, voxels } =
-    memory;
+  const { name, file, words, depth, materials, grid, objects, warnings } = memory;
+  const { seconds, fill, lighting, baked, voxels } = memory;
   const crc = hex(crc32(memBytes(words)));
   if (memory.manifest) return { ...memory.manifest, crc32: crc };
-  const [x, y, z] = grid?.origin ?? [0, 0, 0];
-  const size = grid?.voxelSize;
+  const { wordsBefore: _before, words: _words, ...light } = baked ?? {};
   return {
     schema: 1,
     name,
@@ -23,24 +22,8 @@ export function manifestOf(memory) {
     dialect: DIALECT,
     crc32: crc,
     voxels: voxels.reduce((sum, count, id) => (id ? sum + count : 0), 0),
-    materials: materials.map((material, id) => ({
-      id,
-      name: material.name,
-      colour: material.colour,
-      mirror: material.mirror,
-      authored: material.authored,
-      voxels: voxels[id],
-    })),
-    world: grid && {
-      origin: grid.origin,
-      voxel_size: size,
-      matrix: [
-        [size, 0, 0, x],
-        [0, size, 0, y],
-        [0, 0, size, z],
-        [0, 0, 0, 1],
-      ],
-    },
+    materials: materials.map((material, id) => ({ id, ...material, voxels: voxels[id] })),
+    world: grid && { origin: grid.origin, voxel_size: grid.voxelSize, matrix: matrixOf(grid) },
     objects: objects.map((object) => ({ source: "mesh", moved: [0, 0, 0], grown: [0, 0, 0], ...object })),
     warnings,
     seconds: { build: seconds ?? 0 },
@@ -48,19 +31,13 @@ export function manifestOf(memory) {
     view: null,
     lighting: lighting ?? null,
     animation: null,
-    baked: baked
-      ? {
-          sun: baked.sun,
-          sky: baked.sky,
-          samples: baked.samples,
-          voxels: baked.voxels,
-          colours: baked.colours,
-          words_before: baked.wordsBefore,
-          words: baked.words,
-        }
-      : null,
+    baked: baked ? { ...light, words_before: baked.wordsBefore, words: baked.words } : null,
   };
 }
+
+/** From voxels to the scene. @param {NonNullable<Shown["grid"]>} grid */
+const matrixOf = ({ origin, voxelSize }) =>
+  [...origin, 1].map((place, row) => [0, 1, 2].map((at) => (at === row ? voxelSize : 0)).concat(place));
 
 const NUMBERS = /^-?\d+(\.\d+)?$/;
 

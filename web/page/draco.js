@@ -5,23 +5,10 @@ import { BufferAttribute, BufferGeometry } from "./three/three.core.js";
 
 /** @typedef {Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array} Values */
 /** @typedef {{ BYTES_PER_ELEMENT: number, new (buffer: ArrayBufferLike, at: number, length: number): Values }} Kind */
-/** @typedef {"DT_FLOAT32" | "DT_INT8" | "DT_UINT8" | "DT_INT16" | "DT_UINT16" | "DT_UINT32"} Code of a kind */
-
-/** What is used of the decoder. @typedef {Record<Code, number> & Library} Draco */
-
-/** @typedef {{ Decoder: new () => Decoder, Mesh: new () => Mesh, HEAP8: Int8Array, _malloc: (bytes: number) =>
- * number, _free: (at: number) => void, destroy: (made: object) => void }} Library */
-
-/** @typedef {{ ptr: number, num_faces(): number, num_points(): number }} Mesh */
-/** @typedef {{ num_components(): number }} Attribute */
-
-/** @typedef {{ DecodeArrayToMesh: (bytes: Int8Array, length: number, mesh: Mesh) => { ok(): boolean, error_msg():
- * string }, GetTrianglesUInt32Array: (mesh: Mesh, bytes: number, at: number) => void, GetAttributeByUniqueId:
- * (mesh: Mesh, id: number) => Attribute, GetAttributeDataArrayForAllPoints: (mesh: Mesh, attribute: Attribute,
- * kind: number, bytes: number, at: number) => void }} Decoder */
+/** @typedef {any} Draco Google's decoder, which has no types */
 
 const FOLDER = "./three/draco/";
-/** @type {Record<string, [Kind, Code]>} */ const TYPES = {
+/** @type {Record<string, [Kind, string]>} */ const TYPES = {
   Float32Array: [Float32Array, "DT_FLOAT32"],
   Int8Array: [Int8Array, "DT_INT8"],
   Uint8Array: [Uint8Array, "DT_UINT8"],

@@ -10,18 +10,7 @@ import { Warnings } from "./voxrt/warnings.js";
 /** @typedef {{ index: number, texCoord?: number, extensions?: { KHR_texture_transform?: Moved } }} TextureInfo */
 /** @typedef {{ texCoord?: number, offset?: number[], scale?: number[], rotation?: number }} Moved */
 
-/** What is read of a material. @typedef {{ name?: string, alphaCutoff?: number, alphaMode?: "MASK" | "BLEND" |
- * "OPAQUE", extras?: { voxrt_material?: string, voxrt_reflect?: boolean }, pbrMetallicRoughness?: {
- * baseColorFactor?: number[], baseColorTexture?: TextureInfo }, extensions?: { [GLOSSY]?: { diffuseFactor?:
- * number[], diffuseTexture?: TextureInfo } } }} GltfMaterial */
-
-/** @typedef {{ source?: number, sampler?: number, extensions?: Record<string, { source: number }> }} GltfTexture */
-/** @typedef {{ wrapS?: number, wrapT?: number, magFilter?: number }} Sampler */
-
-/** What is read of a file. @typedef {{ nodes?: { name?: string, mesh?: number }[], meshes?: { name?: string,
- * primitives: { material?: number }[] }[], materials: GltfMaterial[], textures: GltfTexture[], images: { uri?:
- * string, bufferView: number }[], samplers?: Sampler[], extensionsUsed?: string[] }} Gltf */
-
+/** @typedef {any} Gltf the file's own JSON */
 /** @typedef {{ nodes?: number, materials?: number, textures?: number }} Association */
 
 /** What is used of GLTFLoader's parser. @typedef {{ json: Gltf, associations: Map<Material | Object3D | Texture,
@@ -56,9 +45,10 @@ export class GltfLooks {
   /** Decode the images that materials in use need. @param {GltfParser} parser */
   async read(parser) {
     this.#json = parser.json;
-    const used = new Set(
-      (this.#json.meshes ?? []).flatMap(({ primitives }) => primitives.map(({ material }) => material)),
+    /** @type {Gltf[]} */ const primitives = (this.#json.meshes ?? []).flatMap(
+      (/** @type {Gltf} */ mesh) => mesh.primitives,
     );
+    /** @type {Set<number | undefined>} */ const used = new Set(primitives.map(({ material }) => material));
     /** @type {Map<number, Image | null>} */ const images = new Map();
     for (const material of used) {
       const info = material === undefined ? null : this.properties(material).texture;
@@ -107,9 +97,13 @@ export class GltfLooks {
     const material = this.#json.materials[index];
     const base = material.pbrMetallicRoughness ?? {};
     const glossy = material.extensions?.[GLOSSY];
-    const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
+    /** @type {number[]} */ const factor = (glossy ? glossy.diffuseFactor : base.baseColorFactor) ?? [1, 1, 1, 1];
     const extras = material.extras ?? {};
-    const cutoffs = { MASK: material.alphaCutoff ?? 0.5, BLEND: BLEND_CUTOFF, OPAQUE: 0 };
+    /** @type {Record<string, number>} */ const cutoffs = {
+      MASK: material.alphaCutoff ?? 0.5,
+      BLEND: BLEND_CUTOFF,
+      OPAQUE: 0,
+    };
     return {
       name: extras.voxrt_material || material.name || `materials[${index}]`,
       factor: factor.map((part) => Math.min(Math.max(part, 0), 1)),

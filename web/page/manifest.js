@@ -26,40 +26,27 @@ const isObject = (value) => typeof value === "object" && value !== null && !Arra
 const isByte = isWhole(0, 255);
 const isPlace = isList(isWhole(-HIGHEST, HIGHEST), 3);
 /** @type {Check} */ const isFlag = (value) => typeof value === "boolean";
+/** @type {Check} */ const isEmpty = (value) => Array.isArray(value) && value.length === 0;
+/** @param {Check} is @returns {Check} */ const isKnown = (is) => (value) => value === undefined || is(value);
 /** @param {Check} is @returns {Check} */
 const isOptional = (is) => (value) => value === null || value === undefined || is(value);
-/** @type {Check} */ const isMaterial = (value) =>
-  isObject(value) &&
-  typeof value.name === "string" &&
-  isList(isByte, 3)(value.colour) &&
-  isFlag(value.mirror) &&
-  isFlag(value.authored);
-/** @type {Check} */ const isMaterials = (value) =>
-  Array.isArray(value) &&
-  value.length >= 1 &&
-  value.length <= 256 &&
-  value.every((one, id) => isMaterial(one) && one.id === id);
-/** @type {Check} */ const isWorld = (value) =>
-  isObject(value) &&
-  isList(Number.isFinite, 3)(value.origin) &&
-  typeof value.voxel_size === "number" &&
-  value.voxel_size > 0;
-/** @type {Check} */
-const isView = (value) => isObject(value) && ["position", "look", "right", "up"].every((name) => isPlace(value[name]));
-/** @type {Check} */ const isFrame = (value) => isObject(value) && isWhole(0, 2 ** 32)(value.root);
-/** @type {Check} */ const isAnimation = (value) =>
-  isObject(value) && isList(isFrame)(value.frames) && Array.isArray(value.frames) && value.frames.length > 0;
+/** @param {Record<string, Check>} fields @returns {Check} */ const isShape = (fields) => (value) =>
+  isObject(value) && Object.entries(fields).every(([name, is]) => is(value[name]));
 
-/** @type {Record<string, Check>} */ const LIGHTING = {
-  position: isPlace,
-  ambient: isByte,
-  on: isFlag,
-  flat: isFlag,
-  bounces: isWhole(0, 15),
-  faces: (value) => value === null || isList(isByte, 6)(value),
-};
-/** @type {Check} */ const isLighting = (value) =>
-  isObject(value) && Object.entries(LIGHTING).every(([name, is]) => value[name] === undefined || is(value[name]));
+/** @type {Check} */ const isText = (value) => typeof value === "string";
+/** @type {Check} */ const isSize = (value) => typeof value === "number" && value > 0;
+/** @type {Check} */ const isFaces = (value) => value === null || isList(isByte, 6)(value);
+const isMaterial = isShape({ name: isText, colour: isList(isByte, 3), mirror: isFlag, authored: isFlag });
+/** @type {Check} */ const isMaterials = (value) =>
+  Array.isArray(value) && isWhole(1, 256)(value.length) && value.every((one, id) => isMaterial(one) && one.id === id);
+const isWorld = isShape({ origin: isList(Number.isFinite, 3), voxel_size: isSize });
+const isView = isShape({ position: isPlace, look: isPlace, right: isPlace, up: isPlace });
+const isFrames = isList(isShape({ root: isWhole(0, 2 ** 32) }));
+const isAnimation = isShape({ frames: (value) => isFrames(value) && !isEmpty(value) });
+const isLighting = isShape({
+  ...{ position: isKnown(isPlace), ambient: isKnown(isByte), on: isKnown(isFlag), flat: isKnown(isFlag) },
+  ...{ bounces: isKnown(isWhole(0, 15)), faces: isKnown(isFaces) },
+});
 
 /** @type {Record<string, Check>} */ const FIELDS = {
   depth: isWhole(1, 16),

@@ -39,21 +39,16 @@ import { sceneOf } from "./voxrt/scene.js";
       const index = place(material, "materials");
       if (index === undefined) return null;
       const { name, factor, mirror, isNamed } = looks.properties(index);
-      return {
-        key: isNamed ? `${name} ${mirror}` : index,
-        order: index,
-        name,
-        mirror,
-        colour: factor.slice(0, 3).map((channel) => voxrt.srgb(channel)),
-      };
+      const colour = factor.slice(0, 3).map((channel) => voxrt.srgb(channel));
+      return { key: isNamed ? `${name} ${mirror}` : index, order: index, name, mirror, colour };
     },
     isLeftOut: (material) => looks.isLeftOut(place(material, "materials")),
     appearanceOf: (material, geometry) => looks.appearance(place(material, "materials"), geometry),
   });
   scene.warnings.push(...looks.warnings.list());
-  const ignored = (json.extensionsUsed ?? []).filter((name) => /^KHR_(physics|implicit|materials_variants)/.test(name));
-  for (const name of ignored)
-    scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
+  for (const name of json.extensionsUsed ?? [])
+    if (/^KHR_(physics|implicit|materials_variants)/.test(name))
+      scene.warnings.push({ kind: "extension", message: `${name} is not used here; voxrt build uses it`, count: 1 });
   return scene;
 }
 
