@@ -61,9 +61,8 @@ export class App {
   size = () => this.frames.size;
   side = () => 2 ** this.state().scene.depth;
 
-  /** @returns {Box} what is solid */ bounds() {
-    return this.state().scene.bounds ?? [[0, 0, 0], Array(3).fill(this.side())];
-  }
+  /** @returns {Box} what is solid */ bounds = () =>
+    this.state().scene.bounds ?? [[0, 0, 0], Array(3).fill(this.side())];
 
   limit = () => Math.min(8 * this.side() + 512, this.device().position_limit / 16 - 1);
 

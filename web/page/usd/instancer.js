@@ -83,9 +83,8 @@ const single = (values) => (values instanceof Float32Array ? values : Float32Arr
 
 /** Four numbers per copy: x, y, z, w, of any length, as USD takes them. Files of text have more digits than the
  * values that they stand for. @param {Record<string, Numbers | undefined>} attributes */
-function turnsOf({ orientationsf = [], orientations = [] }) {
-  return orientationsf.length ? single(orientationsf) : Float64Array.from(orientations, half);
-}
+const turnsOf = ({ orientationsf = [], orientations = [] }) =>
+  orientationsf.length ? single(orientationsf) : Float64Array.from(orientations, half);
 
 /** @param {number} value */ function half(value) {
   if (value === 0) return 0;

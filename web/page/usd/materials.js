@@ -95,9 +95,8 @@ export class UsdMaterials {
     return this.one({ ...noShading, opacity, ...(stored && { name: "displayColor", primvar: "displayColor" }) });
   }
 
-  /** @param {readonly number[]} linear */ srgb(linear) {
-    return linear.map((part) => this.voxrt.srgb(Number.isNaN(part) || part < 0 ? 0 : Math.min(part, 1)));
-  }
+  /** @param {readonly number[]} linear */ srgb = (linear) =>
+    linear.map((part) => this.voxrt.srgb(Number.isNaN(part) || part < 0 ? 0 : Math.min(part, 1)));
 
   /** What faces of a shading show: null where they are left out. @param {Shading} shading @param {Composer} composer
    * @param {string} path @param {FaceSurface} surface @param {number} faces */

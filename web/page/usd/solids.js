@@ -111,9 +111,8 @@ function cylinder(bottom, top, height, axis) {
 }
 
 /** @param {number} bottom @param {number} top @param {number} height @param {string} axis */
-function capsule(bottom, top, height, axis) {
-  return revolved([...arc(bottom, -Math.PI / 2, 0, -height / 2), ...arc(top, 0, Math.PI / 2, height / 2)], axis);
-}
+const capsule = (bottom, top, height, axis) =>
+  revolved([...arc(bottom, -Math.PI / 2, 0, -height / 2), ...arc(top, 0, Math.PI / 2, height / 2)], axis);
 
 /** Part of a circle; a half turn has half of the segments. @param {number} radius @param {number} start @param
  * {number} stop @param {number} centre @returns {Place[]} */
