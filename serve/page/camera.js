@@ -46,12 +46,9 @@ export const fieldOfView = (ahead, size) => (Math.atan(measure(size) / 2 / ahead
   const factor = Math.min(REGISTER_LIMIT / largest, (DIRECTION_LIMIT - rounding) / reach);
   /** @param {Vector} triple */
   const whole = (triple, sign = 1) => triple.map((value) => Math.round(value * factor * sign) + 0);
-  return {
-    position: view.eye.map((value) => Math.round(value * 16)),
-    look: whole(ahead),
-    right: whole(right, view.flipX ? -1 : 1),
-    up: whole(up, view.flipY ? -1 : 1),
-  };
+  const [rightward, upward] = [whole(right, view.flipX ? -1 : 1), whole(up, view.flipY ? -1 : 1)];
+  const position = view.eye.map((value) => Math.round(value * 16));
+  return { position, look: whole(ahead), right: rightward, up: upward };
 }
 
 /** The pose of registers that were made for frames of `size`. The target is the point of the central ray that is
@@ -68,15 +65,9 @@ export function fromRegisters({ position, look, right, up }, size, centre, shown
   const fit = Math.min(shownSize[0] / size[0], shownSize[1] / size[1]);
   const towards = subtract(centre, eye);
   const fov = fieldOfView((fit * length(look)) / (length(right) || 1), shownSize);
-  return {
-    eye,
-    yaw,
-    pitch,
-    fov: clamp(fov, FIELD_OF_VIEW.min, FIELD_OF_VIEW.max),
-    distance: Math.max(dot(towards, ahead), length(towards) / 8, 1),
-    flipX: dot(upright.right, right) < 0,
-    flipY: dot(upright.up, up) < 0,
-  };
+  const distance = Math.max(dot(towards, ahead), length(towards) / 8, 1);
+  const [flipX, flipY] = [dot(upright.right, right) < 0, dot(upright.up, up) < 0];
+  return { eye, yaw, pitch, fov: clamp(fov, FIELD_OF_VIEW.min, FIELD_OF_VIEW.max), distance, flipX, flipY };
 }
 
 /** The direction of the ray through a pixel, as the hardware computes it. @param {Omit<Registers, "position">}

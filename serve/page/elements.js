@@ -81,8 +81,6 @@ export function makeSlider(parent, label, limits, onInput, numbered = false) {
   };
 }
 
-/** @typedef {ReturnType<typeof makeSlider>} Slider */
-
 /** A toolbar takes one stop of the tab key; arrows, Home and End go from button to button. @param {HTMLElement} bar */
 export function makeToolbar(bar) {
   const buttons = () => [...bar.querySelectorAll("button")].filter((button) => !button.hidden && !button.disabled);
@@ -94,22 +92,15 @@ export function makeToolbar(bar) {
   bar.addEventListener("keydown", (event) => {
     const enabled = buttons();
     const at = enabled.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
-    const to = new Map([
-      ["ArrowRight", at + 1],
-      ["ArrowDown", at + 1],
-      ["ArrowLeft", at - 1],
-      ["ArrowUp", at - 1],
-      ["Home", 0],
-      ["End", enabled.length - 1],
-    ]).get(event.key);
+    const [next, last] = [at + 1, enabled.length - 1];
+    /** @type {Record<string, number>} */
+    const places = { ArrowRight: next, ArrowDown: next, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: last };
+    const to = places[event.key];
     if (to === undefined || at < 0) return;
     event.preventDefault();
     enabled[(to + enabled.length) % enabled.length].focus();
   });
-  new MutationObserver(refresh).observe(bar, {
-    childList: true,
-    subtree: true,
-    attributeFilter: ["disabled", "hidden"],
-  });
+  const attributeFilter = ["disabled", "hidden"];
+  new MutationObserver(refresh).observe(bar, { childList: true, subtree: true, attributeFilter });
   refresh();
 }

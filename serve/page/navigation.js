@@ -65,11 +65,8 @@ export function frame(view, [low, high], [width, height], limit) {
     const [low, high] = [-before * side * pixel, after * side * pixel];
     const first = Math.max(...corners.map((corner) => dot(corner, axis) - high * dot(corner, ahead)));
     const last = Math.min(...corners.map((corner) => dot(corner, axis) - low * dot(corner, ahead)));
-    return {
-      axis,
-      depth: (last - first) / (high - low),
-      aside: (/** @type {number} */ depth) => (first + last + (low + high) * depth) / 2,
-    };
+    const aside = (/** @type {number} */ depth) => (first + last + (low + high) * depth) / 2;
+    return { axis, depth: (last - first) / (high - low), aside };
   });
   const depth = Math.min(...stands.map((stand) => stand.depth));
   const eye = stands.reduce((place, stand) => add(place, stand.axis, stand.aside(depth)), scale(ahead, depth));

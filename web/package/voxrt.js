@@ -108,13 +108,8 @@ export class Voxrt extends Instance {
       const [top, bottom] = [TILE * first, Math.min(TILE * end, height)];
       /** @param {number} at @param {number} bytes */ const part = (at, bytes) =>
         this.view(Uint8Array, at + top * width * bytes, (bottom - top) * width * bytes).slice();
-      return {
-        top,
-        wordsRead,
-        colour: part(this.wasm.vx_colour(), 3),
-        material: part(this.wasm.vx_frame_material(), 1),
-        face: part(this.wasm.vx_frame_face(), 1),
-      };
+      const [material, face] = [part(this.wasm.vx_frame_material(), 1), part(this.wasm.vx_frame_face(), 1)];
+      return { top, wordsRead, colour: part(this.wasm.vx_colour(), 3), material, face };
     });
   }
 

@@ -19,7 +19,7 @@ const [HEAD, DATA] = [12, 2304]; // bytes of a command before its data, and of i
 /** @typedef {Pick<Memory, "words" | "depth" | "materials">} Content */
 
 /** The cameras of an orbit: 12 registers each. @param {Voxrt} voxrt @param {number} count @param {Size} size */
-export function orbitOf(voxrt, count, [width, height]) {
+function orbitOf(voxrt, count, [width, height]) {
   voxrt.guard(() => voxrt.checked(voxrt.wasm.vx_orbit(count, width, height)));
   return voxrt.view(Int32Array, voxrt.wasm.vx_registers(), 12 * count).slice();
 }

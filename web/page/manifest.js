@@ -43,10 +43,15 @@ const isWorld = isShape({ origin: isList(Number.isFinite, 3), voxel_size: isSize
 const isView = isShape({ position: isPlace, look: isPlace, right: isPlace, up: isPlace });
 const isFrames = isList(isShape({ root: isWhole(0, 2 ** 32) }));
 const isAnimation = isShape({ frames: (value) => isFrames(value) && !isEmpty(value) });
-const isLighting = isShape({
-  ...{ position: isKnown(isPlace), ambient: isKnown(isByte), on: isKnown(isFlag), flat: isKnown(isFlag) },
-  ...{ bounces: isKnown(isWhole(0, 15)), faces: isKnown(isFaces) },
-});
+const LIGHTING = {
+  position: isPlace,
+  ambient: isByte,
+  on: isFlag,
+  flat: isFlag,
+  bounces: isWhole(0, 15),
+  faces: isFaces,
+};
+const isLighting = isShape(Object.fromEntries(Object.entries(LIGHTING).map(([name, is]) => [name, isKnown(is)])));
 
 /** @type {Record<string, Check>} */ const FIELDS = {
   depth: isWhole(1, 16),

@@ -129,11 +129,10 @@ const DEVICE = { name: "this browser", features: ["light", "mirrors"], ...LIMITS
   /** @param {Job} job @param {number} began */
   #finish({ request, since, size: [width, height], bands, camera }, began) {
     this.sent.delete(request);
-    this.emit("frame", {
-      ...{ viewer: this.hello.viewer, request, requested: since, sequence: ++this.#sequence },
-      ...{ width, height, bands, camera, words: null, cycles: null, rays: width * height },
-      seconds: (performance.now() - began) / 1000,
-    });
+    const ids = { viewer: this.hello.viewer, request, requested: since, sequence: ++this.#sequence };
+    const seconds = (performance.now() - began) / 1000;
+    const figures = { seconds, rays: width * height, words: null, cycles: null };
+    this.emit("frame", { ...ids, ...figures, width, height, bands, camera });
     const lengths = new Set(bands.map(({ pixels }) => pixels.byteLength));
     for (const length of this.#buffers.keys()) if (!lengths.has(length)) this.#buffers.delete(length);
     this.#release(this.#shown.filter(({ pixels }) => lengths.has(pixels.byteLength)));

@@ -26,14 +26,8 @@ export async function decodePng(bytes) {
     const kind = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
     const data = bytes.subarray(at + 8, at + 8 + length);
     if (data.length < length) throw new Error("the image is cut off");
-    if (kind === "IHDR")
-      head = {
-        width: wordAt(at + 8),
-        height: wordAt(at + 12),
-        depth: data[8],
-        type: data[9],
-        interlaced: data[12] === 1,
-      };
+    const [depth, type, interlaced] = [data[8], data[9], data[12] === 1];
+    if (kind === "IHDR") head = { width: wordAt(at + 8), height: wordAt(at + 12), depth, type, interlaced };
     if (kind === "PLTE") palette = data;
     if (kind === "tRNS") clear = data;
     if (kind === "IDAT") parts.push(data);

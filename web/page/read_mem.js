@@ -5,8 +5,6 @@ import { PLAIN } from "./memory.js";
 import { BACKGROUND } from "./voxrt/voxrt.js";
 /** @import { DroppedFile } from "./folder.js" @import { Memory } from "./memory.js" */
 
-/** @typedef {Omit<Memory, "name" | "file" | "depth"> & { depth: number | null }} ReadMemory */
-
 /** Read words, and what their manifest says. @param {DroppedFile} mem @param {DroppedFile | undefined} beside the
  * manifest */
 export function readMem(mem, beside) {
@@ -27,17 +25,9 @@ export function readMem(mem, beside) {
   const warnings = [...manifest.warnings];
   const still = `${name} has ${animation?.frames.length} frames, and the first is used`;
   if (animation && animation.frames.length > 1) warnings.push({ kind: "frames", message: still, count: 1 });
-  return {
-    words,
-    depth,
-    materials,
-    objects,
-    warnings,
-    manifest,
-    grid: world ? { origin: world.origin, voxelSize: world.voxel_size } : null,
-    lighting: lighting ? { ...PLAIN, ...lighting } : null,
-    view: view ?? null,
-  };
+  const grid = world ? { origin: world.origin, voxelSize: world.voxel_size } : null;
+  const own = { grid, lighting: lighting ? { ...PLAIN, ...lighting } : null, view: view ?? null };
+  return { words, depth, materials, objects, warnings, manifest, ...own };
 }
 
 /** @param {unknown} _ @param {number} id */

@@ -68,11 +68,8 @@ async function objLooks(library, folder, voxrt) {
     const placed = placement(map);
     const file = folder.find(placed.file);
     if (!file) {
-      warnings.push({
-        kind: "missing-texture",
-        message: `texture '${placed.file}' was not found; its material's own value was used`,
-        count: 1,
-      });
+      const message = `texture '${placed.file}' was not found; its material's own value was used`;
+      warnings.push({ kind: "missing-texture", message, count: 1 });
       continue;
     }
     const image = await decodeImage(file.bytes, `map_Kd ${placed.file}`);

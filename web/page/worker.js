@@ -40,15 +40,9 @@ const calls = {
     const start = performance.now();
     report(`Voxelizing ${(2 ** depth).toLocaleString("en")}³`);
     const built = loaded().voxelize(scene, { depth, fill, bake, budget });
-    return {
-      ...built,
-      name,
-      file,
-      fill,
-      seconds: (performance.now() - start) / 1000,
-      warnings: [...scene.warnings, ...built.warnings],
-      lighting: built.baked ? FLAT : null,
-    };
+    const seconds = (performance.now() - start) / 1000;
+    const warnings = [...scene.warnings, ...built.warnings];
+    return { ...built, name, file, fill, seconds, warnings, lighting: built.baked ? FLAT : null };
   },
 
   /** @param {{ words: Uint32Array, depth: number, shading: Look }} job */ memory({ words, depth, shading }) {

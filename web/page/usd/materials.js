@@ -12,7 +12,6 @@ import { placesOf } from "./surface.js";
 
 /** @typedef {(triangle: number, corner: number, out: { [at: number]: number }, to: number) => void} SetCorner */
 /** @typedef {{ entry: Appearance, setUv?: SetCorner, setColour?: SetCorner }} CornerLook */
-/** @typedef {{ uniform: Described, look?: undefined } | { look: CornerLook, uniform?: undefined }} Shows */
 const DEFAULT_COLOUR = [200, 200, 200];
 const TRANSPARENT = "faces of materials below their opacity threshold (0.5 by default) were left out";
 const MISSING = "textures that are missing or of an unsupported format were replaced by the fallback or default colour";

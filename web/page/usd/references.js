@@ -7,7 +7,6 @@ import { targetsOf } from "./stage.js";
 
 const ARCS = /** @type {const} */ (["references", "payload", "inheritPaths", "specializes"]);
 export const ELSEWHERE = [...ARCS, "subLayers"];
-/** @typedef {{ file: string, prim: string, text: string }} Arc what a prim refers to; file or prim may be empty */
 /** @typedef {(file: string) => Specs | null} LayerOf the specs of a file; null for none */
 
 /** @param {Found} found @returns {MethodsOf<Composer>} */ export const referenceMethods = (found) => (kept) => ({

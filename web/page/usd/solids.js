@@ -86,28 +86,17 @@ export const solidOf = (kind, dimensions) => SOLIDS[kind].make(dimensions);
   return { positions, triangles: axis === "Z" ? [0, 1, 2, 0, 2, 3] : [2, 1, 0, 3, 2, 0] };
 }
 
+/** @type {(radii: number[], heights: number[]) => Place[]} */
+const profile = (radii, heights) => radii.map((radius, i) => [radius, heights[i]]);
+
 /** @param {number} bottom @param {number} top @param {number} height @param {string} axis */
 function cylinder(bottom, top, height, axis) {
-  return revolved(
-    [
-      [0, -height / 2],
-      [bottom, -height / 2],
-      [top, height / 2],
-      [0, height / 2],
-    ],
-    axis,
-  );
+  const half = height / 2;
+  return revolved(profile([0, bottom, top, 0], [-half, -half, half, half]), axis);
 }
 
 /** @param {number} radius @param {number} height @param {string} axis */ function cone(radius, height, axis) {
-  return revolved(
-    [
-      [0, -height / 2],
-      [radius, -height / 2],
-      [0, height / 2],
-    ],
-    axis,
-  );
+  return revolved(profile([0, radius, 0], [-height / 2, -height / 2, height / 2]), axis);
 }
 
 /** @param {number} bottom @param {number} top @param {number} height @param {string} axis */

@@ -24,14 +24,8 @@ export function surfaceOf(composer, path, kind, warn, posed) {
   if (kind === "Mesh") return meshSurface(composer, path, warn, posed);
   const dimensions = dimensionsOf(kind, path, (name) => attributeOf(composer, path, name));
   const { positions, triangles } = solidOf(kind, dimensions);
-  return {
-    positions,
-    triangles,
-    faces: new Array(triangles.length / 3).fill(0),
-    faceCount: 1,
-    corners: triangles,
-    cornerCount: 0,
-  };
+  const faces = new Array(triangles.length / 3).fill(0);
+  return { positions, triangles, faces, faceCount: 1, corners: triangles, cornerCount: 0 };
 }
 
 /** @param {Composer} composer @param {string} path @param {Warn} warn @param {Numbers} [posed] */
