@@ -192,7 +192,7 @@ build/fuzz/native/%-fuzzer: tests/fuzz/native/%.cpp tests/fuzz/native/driver.cpp
 .SECONDARY: $(COVERED) $(foreach library,libvoxelize liboctree libsim,$(SANITIZERS:%=build/sanitize/%/$(library).a))
 
 clean:
-	rm -rf $(VENV) build demo
+	rm -rf $(VENV) build demo web/node_modules
 
 # Without pip's isolation, so that objects that are made stay valid; with ccache where it is, so that other folders of
 # the same sources are built quickly too.
